@@ -1,0 +1,93 @@
+# mcsample.h is one header: nothing here has to be built to use it. This file builds what proves it and what shows it.
+#
+# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), DESTDIR; for tests also FILTER=text, SEED=number and
+# MCS_TEST_SCALE=0.05 (scales the sample counts of the statistical tests; 1 is the count that the tolerances are meant for).
+
+CFLAGS ?= -O2
+BUILD ?= build
+PREFIX ?= /usr/local
+WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+FLAGS = $(CFLAGS) -std=c99 $(WARNINGS) -I. -Itests
+LIBS = -lm
+
+TESTS = $(sort $(wildcard tests/test_*.c))
+EXAMPLES = $(sort $(wildcard examples/[0-9][0-9]_*.c))
+TEST_BINS = $(TESTS:%.c=$(BUILD)/%)
+EXAMPLE_BINS = $(EXAMPLES:%.c=$(BUILD)/%)
+RENDER = $(BUILD)/examples/render
+
+# Two at a time unless make was given its own -j. MAKEFLAGS holds -j only while a recipe is expanded, hence no := here.
+JOBS = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),2)
+SUBMAKE = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j2)
+
+# -fopenmp where the compiler can build and link it, else nothing.
+OPENMP = $(shell mkdir -p $(BUILD) && printf '\043include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n' | \
+	$(CC) -fopenmp -x c - -o $(BUILD)/openmp.probe 2>/dev/null && echo -fopenmp)
+
+test: ## build and run every tests/test_*.c (the default); FILTER=text and SEED=number narrow it down
+	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS)'
+	+@$(SUBMAKE) test-binaries
+	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS)
+
+examples: ## build the renderer, build and run every numbered example
+	@echo '$(CC): $(FLAGS)'
+	+@$(SUBMAKE) example-binaries $(RENDER)
+	@passed=0; failed=0; for e in $(EXAMPLE_BINS); do \
+		echo "$$e"; \
+		if $$e; then passed=$$((passed + 1)); else failed=$$((failed + 1)); echo "FAIL $$e: exit status not 0"; fi; \
+	done; \
+	echo "$$passed passed, $$failed failed"; \
+	test $$failed = 0 && test $$passed != 0
+
+demo: $(RENDER) ## render the default scene with every strategy into build/demo, print the strategy table
+	@mkdir -p $(BUILD)/demo
+	$(RENDER) --strategy all --out $(BUILD)/demo/spheres
+
+time: $(BUILD)/tests/timing ## ns per sample, scalar against 8 wide (no gate)
+	$(BUILD)/tests/timing
+	+@if $(CC) -mavx2 -mfma -E -x c /dev/null >/dev/null 2>&1; then \
+		$(MAKE) --no-print-directory $(BUILD)/tests/timing-avx2 && $(BUILD)/tests/timing-avx2; \
+	else echo 'SKIPPED: $(CC) has no -mavx2'; fi
+
+hygiene: ## warnings in every language standard, index, macros, symbols, what including the header costs
+	@BUILD='$(BUILD)' JOBS='$(JOBS)' sh tests/hygiene.sh
+
+selftest: ## show that a failing, crashing, empty or unbuildable test makes make test fail
+	@MAKE='$(MAKE)' BUILD='$(BUILD)/selftest' sh tests/selftest/selftest.sh
+
+install: ## copy the header and a pkg-config file to DESTDIR/PREFIX
+	install -d "$(DESTDIR)$(PREFIX)"/include "$(DESTDIR)$(PREFIX)"/lib/pkgconfig
+	install -m 644 mcsample.h "$(DESTDIR)$(PREFIX)"/include/mcsample.h
+	version=$$(sed -n 's/^ *# *define  *MCS_VERSION_STRING  *"\(.*\)".*/\1/p' mcsample.h) && test -n "$$version" && \
+	printf '%s\n' 'prefix=$(PREFIX)' 'includedir=$${prefix}/include' '' 'Name: mcsample' \
+		'Description: Monte Carlo sampling for rendering, in one C header' "Version: $$version" \
+		'Cflags: -I$${includedir}' 'Libs: -lm' > "$(DESTDIR)$(PREFIX)"/lib/pkgconfig/mcsample.pc
+
+help: ## this list
+	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/    make \1\t\2/p' Makefile | expand -t 22
+
+clean: ## remove everything that was built
+	rm -rf $(BUILD)
+
+test-binaries: $(TEST_BINS)
+example-binaries: $(EXAMPLE_BINS)
+
+# Rewritten only when the compiler or a flag changes, so that such a change rebuilds everything and nothing else does.
+$(BUILD)/flags: FORCE
+	@mkdir -p $(@D)
+	@echo '$(CC) $(FLAGS)' | cmp -s - $@ || echo '$(CC) $(FLAGS)' > $@
+
+$(BUILD)/%: %.c mcsample.h $(wildcard tests/*.h) $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CC) $(FLAGS) $< -o $@ $(LIBS)
+
+$(RENDER): examples/render.c mcsample.h $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CC) $(FLAGS) $(OPENMP) $< -o $@ $(LIBS)
+
+$(BUILD)/tests/timing-avx2: tests/timing.c mcsample.h $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CC) $(FLAGS) -mavx2 -mfma $< -o $@ $(LIBS)
+
+FORCE:
+.PHONY: test examples demo time hygiene selftest install help clean test-binaries example-binaries FORCE

@@ -1,0 +1,28 @@
+/* Points on a disk of radius R: the polar map and Shirley and Chiu's concentric map (less distortion, keeps strata compact).
+ * Both have density 1/(pi R^2) per area. The integral of x^2 over the disk is pi R^4 / 4. */
+#include "mcsample.h"
+#include <math.h>
+#include <stdio.h>
+
+static int report(const char *name, const mcs_stat *s, double exact) {
+    printf("%-12s %.5f +- %.5f, exact %.5f\n", name, s->mean, mcs_stat_error(s), exact);
+    return !(fabs(s->mean - exact) <= 5 * mcs_stat_error(s));
+}
+
+int main(void) {
+    const float R = 2;
+    const double exact = 3.14159265358979 * R * R * R * R / 4;
+    mcs_pcg32 rng = mcs_pcg32_make(2, 1);
+    mcs_stat polar = {0, 0, 0}, concentric = {0, 0, 0};
+    int i, wrong = 0;
+
+    for (i = 0; i < 1000000; i++) {
+        float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+        mcs_sample2 p = mcs_disk_sample(R, u1, u2), c = mcs_concentric_sample(R, u1, u2);
+        mcs_stat_add(&polar, p.x * p.x / p.pdf);
+        mcs_stat_add(&concentric, c.x * c.x / c.pdf);
+    }
+    wrong |= report("polar", &polar, exact);
+    wrong |= report("concentric", &concentric, exact);
+    return wrong;
+}

@@ -1,0 +1,907 @@
+/* render.c - the main example of mcsample.h: how a renderer uses it.
+ *
+ * A row of spheres, one per BRDF, on a matte ground, lit by a latitude-longitude environment map: direct illumination with
+ * visibility, estimated by uniform, cosine, BRDF, environment or multiple importance sampling. Writes PNG and Radiance .hdr
+ * pictures and prints what each strategy cost and how far its mean may be off.
+ *
+ *     cc -O2 -std=c99 -I. -fopenmp examples/render.c -o render -lm       (-fopenmp is optional: without it, one thread)
+ *     ./render --strategy all sunrise.hdr
+ *
+ * World: z up, lengths in sphere radii. Shading happens in the local frame of mcsample.h: normal on +z, wo to the eye, wi to
+ * the light. Colours are linear RGB with the primaries of sRGB, kept in a vec3.
+ */
+#define _POSIX_C_SOURCE 200809L /* clock_gettime, fileno, isatty */
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+#include "mcsample.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#define OMP(directive) _Pragma(#directive)
+#else
+#define OMP(directive)
+#endif
+
+#define PI 3.14159265f
+
+typedef mcs_vec3 vec3;
+
+static vec3 vec(float x, float y, float z) {
+    vec3 v;
+    v.x = x, v.y = y, v.z = z;
+    return v;
+}
+static vec3 add(vec3 a, vec3 b) { return vec(a.x + b.x, a.y + b.y, a.z + b.z); }
+static vec3 sub(vec3 a, vec3 b) { return vec(a.x - b.x, a.y - b.y, a.z - b.z); }
+static vec3 mul(vec3 a, vec3 b) { return vec(a.x * b.x, a.y * b.y, a.z * b.z); }
+static vec3 scale(float s, vec3 a) { return vec(s * a.x, s * a.y, s * a.z); }
+static float dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static vec3 cross(vec3 a, vec3 b) { return vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
+static vec3 unit(vec3 a) { return scale(1 / sqrtf(dot(a, a)), a); }
+static vec3 mix(float t, vec3 a, vec3 b) { return add(scale(1 - t, a), scale(t, b)); }
+static float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; } /* Rec. 709 */
+
+/* Says on stderr what is wrong with a file or an argument. Returns 0, so that a failing function can end with it. */
+static int complain(const char *what, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    fprintf(stderr, "render: %s: ", what);
+    vfprintf(stderr, format, args);
+    fputc('\n', stderr);
+    va_end(args);
+    return 0;
+}
+
+/* ---- Environment: a map of radiance, row 0 around +z, and the table of mcsample.h that samples it ---- */
+
+#define MAX_SIDE 32768u
+#define MAX_TEXELS (1u << 27)
+#define MAX_EXPONENT 188 /* radiance up to 2^60; from there on a product with a sharp lobe could leave the range of a float */
+
+typedef struct {
+    unsigned char rgb[3], exponent; /* as in the file: at 4 bytes a texel most lookups find theirs in the cache */
+} rgbe;
+
+typedef struct {
+    unsigned w, h;
+    rgbe *texel;
+    float unit[256]; /* what 1 in rgb stands for, by exponent */
+    mcs_env *table;
+    float irradiance; /* luminance of the irradiance on level ground with nothing in the way */
+    float main_light; /* azimuth */
+} environment;
+
+static rgbe rgbe_make(vec3 c) {
+    rgbe p = {{0, 0, 0}, 0};
+    float top = fmaxf(c.x, fmaxf(c.y, c.z));
+    if (top > 1e-32f) {
+        int exponent;
+        float scaled = frexpf(top, &exponent) * 256 / top;
+        p.rgb[0] = (unsigned char)(c.x * scaled), p.rgb[1] = (unsigned char)(c.y * scaled),
+        p.rgb[2] = (unsigned char)(c.z * scaled);
+        p.exponent = (unsigned char)(exponent + 128);
+    }
+    return p;
+}
+
+static vec3 radiance_at(const environment *e, unsigned col, unsigned row) {
+    rgbe p = e->texel[(size_t)row * e->w + col];
+    return scale(e->unit[p.exponent], vec(p.rgb[0], p.rgb[1], p.rgb[2]));
+}
+
+static vec3 radiance(const environment *e, vec3 w) {
+    mcs_texel l = mcs_env_texel(e->table, w);
+    return radiance_at(e, l.col, l.row);
+}
+
+static int map_allocate(environment *e, const char *name, unsigned w, unsigned h) {
+    int i;
+    if (w < 1 || h < 1 || w > MAX_SIDE || h > MAX_SIDE || (uint64_t)w * h > MAX_TEXELS)
+        return complain(name, "%u x %u texels: at most %u a side and %u in all are read", w, h, MAX_SIDE, MAX_TEXELS);
+    e->w = w, e->h = h;
+    for (i = 1; i < 256; i++) e->unit[i] = ldexpf(1, (i < MAX_EXPONENT ? i : MAX_EXPONENT) - 136);
+    e->texel = malloc((size_t)w * h * sizeof *e->texel);
+    return e->texel ? 1 : complain(name, "not enough memory for %u x %u texels", w, h);
+}
+
+/* One text line without its newline. Returns 0 at the end of the file and for a line that does not fit. */
+static int read_line(FILE *f, char *line, size_t size) {
+    size_t n = 0;
+    int c;
+    while ((c = getc(f)) != EOF && c != '\n' && n + 1 < size) line[n++] = (char)c;
+    line[n] = 0;
+    return c == '\n';
+}
+
+/* Header of a Radiance picture (Ward, "Real Pixels", Graphics Gems II, 1991). EXPOSURE lines are skipped: the scale of the map is
+ * free here, since the picture gets its exposure from the map. */
+static int hdr_header(FILE *f, const char *name, unsigned *w, unsigned *h) {
+    char line[2048], more;
+    if (!read_line(f, line, sizeof line) || strncmp(line, "#?", 2) != 0) {
+        if (ferror(f)) return complain(name, "%s", strerror(errno));
+        return complain(name, feof(f) && !line[0] ? "the file is empty" : "not a Radiance .hdr file");
+    }
+    do {
+        if (!read_line(f, line, sizeof line)) return complain(name, "the header has no end");
+        if (!strncmp(line, "FORMAT=", 7) && strcmp(line + 7, "32-bit_rle_rgbe") != 0)
+            return complain(name, "the FORMAT is not 32-bit_rle_rgbe, the only one that is read");
+    } while (line[0]);
+    if (read_line(f, line, sizeof line) && sscanf(line, "-Y %9u +X %9u%c", h, w, &more) == 2) return 1;
+    return complain(name, "the resolution line is not '-Y height +X width', the only orientation that is read");
+}
+
+/* One scan line of w RGBE pixels, whichever of the three codings it has. Returns NULL or what is wrong with it. */
+static const char *hdr_scanline(FILE *f, rgbe *line, uint32_t w) {
+    static const char truncated[] = "the file is truncated", overrun[] = "a run of wrong length";
+    unsigned char p[4];
+    uint32_t i, channel, shift = 0;
+    if (fread(p, 1, 4, f) != 4) return truncated;
+    if (p[0] == 2 && p[1] == 2 && p[2] < 128 && w >= 8 && w < 32768) { /* each channel run-length coded by itself */
+        if (((uint32_t)p[2] << 8 | p[3]) != w) return "it is coded for another width";
+        for (channel = 0; channel < 4; channel++) {
+            for (i = 0; i < w;) {
+                int code = getc(f), run = code > 128, value = run ? getc(f) : 0;
+                uint32_t n = (uint32_t)(run ? code - 128 : code);
+                if (code == EOF) return truncated;
+                if (n < 1 || n > w - i) return overrun;
+                for (; n > 0; n--, i++) {
+                    if (!run) value = getc(f);
+                    if (value == EOF) return truncated;
+                    *(channel < 3 ? &line[i].rgb[channel] : &line[i].exponent) = (unsigned char)value;
+                }
+            }
+        }
+        return NULL;
+    }
+    for (i = 0;;) { /* flat; (1, 1, 1, n) repeats the pixel before n times, and a series of those holds the bytes of n, low first */
+        if (p[0] == 1 && p[1] == 1 && p[2] == 1) {
+            uint64_t n = (uint64_t)p[3] << shift;
+            if (i < 1 || n > w - i || shift > 24) return overrun;
+            for (; n > 0; n--, i++) line[i] = line[i - 1];
+            shift += 8;
+        } else {
+            memcpy(&line[i++], p, 4);
+            shift = 0;
+        }
+        if (i == w) return NULL;
+        if (fread(p, 1, 4, f) != 4) return truncated;
+    }
+}
+
+static int map_read(environment *e, const char *name) {
+    FILE *f = fopen(name, "rb");
+    const char *fault;
+    unsigned w, h, y;
+    int ok;
+    if (!f) return complain(name, "%s", strerror(errno));
+    ok = hdr_header(f, name, &w, &h) && map_allocate(e, name, w, h);
+    for (y = 0; ok && y < h; y++)
+        if ((fault = hdr_scanline(f, e->texel + (size_t)y * w, w)) != NULL)
+            ok = complain(name, "scan line %u of %u: %s", y + 1, h, fault);
+    fclose(f);
+    return ok;
+}
+
+static vec3 texel_direction(const environment *e, uint32_t x, uint32_t y) {
+    float theta = PI * ((float)y + 0.5f) / (float)e->h, phi = 2 * PI * ((float)x + 0.5f) / (float)e->w;
+    return vec(sinf(theta) * cosf(phi), sinf(theta) * sinf(phi), cosf(theta));
+}
+
+/* A clear late afternoon, for a run without a map: blue sky, pale horizon, brown ground, and a sun four degrees wide, since the
+ * true half degree would be smaller than a texel. */
+static int map_sky(environment *e, const char *name) {
+    const vec3 zenith = {0.15f, 0.29f, 0.66f}, horizon = {0.95f, 0.98f, 1.06f}, soil = {0.16f, 0.13f, 0.11f};
+    const vec3 sun = {1500, 1180, 800}, haze = {2.2f, 1.5f, 0.8f}, to_sun = unit(vec(1, 0, 0.70f));
+    const float sun_cos = cosf(2 * PI / 180), edge = 0.3f * (1 - sun_cos);
+    uint32_t x, y;
+    if (!map_allocate(e, name, 512, 256)) return 0;
+    for (y = 0; y < e->h; y++) {
+        for (x = 0; x < e->w; x++) {
+            vec3 d = texel_direction(e, x, y), c;
+            float near_sun = dot(d, to_sun), disc = fminf(fmaxf((near_sun - sun_cos) / edge, 0), 1);
+            if (d.z > 0) {
+                c = mix(powf(1 - d.z, 4), zenith, horizon);
+                c = add(c, scale(powf(fmaxf(near_sun, 0), 12), haze));
+            } else {
+                c = mix(expf(30 * d.z), soil, scale(0.6f, horizon));
+            }
+            e->texel[(size_t)y * e->w + x] = rgbe_make(add(c, scale(disc, sun)));
+        }
+    }
+    return 1;
+}
+
+/* What the camera wants to know of the map: how bright it makes the ground, and where its main light stands, which is taken as the
+ * direction of the squared luminance of the upper half. */
+static void map_survey(environment *e) {
+    double lx = 0, ly = 0, irradiance = 0;
+    unsigned x, y;
+    for (y = 0; y < e->h / 2; y++) {
+        float area = 2 * PI / (float)e->w * (cosf(PI * (float)y / (float)e->h) - cosf(PI * (float)(y + 1) / (float)e->h));
+        for (x = 0; x < e->w; x++) {
+            vec3 d = texel_direction(e, x, y);
+            double l = luminance(radiance_at(e, x, y));
+            lx += l * l * area * d.x, ly += l * l * area * d.y;
+            irradiance += l * area * d.z;
+        }
+    }
+    e->irradiance = (float)irradiance, e->main_light = (float)atan2(ly, lx);
+}
+
+static int environment_make(environment *e, const char *map) {
+    const char *name = map ? map : "built-in sky";
+    size_t bytes, i;
+    float *pixel;
+    int status;
+    if (!(map ? map_read(e, name) : map_sky(e, name))) return 0;
+    map_survey(e);
+    bytes = mcs_env_bytes(e->w, e->h);
+    e->table = malloc(bytes);
+    pixel = malloc((size_t)e->w * e->h * sizeof *pixel);
+    if (!e->table || !pixel) return free(pixel), complain(name, "not enough memory for the sampling table");
+    for (i = 0; i < (size_t)e->w * e->h; i++) pixel[i] = luminance(radiance_at(e, (unsigned)(i % e->w), (unsigned)(i / e->w)));
+    status = mcs_env_build(e->table, bytes, pixel, e->w, e->h, 1, 0);
+    free(pixel);
+    if (status == MCS_UNIFORM) return complain(name, "the map is black: there is nothing to light the scene with");
+    return status == MCS_OK ? 1 : complain(name, "no sampling table (status %d)", status);
+}
+
+/* ---- Materials: a matte base, a lobe, or both ---- */
+
+typedef enum { MATTE, PHONG, WARD, GGX_VISIBLE, GGX_BOUNDED, ASHIKHMIN } lobe_kind;
+
+typedef struct {
+    lobe_kind kind;
+    union { /* prepared once by the _make functions, then only read */
+        mcs_phong phong;
+        mcs_ward ward;
+        mcs_ggx ggx;
+        mcs_ashikhmin ashikhmin;
+    } lobe;
+    vec3 base;     /* albedo of the matte base */
+    vec3 specular; /* reflectance of the lobe, for microfacets at normal incidence */
+    float p_lobe;  /* probability that BRDF sampling takes the lobe: 0 matte, 1 no base */
+    float share;   /* BRDF samples of MIS for each environment sample: few where the lobe is so wide that they find nothing new */
+} material;
+
+static mcs_brdf lobe_sample(const material *m, vec3 wo, float u1, float u2) {
+    switch (m->kind) {
+    case PHONG: return mcs_phong_sample(&m->lobe.phong, wo, u1, u2);
+    case WARD: return mcs_ward_sample(&m->lobe.ward, wo, u1, u2);
+    case GGX_VISIBLE: return mcs_ggx_vndf_sample(&m->lobe.ggx, wo, u1, u2);
+    case GGX_BOUNDED: return mcs_ggx_bounded_sample(&m->lobe.ggx, wo, u1, u2);
+    default: return mcs_ashikhmin_sample(&m->lobe.ashikhmin, wo, u1, u2);
+    }
+}
+
+static float lobe_pdf(const material *m, vec3 wo, vec3 wi) {
+    switch (m->kind) {
+    case PHONG: return mcs_phong_pdf(&m->lobe.phong, wo, wi);
+    case WARD: return mcs_ward_pdf(&m->lobe.ward, wo, wi);
+    case GGX_VISIBLE: return mcs_ggx_vndf_pdf(&m->lobe.ggx, wo, wi);
+    case GGX_BOUNDED: return mcs_ggx_bounded_pdf(&m->lobe.ggx, wo, wi);
+    default: return mcs_ashikhmin_pdf(&m->lobe.ashikhmin, wo, wi);
+    }
+}
+
+static float lobe_eval(const material *m, vec3 wo, vec3 wi) {
+    switch (m->kind) {
+    case PHONG: return mcs_phong_eval(&m->lobe.phong, wo, wi);
+    case WARD: return mcs_ward_eval(&m->lobe.ward, wo, wi);
+    case GGX_VISIBLE:
+    case GGX_BOUNDED: return mcs_ggx_eval(&m->lobe.ggx, wo, wi);
+    default: return mcs_ashikhmin_eval(&m->lobe.ashikhmin, wo, wi);
+    }
+}
+
+/* Fresnel's factor, which the lobes of mcsample.h leave to the caller. Phong has no half-vector and a constant reflectance. */
+static vec3 fresnel(const material *m, vec3 wo, vec3 wi) {
+    float c = mcs_cos_d(wo, wi);
+    if (m->kind == PHONG) return m->specular;
+    return vec(mcs_schlick(m->specular.x, c), mcs_schlick(m->specular.y, c), mcs_schlick(m->specular.z, c));
+}
+
+/* f cos(theta_wi) */
+static vec3 material_eval(const material *m, vec3 wo, vec3 wi) {
+    vec3 f = {0, 0, 0};
+    if (!(wi.z > 0 && wo.z > 0)) return f;
+    if (m->p_lobe < 1) f = scale(1 / PI, m->base);
+    if (m->p_lobe > 0) f = add(f, scale(lobe_eval(m, wo, wi), fresnel(m, wo, wi)));
+    return scale(wi.z, f);
+}
+
+static float material_pdf(const material *m, vec3 wo, vec3 wi) {
+    if (m->p_lobe <= 0) return mcs_cosine_pdf(wi);
+    if (m->p_lobe >= 1) return lobe_pdf(m, wo, wi);
+    return mcs_mix_pdf(m->p_lobe, lobe_pdf(m, wo, wi), mcs_cosine_pdf(wi));
+}
+
+typedef struct {
+    vec3 wi;
+    float pdf;   /* 0: the sample is lost; it still counts, with the value 0 */
+    vec3 weight; /* f cos / pdf */
+} bounce;
+
+static bounce material_sample(const material *m, vec3 wo, float u_choice, float u1, float u2) {
+    bounce b = {{0, 0, 1}, 0, {0, 0, 0}};
+    if (u_choice < m->p_lobe) {
+        mcs_brdf s = lobe_sample(m, wo, u1, u2);
+        b.wi = s.wi, b.pdf = s.pdf;
+        if (b.pdf > 0 && m->p_lobe >= 1) b.weight = scale(s.weight, fresnel(m, wo, s.wi)); /* closed form, no f / pdf */
+    } else {
+        mcs_dir s = mcs_cosine_sample(u1, u2);
+        b.wi = s.w, b.pdf = s.pdf;
+        if (m->p_lobe <= 0) b.weight = m->base;
+    }
+    if (m->p_lobe > 0 && m->p_lobe < 1) {
+        b.pdf = material_pdf(m, wo, b.wi);
+        if (b.pdf > 0) b.weight = scale(1 / b.pdf, material_eval(m, wo, b.wi));
+    }
+    return b;
+}
+
+/* ---- Scene ---- */
+
+#define SPHERES 8
+#define GROUND SPHERES /* index of the ground, the plane z = 0 */
+
+typedef struct {
+    vec3 center[SPHERES]; /* radius 1, resting on the ground */
+    material of[SPHERES], tile[2];
+    vec3 side, ahead;             /* level axes of the camera, of the row and of the tiles */
+    vec3 eye, forward, right, up; /* right and up reach from the middle to the edges of the picture at distance 1 */
+} scene;
+
+typedef struct {
+    const material *m;
+    vec3 p, wo; /* world position; local direction to the eye */
+    mcs_frame frame;
+    int object;
+} surface;
+
+static material material_make(lobe_kind kind, float p_lobe, vec3 base, vec3 specular, float a, float b) {
+    material m;
+    memset(&m, 0, sizeof m);
+    m.kind = kind, m.p_lobe = p_lobe, m.base = base, m.specular = specular, m.share = kind == MATTE ? 0.125f : 1;
+    if (kind == PHONG) m.lobe.phong = mcs_phong_make(a);
+    if (kind == WARD) m.lobe.ward = mcs_ward_make(a, b, MCS_WARD_GMD);
+    if (kind == GGX_VISIBLE || kind == GGX_BOUNDED) m.lobe.ggx = mcs_ggx_make(a, b);
+    if (kind == ASHIKHMIN) m.lobe.ashikhmin = mcs_ashikhmin_make(a, b);
+    return m;
+}
+
+/* Seen with the main light of the map behind the camera at the left, where it models the spheres and stays out of the picture. */
+static scene scene_make(unsigned w, unsigned h, float main_light) {
+    const vec3 none = {0, 0, 0}, gloss = {0.05f, 0.05f, 0.05f}, silver = {0.95f, 0.93f, 0.88f}, gold = {1.00f, 0.72f, 0.30f};
+    const vec3 copper = {0.95f, 0.60f, 0.48f}, steel = {0.62f, 0.61f, 0.60f};
+    const float half_width = 7.75f, distance = 26, elevation = 27 * PI / 180;
+    const float azimuth = main_light - 118 * PI / 180;
+    scene s;
+    int i;
+    s.ahead = vec(cosf(azimuth), sinf(azimuth), 0);
+    s.side = vec(s.ahead.y, -s.ahead.x, 0);
+    for (i = 0; i < SPHERES; i++)
+        s.center[i] = add(vec(0, 0, 1), add(scale(1.82f * (float)i - 6.24f, s.side), scale(i % 2 ? 0.75f : -0.75f, s.ahead)));
+    s.of[0] = material_make(MATTE, 0, vec(0.78f, 0.36f, 0.18f), none, 0, 0);
+    s.of[1] = material_make(PHONG, 0.5f, vec(0.52f, 0.05f, 0.04f), vec(0.14f, 0.14f, 0.14f), 120, 0);
+    s.of[2] = material_make(WARD, 1, none, copper, 0.18f, 0.18f);
+    s.of[3] = material_make(WARD, 1, none, steel, 0.06f, 0.35f);
+    s.of[4] = material_make(GGX_VISIBLE, 1, none, gold, 0.06f, 0.06f);
+    s.of[5] = material_make(GGX_VISIBLE, 0.5f, vec(0.03f, 0.12f, 0.42f), gloss, 0.12f, 0.12f);
+    s.of[6] = material_make(GGX_BOUNDED, 1, none, silver, 0.40f, 0.40f);
+    s.of[7] = material_make(ASHIKHMIN, 0.5f, vec(0.04f, 0.26f, 0.12f), vec(0.12f, 0.14f, 0.10f), 15, 600);
+    s.tile[0] = material_make(MATTE, 0, vec(0.38f, 0.35f, 0.31f), none, 0, 0);
+    s.tile[1] = material_make(MATTE, 0, vec(0.25f, 0.22f, 0.19f), none, 0, 0);
+    s.forward = add(scale(cosf(elevation), s.ahead), vec(0, 0, -sinf(elevation)));
+    s.eye = sub(vec(0, 0, 0.66f), scale(distance, s.forward));
+    s.right = scale(half_width / distance, s.side);
+    s.up = scale((float)h / (float)w, cross(s.right, s.forward));
+    return s;
+}
+
+/* Distance along a unit direction to the front of sphere i, or 0. */
+static float hit_sphere(const scene *s, int i, vec3 p, vec3 w) {
+    vec3 d = sub(s->center[i], p);
+    float b = dot(d, w), disc = b * b - dot(d, d) + 1;
+    return b > 0 && disc > 0 ? b - sqrtf(disc) : 0;
+}
+
+/* From a point on an object in the direction w above its surface. All objects are convex, so none shadows itself, and everything
+ * stands above the ground, so the ground stops exactly the directions that point down. */
+static int visible(const scene *s, vec3 p, vec3 w, int object) {
+    int i;
+    if (w.z <= 0) return 0;
+    for (i = 0; i < SPHERES; i++)
+        if (i != object && hit_sphere(s, i, p, w) > 0) return 0;
+    return 1;
+}
+
+/* Spheres get tangents along their circles of latitude, as if turned on a lathe: the anisotropic ones need a direction. */
+static mcs_frame sphere_frame(vec3 n) {
+    mcs_frame f;
+    if (n.x * n.x + n.y * n.y < 1e-8f) return mcs_frame_make(n);
+    f.n = n;
+    f.s = unit(vec(-n.y, n.x, 0));
+    f.t = cross(n, f.s);
+    return f;
+}
+
+static int intersect(const scene *s, vec3 p, vec3 w, surface *x) {
+    float nearest = INFINITY;
+    int i;
+    x->object = -1;
+    if (w.z < 0) nearest = -p.z / w.z, x->object = GROUND;
+    for (i = 0; i < SPHERES; i++) {
+        float t = hit_sphere(s, i, p, w);
+        if (t > 0 && t < nearest) nearest = t, x->object = i;
+    }
+    if (x->object < 0) return 0;
+    x->p = add(p, scale(nearest, w));
+    if (x->object == GROUND) {
+        x->p.z = 0;
+        x->frame = mcs_frame_make(vec(0, 0, 1));
+        x->m = &s->tile[fmodf(floorf(0.5f * dot(x->p, s->side)) + floorf(0.5f * dot(x->p, s->ahead)), 2) != 0];
+    } else {
+        x->frame = sphere_frame(unit(sub(x->p, s->center[x->object])));
+        x->m = &s->of[x->object];
+    }
+    x->wo = mcs_to_local(&x->frame, scale(-1, w));
+    return 1;
+}
+
+/* ---- Direct illumination: each strategy estimates the integral of f L V cos over the hemisphere ---- */
+
+typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, STRATEGIES } strategy;
+static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine", "brdf", "env", "mis"};
+
+/* With mis, one half of a multi-sample estimator with the power heuristic (Veach and Guibas, "Optimally combining sampling
+ * techniques", 1995); without, an estimator by itself. Likewise the environment. */
+static vec3 sample_brdf(const scene *s, const environment *e, const surface *x, int mis, mcs_pcg32 *rng) {
+    float u0 = mcs_pcg32_float(rng), u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng);
+    bounce b = material_sample(x->m, x->wo, u0, u1, u2);
+    vec3 w = mcs_to_world(&x->frame, b.wi), value;
+    mcs_texel l;
+    if (!(b.pdf > 0 && visible(s, x->p, w, x->object))) return vec(0, 0, 0);
+    l = mcs_env_texel(e->table, w);
+    value = mul(b.weight, radiance_at(e, l.col, l.row));
+    return mis ? scale(mcs_mis_power(x->m->share * b.pdf, l.pdf) / x->m->share, value) : value;
+}
+
+static vec3 sample_environment(const scene *s, const environment *e, const surface *x, int mis, mcs_pcg32 *rng) {
+    float u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng);
+    mcs_texel l = mcs_env_sample(e->table, u1, u2);
+    vec3 wi = mcs_to_local(&x->frame, l.w), value;
+    if (!(l.pdf > 0 && wi.z > 0 && visible(s, x->p, l.w, x->object))) return vec(0, 0, 0);
+    value = scale(1 / l.pdf, mul(material_eval(x->m, x->wo, wi), radiance_at(e, l.col, l.row)));
+    return mis ? scale(mcs_mis_power(l.pdf, x->m->share * material_pdf(x->m, x->wo, wi)), value) : value;
+}
+
+static vec3 sample_hemisphere(const scene *s, const environment *e, const surface *x, int cosine, mcs_pcg32 *rng) {
+    float u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng);
+    mcs_dir d = cosine ? mcs_cosine_sample(u1, u2) : mcs_hemisphere_sample(u1, u2);
+    vec3 w = mcs_to_world(&x->frame, d.w);
+    mcs_texel l;
+    if (!(d.pdf > 0 && visible(s, x->p, w, x->object))) return vec(0, 0, 0);
+    l = mcs_env_texel(e->table, w);
+    return scale(1 / d.pdf, mul(material_eval(x->m, x->wo, d.w), radiance_at(e, l.col, l.row)));
+}
+
+/* *drawn counts the light samples. */
+static vec3 direct(const scene *s, const environment *e, const surface *x, strategy how, mcs_pcg32 *rng, uint32_t *drawn) {
+    vec3 sum = {0, 0, 0};
+    ++*drawn;
+    switch (how) {
+    case BRDF: return sample_brdf(s, e, x, 0, rng);
+    case ENVIRONMENT: return sample_environment(s, e, x, 0, rng);
+    case MIS:
+        if (x->m->share == 1 || mcs_pcg32_float(rng) < x->m->share) sum = sample_brdf(s, e, x, 1, rng), ++*drawn;
+        return add(sum, sample_environment(s, e, x, 1, rng));
+    default: return sample_hemisphere(s, e, x, how == COSINE, rng);
+    }
+}
+
+/* ---- Rendering ---- */
+
+#define PASS 16 /* samples per pixel between two looks at the error */
+
+typedef struct {
+    unsigned w, h, spp;
+    double error; /* relative standard error of the mean at which to stop, 0: take spp samples */
+    uint64_t seed;
+    int help, threads, wanted[STRATEGIES];
+    float stops;
+    const char *out, *map;
+} options;
+
+typedef struct {
+    mcs_pcg32 rng;
+    vec3 sum;
+    mcs_stat luminance; /* of this pixel's samples */
+    uint32_t drawn;     /* light samples */
+} pixel;
+
+typedef struct {
+    unsigned spp;
+    double samples, wall, cpu; /* light samples; seconds on the clock, and of all threads together */
+    double mean, error;        /* of the luminance of the picture; the standard error of that mean */
+} outcome;
+
+typedef struct {
+    const char *what;
+    double start, last, rows, done; /* seconds; rows of all passes, -1 where nobody watches */
+} progress;
+
+static double seconds(clockid_t clock_id) {
+    struct timespec t;
+    clock_gettime(clock_id, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void progress_row(progress *p) {
+    if (p->rows < 0) return;
+    OMP(omp critical(progress)) {
+        double now = seconds(CLOCK_MONOTONIC);
+        p->done++;
+        if (now - p->last > 0.2) {
+            p->last = now;
+            fprintf(stderr, "\r%-8s row %.0f of %.0f, %.0f s left \033[K", p->what, p->done, p->rows,
+                    fmax(0, (now - p->start) * (p->rows / p->done - 1)));
+        }
+    }
+}
+
+static void render_row(const options *o, const scene *s, const environment *e, strategy how, uint32_t y, uint32_t n, pixel *row) {
+    uint32_t x, i;
+    for (x = 0; x < o->w; x++) {
+        pixel *p = row + x;
+        for (i = 0; i < n; i++) {
+            float px = 2 * ((float)x + mcs_pcg32_float(&p->rng)) / (float)o->w - 1; /* a box filter: anywhere in the pixel */
+            float py = 1 - 2 * ((float)y + mcs_pcg32_float(&p->rng)) / (float)o->h;
+            vec3 w = unit(add(s->forward, add(scale(px, s->right), scale(py, s->up)))), c;
+            surface at;
+            c = intersect(s, s->eye, w, &at) ? direct(s, e, &at, how, &p->rng, &p->drawn) : radiance(e, w);
+            p->sum = add(p->sum, c);
+            mcs_stat_add(&p->luminance, luminance(c));
+        }
+    }
+}
+
+/* The pixels are strata of equal size, each with its own independent samples: the variance of the mean of the picture is the sum
+ * of the variances of the pixel means over the square of their number. What differs between pixels is picture, not error. As with
+ * any estimate: where samples hardly ever find a small bright light, both the mean and its error come out low until they do. */
+static void picture_statistics(const pixel *p, size_t n, outcome *r) {
+    double variance = 0;
+    size_t i;
+    r->mean = r->samples = 0;
+    for (i = 0; i < n; i++) {
+        double e = mcs_stat_error(&p[i].luminance);
+        r->mean += p[i].luminance.mean, r->samples += p[i].drawn;
+        variance += e * e;
+    }
+    r->mean /= (double)n;
+    r->error = sqrt(variance) / (double)n;
+}
+
+/* Every pixel has its own stream, seeded from (seed, pixel, strategy) by the counter-based generator, and owns all that it
+ * changes: the picture does not depend on the number of threads. */
+static outcome render(const options *o, const scene *s, const environment *e, strategy how, pixel *image) {
+    size_t pixels = (size_t)o->w * o->h, i;
+    outcome r = {0, 0, 0, 0, 0, 0};
+    progress p = {strategy_name[how], seconds(CLOCK_MONOTONIC), 0, o->h * ceil(o->spp / (double)PASS), 0};
+    double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    int watched = isatty(fileno(stderr));
+    if (!watched) p.rows = -1;
+    for (i = 0; i < pixels; i++) {
+        mcs_philox4 key = mcs_philox(o->seed, i, how);
+        memset(&image[i], 0, sizeof image[i]);
+        image[i].rng = mcs_pcg32_make((uint64_t)key.v[0] << 32 | key.v[1], (uint64_t)key.v[2] << 32 | key.v[3]);
+    }
+    while (r.spp < o->spp && !(o->error > 0 && r.spp > 0 && r.error <= o->error * r.mean)) {
+        uint32_t n = o->spp - r.spp < PASS ? o->spp - r.spp : PASS;
+        int y;
+        OMP(omp parallel for schedule(dynamic) num_threads(o->threads))
+        for (y = 0; y < (int)o->h; y++) {
+            render_row(o, s, e, how, (uint32_t)y, n, image + (size_t)y * o->w);
+            progress_row(&p);
+        }
+        r.spp += n;
+        picture_statistics(image, pixels, &r);
+        if (watched && o->error > 0 && r.mean > 0) /* the error falls with the root of the samples */
+            p.rows = fmin(p.rows, p.done * fmax(1, pow(r.error / (o->error * r.mean), 2)));
+    }
+    if (watched) fputs("\r\033[K", stderr);
+    r.wall = seconds(CLOCK_MONOTONIC) - p.start;
+    r.cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
+    return r;
+}
+
+/* ---- Writing pictures ---- */
+
+static vec3 pixel_color(const pixel *p) { return scale(1 / (float)p->luminance.n, p->sum); }
+
+static int file_close(FILE *f, const char *name) {
+    int bad = ferror(f);
+    if (fclose(f) != 0 || bad) return complain(name, "cannot write: %s", strerror(errno));
+    return 1;
+}
+
+static int hdr_write(const char *name, const pixel *image, unsigned w, unsigned h) {
+    FILE *f = fopen(name, "wb");
+    size_t i;
+    if (!f) return complain(name, "%s", strerror(errno));
+    fprintf(f, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %u +X %u\n", h, w);
+    for (i = 0; i < (size_t)w * h; i++) {
+        rgbe p = rgbe_make(pixel_color(&image[i]));
+        fwrite(&p, 1, 4, f);
+    }
+    return file_close(f, name);
+}
+
+/* Exposure, a filmic curve without hard clipping (Narkowicz, "ACES filmic tone mapping curve", 2015), sRGB coding, 8 bits. */
+static unsigned char display(float linear, float exposure) {
+    float x = fminf(linear * exposure, 1e4f);
+    float y = fminf(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1);
+    return (unsigned char)(255 * (y <= 0.0031308f ? 12.92f * y : 1.055f * powf(y, 1 / 2.4f) - 0.055f) + 0.5f);
+}
+
+#define SYMBOLS 257 /* 256 bytes and the end of the block */
+
+/* Lengths of a prefix code for n bytes counted: Shannon's lengths, then shortened until the code is complete, as deflate wants it.
+ * No count is taken as less than n / 8192, which keeps the lengths at 14 bits and below. */
+static void code_lengths(const uint32_t *count, size_t n, unsigned char *length) {
+    uint64_t total = n + SYMBOLS * (n / 8192 + 1);
+    uint32_t used = 0, i; /* sum of 2^(15 - length): 2^15 when complete */
+    for (i = 0; i < SYMBOLS; i++) {
+        for (length[i] = 1; (count[i] + n / 8192 + 1) << length[i] < total;) length[i]++;
+        used += 1u << (15 - length[i]);
+    }
+    for (i = 0; used < 1u << 15; i = (i + 1) % SYMBOLS)
+        if (used + (1u << (15 - length[i])) <= 1u << 15) used += 1u << (15 - length[i]--);
+}
+
+typedef struct {
+    unsigned char *at;
+    uint32_t bits, n;
+} bit_writer;
+
+static void put_bits(bit_writer *b, uint32_t value, uint32_t n) {
+    for (b->bits |= value << b->n, b->n += n; b->n >= 8; b->n -= 8, b->bits >>= 8) *b->at++ = (unsigned char)b->bits;
+}
+
+static void put_code(bit_writer *b, uint32_t code, uint32_t n) { /* codes go out highest bit first */
+    uint32_t reversed = 0, i;
+    for (i = 0; i < n; i++) reversed |= (code >> i & 1) << (n - 1 - i);
+    put_bits(b, reversed, n);
+}
+
+static unsigned char *put_u32(unsigned char *at, uint32_t v) {
+    *at++ = (unsigned char)(v >> 24), *at++ = (unsigned char)(v >> 16), *at++ = (unsigned char)(v >> 8), *at++ = (unsigned char)v;
+    return at;
+}
+
+/* zlib stream (RFC 1950) of one deflate block (RFC 1951) with its own prefix code and no matches: a rendered picture has hardly
+ * any repetition to match, but its filtered bytes are far from evenly spread. `out` has room for 2 n + 1024 bytes. */
+static size_t zlib_pack(const unsigned char *data, size_t n, unsigned char *out) {
+    uint32_t count[SYMBOLS] = {0}, code[SYMBOLS], next = 0, s1 = 1, s2 = 0, bits;
+    unsigned char length[SYMBOLS];
+    bit_writer b = {NULL, 0, 0};
+    size_t i;
+    b.at = out;
+    for (i = 0; i < n; i++) {
+        count[data[i]]++;
+        s1 = (s1 + data[i]) % 65521, s2 = (s2 + s1) % 65521; /* Adler-32 */
+    }
+    code_lengths(count, n, length);
+    for (bits = 1; bits <= 15; bits++, next <<= 1)
+        for (i = 0; i < SYMBOLS; i++)
+            if (length[i] == bits) code[i] = next++;
+    put_bits(&b, 0x0178, 16);                                /* zlib: deflate, 32 KiB window */
+    put_bits(&b, 1 | 2 << 1, 3);                             /* the last block; its own codes */
+    put_bits(&b, 0, 10), put_bits(&b, 15, 4);                /* 257 byte codes, 1 distance code, all 19 length codes: */
+    for (i = 0; i < 19; i++) put_bits(&b, i < 3 ? 0 : 4, 3); /* 16-18 unused, so that 0-15 are themselves in 4 bits */
+    for (i = 0; i < SYMBOLS; i++) put_code(&b, length[i], 4);
+    put_code(&b, 0, 4); /* no distances */
+    for (i = 0; i < n; i++) put_code(&b, code[data[i]], length[data[i]]);
+    put_code(&b, code[SYMBOLS - 1], length[SYMBOLS - 1]);
+    put_bits(&b, 0, 7);
+    return (size_t)(put_u32(b.at, s2 << 16 | s1) - out);
+}
+
+static void png_chunk(FILE *f, const char *type, const unsigned char *data, size_t n) {
+    unsigned char head[8], tail[4];
+    uint32_t crc = 0xffffffffu;
+    size_t i;
+    int k;
+    memcpy(put_u32(head, (uint32_t)n), type, 4);
+    for (i = 4; i < n + 8; i++) { /* over the type and the data */
+        crc ^= i < 8 ? head[i] : data[i - 8];
+        for (k = 0; k < 8; k++) crc = crc >> 1 ^ (0xedb88320u & (0u - (crc & 1)));
+    }
+    put_u32(tail, ~crc);
+    fwrite(head, 1, 8, f), fwrite(data, 1, n, f), fwrite(tail, 1, 4, f);
+}
+
+static int png_write(const char *name, const pixel *image, unsigned w, unsigned h, float exposure) {
+    size_t stride = (size_t)w * 3, raw_size = (stride + 1) * h, x, y;
+    unsigned char *rows = calloc(2, stride), *raw = malloc(raw_size), *packed = malloc(2 * raw_size + 1024), head[13];
+    FILE *f = rows && raw && packed ? fopen(name, "wb") : NULL;
+    int ok = f ? 1 : complain(name, "%s", strerror(errno));
+    for (y = 0; ok && y < h; y++) { /* PNG's average filter: the one that suits pictures with noise */
+        unsigned char *row = rows + (y & 1) * stride, *above = rows + (~y & 1) * stride, *out = raw + y * (stride + 1);
+        for (x = 0; x < w; x++) {
+            vec3 c = pixel_color(&image[y * w + x]);
+            row[3 * x] = display(c.x, exposure), row[3 * x + 1] = display(c.y, exposure), row[3 * x + 2] = display(c.z, exposure);
+        }
+        for (*out++ = 3, x = 0; x < stride; x++) out[x] = (unsigned char)(row[x] - ((x < 3 ? 0 : row[x - 3]) + above[x]) / 2);
+    }
+    if (ok) {
+        fwrite("\211PNG\r\n\032\n", 1, 8, f);
+        memcpy(put_u32(put_u32(head, w), h), "\10\2\0\0\0", 5); /* 8 bits, RGB, not interlaced */
+        png_chunk(f, "IHDR", head, 13);
+        png_chunk(f, "IDAT", packed, zlib_pack(raw, raw_size, packed));
+        png_chunk(f, "IEND", head, 0);
+        ok = file_close(f, name);
+    }
+    free(rows), free(raw), free(packed);
+    return ok;
+}
+
+static int write_pictures(const options *o, strategy how, const environment *e, const pixel *image) {
+    size_t size = strlen(o->out) + 16;
+    char *name = malloc(size);
+    float exposure = e->irradiance > 0 ? 0.9f * PI / e->irradiance : 1;
+    int ok;
+    if (!name) return complain(o->out, "not enough memory");
+    snprintf(name, size, "%s-%s.png", o->out, strategy_name[how]);
+    ok = png_write(name, image, o->w, o->h, exposure * exp2f(o->stops));
+    snprintf(name, size, "%s-%s.hdr", o->out, strategy_name[how]);
+    ok = ok && hdr_write(name, image, o->w, o->h);
+    free(name);
+    return ok;
+}
+
+/* ---- The command ---- */
+
+static int usage(void) {
+    return fputs("usage: render [options] [map.hdr]\n"
+                 "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
+                 "  --strategy LIST    uniform, cosine, brdf, env, mis, several with commas, or all (mis)\n"
+                 "  --spp N            samples per pixel (64; with --error: at most N, 16384)\n"
+                 "  --error E          stop when the standard error of the mean of the picture is E times the mean\n"
+                 "  --size WxH         size of the picture (960x320)\n"
+                 "  --stops X          brighten the PNG by X stops from what suits the map (0)\n"
+                 "  --out PREFIX       write PREFIX-STRATEGY.png and PREFIX-STRATEGY.hdr (render)\n"
+                 "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on it\n"
+                 "  --seed N           another set of random numbers (1)\n"
+                 "  --help             this text\n"
+                 "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
+                 "EXPOSURE lines of a map are ignored. The camera has the main light of the map behind it at the left.\n",
+                 stdout) < 0;
+}
+
+static int parse_number(const char *name, const char *text, double low, double high, int whole, double *value) {
+    char *end;
+    errno = 0;
+    *value = strtod(text, &end);
+    if (end == text || *end || errno || !(*value >= low && *value <= high) || (whole && *value != floor(*value)))
+        return complain(name, "'%s' is not a %s from %g to %g", text, whole ? "whole number" : "number", low, high);
+    return 1;
+}
+
+static int parse_size(const char *text, options *o) {
+    char more;
+    if (sscanf(text, "%6ux%6u%c", &o->w, &o->h, &more) != 2) return complain("--size", "'%s' is not WIDTHxHEIGHT", text);
+    if (o->w - 1 < 16384 && o->h - 1 < 16384 && o->w * o->h <= 1u << 25) return 1;
+    return complain("--size", "each side is from 1 to 16384, with at most %u pixels in all", 1u << 25);
+}
+
+static int parse_strategies(const char *list, options *o) {
+    memset(o->wanted, 0, sizeof o->wanted);
+    for (;;) {
+        size_t n = strcspn(list, ",");
+        int i, known = 0;
+        for (i = 0; i < STRATEGIES; i++)
+            if ((n == 3 && !strncmp(list, "all", 3)) || (n == strlen(strategy_name[i]) && !strncmp(list, strategy_name[i], n)))
+                known = o->wanted[i] = 1;
+        if (!known) return complain("--strategy", "'%.*s' is none of uniform, cosine, brdf, env, mis, all", (int)n, list);
+        if (!list[n]) return 1;
+        list += n + 1;
+    }
+}
+
+static int parse_option(const char *name, const char *value, options *o) {
+    double v;
+    if (!strcmp(name, "--strategy")) return parse_strategies(value, o);
+    if (!strcmp(name, "--size")) return parse_size(value, o);
+    if (!strcmp(name, "--out")) return o->out = value, 1;
+    if (!strcmp(name, "--spp")) return parse_number(name, value, 2, 1e6, 1, &v) && (o->spp = (uint32_t)v, 1);
+    if (!strcmp(name, "--error")) return parse_number(name, value, 1e-7, 1, 0, &v) && (o->error = v, 1);
+    if (!strcmp(name, "--stops")) return parse_number(name, value, -20, 20, 0, &v) && (o->stops = (float)v, 1);
+    if (!strcmp(name, "--threads")) return parse_number(name, value, 1, 1024, 1, &v) && (o->threads = (int)v, 1);
+    if (!strcmp(name, "--seed")) return parse_number(name, value, 0, 9e15, 1, &v) && (o->seed = (uint64_t)v, 1);
+    return complain(name, "unknown option; --help lists them");
+}
+
+/* Returns 0 for a wrong argument. */
+static int parse_arguments(int argc, char **argv, options *o) {
+    int i;
+    memset(o, 0, sizeof *o);
+    o->w = 960, o->h = 320, o->seed = 1, o->wanted[MIS] = 1, o->out = "render";
+    for (i = 1; i < argc; i++) {
+        if (!strcmp(argv[i], "--help")) return o->help = 1;
+        if (argv[i][0] != '-') {
+            if (o->map) return complain(argv[i], "only one map can be given");
+            o->map = argv[i];
+        } else if (i + 1 == argc) {
+            return complain(argv[i], "unknown option, or its value is missing; --help lists them");
+        } else if (!parse_option(argv[i], argv[i + 1], o)) {
+            return 0;
+        } else {
+            i++;
+        }
+    }
+    if (!o->spp) o->spp = o->error > 0 ? 16384 : 64;
+#ifdef _OPENMP
+    if (!o->threads) o->threads = omp_get_max_threads();
+#else
+    o->threads = 1;
+#endif
+    return 1;
+}
+
+static void print_table(const options *o, const outcome *result) {
+    double efficiency[STRATEGIES], most = 0;
+    int i, best = -1;
+    for (i = 0; i < STRATEGIES; i++) {
+        const outcome *r = &result[i];
+        if (!o->wanted[i]) continue;
+        efficiency[i] = r->error > 0 && r->cpu > 0 ? 1 / (r->error * r->error * r->cpu) : 0;
+        if (best < 0 || efficiency[i] > most) most = efficiency[best = i];
+    }
+    printf("strategy  spp    samples    wall s   cpu s       mean  std error  efficiency  of best  deviation\n");
+    for (i = 0; i < STRATEGIES; i++) {
+        const outcome *r = &result[i];
+        if (!o->wanted[i]) continue;
+        printf("%-8s%5u  %9.3g  %8.2f  %6.2f  %9.6g  %9.3g  %10.4g  %7.3f  %9.2f\n", strategy_name[i], r->spp, r->samples, r->wall,
+               r->cpu, r->mean, r->error, efficiency[i], most > 0 ? efficiency[i] / most : 1,
+               i != best ? (r->mean - result[best].mean) / fmax(hypot(r->error, result[best].error), 1e-300) : 0);
+    }
+    printf("samples: light samples; efficiency: 1 / (std error^2 x cpu s);\n"
+           "deviation: from the mean of the most efficient, in standard errors of the difference\n");
+}
+
+int main(int argc, char **argv) {
+    options o;
+    environment e;
+    outcome result[STRATEGIES];
+    pixel *image;
+    scene s;
+    int i, ok;
+    if (!parse_arguments(argc, argv, &o)) return 2;
+    if (o.help) return usage();
+    memset(&e, 0, sizeof e);
+    image = malloc((size_t)o.w * o.h * sizeof *image);
+    ok = image ? environment_make(&e, o.map) : complain("--size", "not enough memory for the picture");
+    s = scene_make(o.w, o.h, e.main_light);
+    if (ok)
+        printf("%s %u x %u, picture %u x %u, %d thread%s\n", o.map ? o.map : "built-in sky", e.w, e.h, o.w, o.h, o.threads,
+               o.threads > 1 ? "s" : "");
+    for (i = 0; ok && i < STRATEGIES; i++) {
+        if (!o.wanted[i]) continue;
+        result[i] = render(&o, &s, &e, (strategy)i, image);
+        ok = write_pictures(&o, (strategy)i, &e, image);
+    }
+    if (ok) print_table(&o, result);
+    for (i = 0; ok && i < STRATEGIES; i++)
+        if (o.wanted[i] && o.error > 0 && !(result[i].error <= o.error * result[i].mean))
+            ok = complain(strategy_name[i], "error %g not reached with %u samples per pixel", o.error, result[i].spp);
+    free(image), free(e.texel), free(e.table);
+    return ok ? 0 : 1;
+}

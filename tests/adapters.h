@@ -1,0 +1,217 @@
+/* One uniform shape for every sampler of mcsample.h, at one width.
+ *
+ * No include guard: registry.h includes this file with MCST_W = 1 (scalar) and, for the width test, once more each for 4, 8 and 16.
+ * With W = MCST_W and every array in structure-of-arrays order (entry i of lane l is at i * W + l), a row's functions are
+ *
+ *     sample(p, u1, u2, out)   p: 6 numbers (3 parameters, then wo); out: x, y, z, pdf, weight
+ *     pdf(p, x, out)           x: 3 numbers, out: 1           invert(p, x, out)   out: u1, u2
+ *     eval(p, x, out)          out: f                         weight(p, x, out)
+ *
+ * The parameters are per lane too, so that a lane that looks at its neighbour's parameters is found. */
+#define MCST_CAT_(a, b) a##b
+#define MCST_CAT(a, b) MCST_CAT_(a, b)
+#if MCST_W == 1
+#define M_(name) MCST_CAT(mcs_, name)
+#define A_(name) MCST_CAT(mcst1_, name)
+#define F_ float
+#elif MCST_W == 4
+#define M_(name) MCST_CAT(mcs4_, name)
+#define A_(name) MCST_CAT(mcst4_, name)
+#define F_ mcs4_f
+#elif MCST_W == 8
+#define M_(name) MCST_CAT(mcs8_, name)
+#define A_(name) MCST_CAT(mcst8_, name)
+#define F_ mcs8_f
+#else
+#define M_(name) MCST_CAT(mcs16_, name)
+#define A_(name) MCST_CAT(mcst16_, name)
+#define F_ mcs16_f
+#endif
+
+static inline F_ A_(load)(const float *a) {
+    F_ v;
+    memcpy(&v, a, sizeof v);
+    return v;
+}
+
+static inline void A_(store)(float *a, F_ v) { memcpy(a, &v, sizeof v); }
+
+static inline M_(vec3) A_(load3)(const float *a) {
+    M_(vec3) v;
+    v.x = A_(load)(a);
+    v.y = A_(load)(a + MCST_W);
+    v.z = A_(load)(a + 2 * MCST_W);
+    return v;
+}
+
+static inline void A_(store3)(float *a, M_(vec3) v) {
+    A_(store)(a, v.x);
+    A_(store)(a + MCST_W, v.y);
+    A_(store)(a + 2 * MCST_W, v.z);
+}
+
+#define LD(i) A_(load)(p + (i)*MCST_W)
+#define WO A_(load3)(p + 3 * MCST_W)
+#define ARGS_0
+#define ARGS_1 LD(0),
+#define ARGS_2 LD(0), LD(1),
+#define MAKE_phong const M_(phong) m = M_(phong_make)(LD(0))
+#define MAKE_ward MAKE_ward_gmd
+#define MAKE_ward_gmd const M_(ward) m = M_(ward_make)(LD(0), LD(1), MCS_WARD_GMD)
+#define MAKE_ward_duer const M_(ward) m = M_(ward_make)(LD(0), LD(1), MCS_WARD_DUER)
+#define MAKE_ward_1992 const M_(ward) m = M_(ward_make)(LD(0), LD(1), MCS_WARD_1992)
+#define MAKE_beckmann const M_(beckmann) m = M_(beckmann_make)(LD(0), LD(1))
+#define MAKE_ggx const M_(ggx) m = M_(ggx_make)(LD(0), LD(1))
+#define MAKE_ashikhmin const M_(ashikhmin) m = M_(ashikhmin_make)(LD(0), LD(1))
+
+#define MCST_LINE(row, fn, args, unused)                                                                \
+    static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
+        const M_(sample1) s = M_(fn##_sample)(ARGS_##args A_(load)(u1));                                \
+        (void)p, (void)u2;                                                                              \
+        A_(store)(out, s.x);                                                                            \
+        A_(store)(out + 3 * MCST_W, s.pdf);                                                             \
+    }                                                                                                   \
+    static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
+        A_(store)(out, M_(fn##_pdf)(ARGS_##args A_(load)(x)));                                          \
+    }                                                                                                   \
+    static inline void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
+        A_(store)(out, M_(fn##_invert)(ARGS_##args A_(load)(x)));                                       \
+    }
+
+#define MCST_PLANE(row, fn, args, unused)                                                               \
+    static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
+        const M_(sample2) s = M_(fn##_sample)(ARGS_##args A_(load)(u1), A_(load)(u2));                  \
+        A_(store)(out, s.x);                                                                            \
+        A_(store)(out + MCST_W, s.y);                                                                   \
+        A_(store)(out + 3 * MCST_W, s.pdf);                                                             \
+    }                                                                                                   \
+    static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
+        A_(store)(out, M_(fn##_pdf)(ARGS_##args A_(load)(x), A_(load)(x + MCST_W)));                    \
+    }                                                                                                   \
+    static inline void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
+        const M_(vec2) u = M_(fn##_invert)(ARGS_##args A_(load)(x), A_(load)(x + MCST_W));              \
+        A_(store)(out, u.x);                                                                            \
+        A_(store)(out + MCST_W, u.y);                                                                   \
+    }
+
+/* A direction from a sampler whose leading arguments are given by `lead` (with its comma) after the statement `make`. */
+#define MCST_DIRECTION(row, fn, make, lead)                                                             \
+    static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
+        make;                                                                                           \
+        const M_(dir) s = M_(fn##_sample)(lead A_(load)(u1), A_(load)(u2));                             \
+        A_(store3)(out, s.w);                                                                           \
+        A_(store)(out + 3 * MCST_W, s.pdf);                                                             \
+    }                                                                                                   \
+    static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
+        make;                                                                                           \
+        A_(store)(out, M_(fn##_pdf)(lead A_(load3)(x)));                                                \
+    }                                                                                                   \
+    static inline void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
+        make;                                                                                           \
+        const M_(vec2) u = M_(fn##_invert)(lead A_(load3)(x));                                          \
+        A_(store)(out, u.x);                                                                            \
+        A_(store)(out + MCST_W, u.y);                                                                   \
+    }
+#define LEAD_M &m,
+#define LEAD_M_WO &m, WO,
+#define MCST_DIR(row, fn, args, unused) MCST_DIRECTION(row, fn, (void)p, ARGS_##args)
+#define MCST_LOBE(row, fn, mat, unused) MCST_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
+#define MCST_VLOBE(row, fn, mat, unused) MCST_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
+
+#define MCST_BRDF(row, fn, mat, base)                                                                   \
+    static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
+        MAKE_##mat;                                                                                     \
+        const M_(brdf) s = M_(fn##_sample)(&m, WO, A_(load)(u1), A_(load)(u2));                         \
+        A_(store3)(out, s.wi);                                                                          \
+        A_(store)(out + 3 * MCST_W, s.pdf);                                                             \
+        A_(store)(out + 4 * MCST_W, s.weight);                                                          \
+    }                                                                                                   \
+    static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
+        MAKE_##mat;                                                                                     \
+        A_(store)(out, M_(fn##_pdf)(&m, WO, A_(load3)(x)));                                             \
+    }                                                                                                   \
+    static inline void A_(row##_eval)(const float *p, const float *x, float *out) {                     \
+        MAKE_##mat;                                                                                     \
+        A_(store)(out, M_(base##_eval)(&m, WO, A_(load3)(x)));                                          \
+    }                                                                                                   \
+    static inline void A_(row##_weight)(const float *p, const float *x, float *out) {                   \
+        MAKE_##mat;                                                                                     \
+        A_(store)(out, M_(fn##_weight)(&m, WO, A_(load3)(x)));                                          \
+    }
+
+#define MCST_ADAPT(shape, row, fn, arg, base, coord, grid) MCST_##shape(row, fn, arg, base)
+MCST_ROWS(MCST_ADAPT)
+
+#if MCST_W == 1
+/* The array forms: out[0..4] = x, y, z, pdf, weight. */
+#define MCST_N_LINE(row, fn, args, unused)                                                                            \
+    static inline void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
+        (void)p, (void)u2;                                                                                            \
+        mcs_##fn##_sample_n(ARGS_##args n, u1, out[0], out[3]);                                                       \
+    }
+#define MCST_N_PLANE(row, fn, args, unused)                                                                           \
+    static inline void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
+        mcs_##fn##_sample_n(ARGS_##args n, u1, u2, out[0], out[1], out[3]);                                           \
+    }
+#define MCST_N_DIRECTION(row, fn, make, lead)                                                                         \
+    static inline void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
+        make;                                                                                                         \
+        mcs_##fn##_sample_n(lead n, u1, u2, out[0], out[1], out[2], out[3]);                                          \
+    }
+#define MCST_N_DIR(row, fn, args, unused) MCST_N_DIRECTION(row, fn, (void)p, ARGS_##args)
+#define MCST_N_LOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
+#define MCST_N_VLOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
+#define MCST_N_BRDF(row, fn, mat, base)                                                                                           \
+    static inline void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) {             \
+        MAKE_##mat;                                                                                                               \
+        mcs_##fn##_sample_n(&m, WO, n, u1, u2, out[0], out[1], out[2], out[3], out[4]);                                           \
+    }                                                                                                                             \
+    static inline void mcstn_##row##_pdf(const float *p, size_t n, const float *x, const float *y, const float *z, float *out) {  \
+        MAKE_##mat;                                                                                                               \
+        mcs_##fn##_pdf_n(&m, WO, n, x, y, z, out);                                                                                \
+    }                                                                                                                             \
+    static inline void mcstn_##row##_eval(const float *p, size_t n, const float *x, const float *y, const float *z, float *out) { \
+        MAKE_##mat;                                                                                                               \
+        mcs_##base##_eval_n(&m, WO, n, x, y, z, out);                                                                             \
+    }
+#define MCST_ADAPT_N(shape, row, fn, arg, base, coord, grid) MCST_N_##shape(row, fn, arg, base)
+MCST_ROWS(MCST_ADAPT_N)
+#undef MCST_N_LINE
+#undef MCST_N_PLANE
+#undef MCST_N_DIRECTION
+#undef MCST_N_DIR
+#undef MCST_N_LOBE
+#undef MCST_N_VLOBE
+#undef MCST_N_BRDF
+#undef MCST_ADAPT_N
+#endif
+
+#undef MCST_CAT_
+#undef MCST_CAT
+#undef M_
+#undef A_
+#undef F_
+#undef LD
+#undef WO
+#undef ARGS_0
+#undef ARGS_1
+#undef ARGS_2
+#undef MAKE_phong
+#undef MAKE_ward
+#undef MAKE_ward_gmd
+#undef MAKE_ward_duer
+#undef MAKE_ward_1992
+#undef MAKE_beckmann
+#undef MAKE_ggx
+#undef MAKE_ashikhmin
+#undef MCST_LINE
+#undef MCST_PLANE
+#undef MCST_DIRECTION
+#undef LEAD_M
+#undef LEAD_M_WO
+#undef MCST_DIR
+#undef MCST_LOBE
+#undef MCST_VLOBE
+#undef MCST_BRDF
+#undef MCST_ADAPT
+#undef MCST_W

@@ -1,0 +1,116 @@
+/* A small test harness: groups hold cases, cases hold checks.
+ *
+ *     int main(int argc, char **argv) {
+ *         mcst_start(argc, argv);
+ *         mcst_group("disk");
+ *         if (mcst_case("radius %g", r)) CHECK(x <= r, "x = %g", x);
+ *         return mcst_finish();
+ *     }
+ *
+ * Command line of every test binary: --list (names only), --filter TEXT (cases whose "group/name" holds TEXT), --seed N.
+ * One line per group, then "N passed, N failed" (cases, not checks); the exit status is 1 when a case failed or none ran.
+ * A comparison must be written so that NaN fails it: CHECK(err <= tol), never CHECK(!(err > tol)). */
+#ifndef MCS_TEST_H
+#define MCS_TEST_H
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { MCST_SHOWN = 5 }; /* messages printed per case before the rest is only counted */
+
+static struct {
+    const char *filter;
+    int list;
+    uint64_t seed;
+    char group[64], name[160];
+    int open, group_open, bad, group_cases, group_failed;
+    long long checks;
+    int passed, failed;
+    clock_t began;
+} mcst = {NULL, 0, 20261122, "", "", 0, 0, 0, 0, 0, 0, 0, 0, 0};
+
+static void mcst_close_case(void) {
+    if (!mcst.open) return;
+    mcst.open = 0;
+    mcst.group_cases++;
+    if (mcst.bad) {
+        mcst.failed++;
+        mcst.group_failed++;
+        printf("  FAIL %s/%s: %d check%s failed\n", mcst.group, mcst.name, mcst.bad, mcst.bad == 1 ? "" : "s");
+    } else {
+        mcst.passed++;
+    }
+}
+
+static void mcst_close_group(void) {
+    mcst_close_case();
+    if (mcst.group_open && mcst.group_cases)
+        printf("%-4s %-28s %4d cases %12lld checks %7.2f s\n", mcst.group_failed ? "FAIL" : "ok", mcst.group, mcst.group_cases,
+               mcst.checks, (double)(clock() - mcst.began) / CLOCKS_PER_SEC);
+    fflush(stdout);
+    mcst.group_open = 0;
+}
+
+static void mcst_start(int argc, char **argv) {
+    int i;
+    for (i = 1; i < argc; i++) {
+        if (!strcmp(argv[i], "--list")) mcst.list = 1;
+        else if (!strcmp(argv[i], "--filter") && i + 1 < argc) mcst.filter = argv[++i];
+        else if (!strcmp(argv[i], "--seed") && i + 1 < argc) mcst.seed = strtoull(argv[++i], NULL, 0);
+        else {
+            fprintf(stderr, "usage: %s [--list] [--filter TEXT] [--seed N]\n", argv[0]);
+            exit(2);
+        }
+    }
+}
+
+static void mcst_group(const char *group) {
+    mcst_close_group();
+    snprintf(mcst.group, sizeof mcst.group, "%s", group);
+    mcst.group_open = 1;
+    mcst.group_cases = mcst.group_failed = 0;
+    mcst.checks = 0;
+    mcst.began = clock();
+}
+
+/* Opens a case; non-zero when it is to be run. */
+static int mcst_case(const char *fmt, ...) {
+    char full[256];
+    va_list a;
+    mcst_close_case();
+    va_start(a, fmt);
+    vsnprintf(mcst.name, sizeof mcst.name, fmt, a);
+    va_end(a);
+    snprintf(full, sizeof full, "%s/%s", mcst.group, mcst.name);
+    if (mcst.filter && !strstr(full, mcst.filter)) return 0;
+    if (mcst.list) {
+        puts(full);
+        return 0;
+    }
+    mcst.open = 1;
+    mcst.bad = 0;
+    return 1;
+}
+
+static void mcst_fail(const char *file, int line, const char *what, const char *fmt, ...) {
+    va_list a;
+    if (++mcst.bad > MCST_SHOWN) return;
+    printf("    %s:%d: %s/%s: %s: ", file, line, mcst.group, mcst.name, what);
+    va_start(a, fmt);
+    vprintf(fmt, a);
+    va_end(a);
+    putchar('\n');
+}
+
+#define CHECK(cond, ...) ((void)(mcst.checks++, (cond) ? 0 : (mcst_fail(__FILE__, __LINE__, #cond, __VA_ARGS__), 0)))
+
+static int mcst_finish(void) {
+    mcst_close_group();
+    if (mcst.list) return 0;
+    printf("%d passed, %d failed\n", mcst.passed, mcst.failed);
+    return mcst.failed != 0 || mcst.passed == 0;
+}
+#endif

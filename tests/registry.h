@@ -1,0 +1,367 @@
+/* The registry: one row per continuous sampler of mcsample.h, and everything the generic checks need to know about it.
+ *
+ * Define MCST_WIDE before including to get the 4, 8 and 16 wide forms too (they cost compile time).
+ * The other samplers (tables, alias, discrete, environment) have tests of their own: see mcst_exempt. */
+#ifndef MCST_REGISTRY_H
+#define MCST_REGISTRY_H
+#include <float.h>
+#include <math.h>
+#include <string.h>
+#include "mcsample.h"
+#include "mcs_test.h"
+#include "oracle.h"
+#include "stats.h"
+
+/* X(shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid) */
+#define MCST_ROWS(X)                                                     \
+    X(LINE, linear, linear, 2, -, UNIT, linear)                          \
+    X(LINE, tent, tent, 1, -, TENT, radius)                              \
+    X(LINE, exponential, exponential, 1, -, HALFLINE, rate)              \
+    X(LINE, truncexp, truncexp, 2, -, TRUNCATED, truncexp)               \
+    X(LINE, normal, normal, 2, -, WHOLELINE, normal)                     \
+    X(LINE, logistic, logistic, 2, -, WHOLELINE, normal)                 \
+    X(LINE, power, power, 1, -, POWER, power)                            \
+    X(LINE, evenpower, evenpower, 1, -, EVENPOWER, power)                \
+    X(PLANE, disk, disk, 1, -, DISK, radius)                             \
+    X(PLANE, concentric, concentric, 1, -, DISK, radius)                 \
+    X(DIR, sphere, sphere, 0, -, SPHERE, none)                           \
+    X(DIR, hemisphere, hemisphere, 0, -, HEMISPHERE, none)               \
+    X(DIR, cosine, cosine, 0, -, HEMISPHERE, none)                       \
+    X(DIR, cone, cone, 1, -, CONE, cone)                                 \
+    X(LOBE, phong_lobe, phong_lobe, phong, -, COSPOWER, phong)           \
+    X(BRDF, phong, phong, phong, phong, COSPOWER, phong)                 \
+    X(LOBE, ward_h, ward_h, ward, -, SLOPES, alpha)                      \
+    X(BRDF, ward_gmd, ward, ward_gmd, ward, SLOPES, alpha)               \
+    X(BRDF, ward_duer, ward, ward_duer, ward, SLOPES, alpha)             \
+    X(BRDF, ward_1992, ward, ward_1992, ward, SLOPES, alpha)             \
+    X(LOBE, beckmann_h, beckmann_h, beckmann, -, SLOPES, alpha)          \
+    X(BRDF, beckmann, beckmann, beckmann, beckmann, SLOPES, alpha)       \
+    X(LOBE, ggx_h, ggx_h, ggx, -, SLOPES, alpha)                         \
+    X(BRDF, ggx, ggx, ggx, ggx, SLOPES, alpha)                           \
+    X(VLOBE, ggx_vndf_h, ggx_vndf_h, ggx, -, SLOPES, alpha)              \
+    X(BRDF, ggx_vndf, ggx_vndf, ggx, ggx, SLOPES, alpha)                 \
+    X(VLOBE, ggx_bounded_h, ggx_bounded_h, ggx, -, SLOPES, alpha)        \
+    X(BRDF, ggx_bounded, ggx_bounded, ggx, ggx, SLOPES, alpha)           \
+    X(LOBE, ashikhmin_h, ashikhmin_h, ashikhmin, -, COSPOWER, exponents) \
+    X(BRDF, ashikhmin, ashikhmin, ashikhmin, ashikhmin, COSPOWER, exponents)
+
+/* Samplers of mcsample.h that are not rows, because a table is not a handful of parameters. */
+static const char *const mcst_exempt[] = {"pwc", "pwl", "discrete", "alias", "env"};
+
+enum { MCST_P = 6 }; /* numbers in a parameter set: p[0..2] of the sampler, p[3..5] = wo */
+
+enum mcst_measure { MCST_LENGTH, MCST_AREA, MCST_SOLID_ANGLE, MCST_SOLID_ANGLE_OF_H };
+enum mcst_shape { MCST_IS_LINE, MCST_IS_PLANE, MCST_IS_DIR, MCST_IS_LOBE, MCST_IS_VLOBE, MCST_IS_BRDF };
+/* The coordinates (s, t) in [0,1]^2 in which a lobe has a comparable mass everywhere: see bins.h. */
+enum mcst_coord {
+    MCST_UNIT,
+    MCST_TENT,
+    MCST_HALFLINE,
+    MCST_TRUNCATED,
+    MCST_WHOLELINE,
+    MCST_POWER,
+    MCST_EVENPOWER,
+    MCST_DISK,
+    MCST_SPHERE,
+    MCST_HEMISPHERE,
+    MCST_CONE,
+    MCST_COSPOWER,
+    MCST_SLOPES
+};
+
+typedef struct {
+    void (*sample)(const float *p, const float *u1, const float *u2, float *out);
+    void (*pdf)(const float *p, const float *x, float *out);
+    void (*invert)(const float *p, const float *x, float *out);
+    void (*eval)(const float *p, const float *x, float *out);
+    void (*weight)(const float *p, const float *x, float *out);
+} mcst_fns;
+
+/* The truth, for the same float inputs. */
+typedef struct {
+    void (*map)(const float *p, ld u1, ld u2, ld *x);
+    ld (*pdf)(const float *p, const float *x);
+    ld (*pdf_u)(const float *p, ld u1, ld u2);
+    void (*invert)(const float *p, const float *x, ld *u);
+    ld (*eval)(const float *p, const float *x);
+    ld (*weight)(const float *p, const float *x);
+} mcst_truth;
+
+/* Two parameters, the incidence (cosine, azimuth in radians) and the samples that the chi-square test draws, in millions. */
+typedef struct {
+    float a, b, cos_o, azimuth;
+    int millions;
+} mcst_set;
+
+typedef struct {
+    const char *name, *function; /* the public sampler is mcs_<function>_sample */
+    enum mcst_shape shape;
+    enum mcst_measure measure;
+    enum mcst_coord coord;
+    int inputs, dim, params; /* random numbers, coordinates of a point, parameters before wo */
+    int has_wo;
+    const float (*grid)[2];
+    size_t grid_size;
+    const mcst_set *chi;
+    size_t chi_size;
+    mcst_fns fn[4]; /* widths 1, 4, 8, 16; the wide ones only under MCST_WIDE */
+    void (*sample_n)(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]);
+    void (*pdf_n)(const float *p, size_t n, const float *x, const float *y, const float *z, float *out);
+    void (*eval_n)(const float *p, size_t n, const float *x, const float *y, const float *z, float *out);
+    mcst_truth truth;
+} mcst_row;
+
+/* --- parameter grids, extremes included ------------------------------------------------------------------------------- */
+
+static const float mcst_grid_none[][2] = {{0, 0}};
+static const float mcst_grid_linear[][2] = {{1, 3},    {1, 1},         {0, 1},           {1, 0},        {1e-6f, 1},
+                                            {1e6f, 1}, {1, 1.000001f}, {1e-30f, 3e-30f}, {2e30f, 1e30f}};
+static const float mcst_grid_radius[][2] = {{1, 0}, {0.3f, 0}, {1e-6f, 0}, {1e6f, 0}, {1e-18f, 0}, {1e18f, 0}};
+static const float mcst_grid_rate[][2] = {{1, 0}, {0.3f, 0}, {50, 0}, {1e-6f, 0}, {1e6f, 0}, {1e-18f, 0}, {1e18f, 0}};
+static const float mcst_grid_truncexp[][2] = {{3, 1},    {0, 1},        {1, 1},        {1e-6f, 1},  {1e-3f, 1},   {20, 1},
+                                              {1000, 1}, {0.5f, 1e-3f}, {1e-3f, 1e6f}, {1e-30f, 2}, {1e6f, 1e6f}, {1e-18f, 1e18f}};
+static const float mcst_grid_normal[][2] = {{0, 1}, {-3, 100}, {5, 0.01f}, {0.3f, 1e-6f}, {0, 1e-18f}, {1e10f, 1e18f}};
+static const float mcst_grid_power[][2] = {{2, 0},  {0, 0},   {1, 0},    {0.5f, 0}, {1e-3f, 0},
+                                           {10, 0}, {100, 0}, {1e4f, 0}, {1e6f, 0}, {1e9f, 0}};
+static const float mcst_grid_cone[][2] = {{0.5f, 0}, {2, 0}, {1.9f, 0}, {1, 0}, {0.01f, 0}, {1e-5f, 0}, {1e-8f, 0}, {1e-20f, 0}};
+static const float mcst_grid_phong[][2] = {{10, 0},   {0, 0},    {0.5f, 0}, {1, 0},    {2, 0},   {100, 0},
+                                           {1e3f, 0}, {1e4f, 0}, {1e5f, 0}, {1e6f, 0}, {1e9f, 0}};
+static const float mcst_grid_alpha[][2] = {
+    {0.5f, 0.2f},   {0.2f, 0.5f},   {1, 1},     {0.3f, 0.3f}, {0.1f, 0.1f},   {0.01f, 0.01f}, {1e-3f, 1e-3f}, {1e-4f, 1e-4f},
+    {1e-5f, 1e-5f}, {1e-6f, 1e-6f}, {0.01f, 1}, {1, 0.01f},   {1e-6f, 1e-4f}, {3, 3},         {10, 10},       {10, 0.1f}};
+static const float mcst_grid_exponents[][2] = {{10, 100},  {100, 10},    {0, 0},       {1, 1},       {3, 0.5f},
+                                               {100, 100}, {1e3f, 1e3f}, {1e4f, 1e4f}, {1e6f, 1e6f}, {1e9f, 1e9f},
+                                               {0, 100},   {1e4f, 1},    {1e9f, 1e5f}};
+
+/* From the pole over 45 degrees to a cosine of 1e-6, azimuths off the axes. */
+static const float mcst_incidence[][2] = {{1, 0},        {0.95f, 0.4f},  {0.70710678f, 0.7f}, {0.35f, 2.1f}, {0.0871557f, -2.5f},
+                                          {0.01f, 1.1f}, {1e-3f, -0.4f}, {1e-6f, 2.8f}};
+
+/* The sub-grids of the chi-square test. At least one set of each row has 1e7 samples or more. A reflected direction is a float: its
+ * half-vector is off by 2^-24, so with alpha = 1e-6 the bins, not the sampler, would be at fault; those are left to the oracle. */
+static const mcst_set mcst_chi_none[] = {{0, 0, 0, 0, 10}};
+static const mcst_set mcst_chi_linear[] = {{1, 3, 0, 0, 10}, {1, 1, 0, 0, 2}, {0, 1, 0, 0, 2}, {1, 0, 0, 0, 2}, {1e6f, 1, 0, 0, 2}};
+static const mcst_set mcst_chi_radius[] = {{1, 0, 0, 0, 10}, {0.3f, 0, 0, 0, 2}, {1e6f, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_rate[] = {{1, 0, 0, 0, 10}, {0.3f, 0, 0, 0, 2}, {1e6f, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_truncexp[] = {
+    {3, 1, 0, 0, 10}, {0, 1, 0, 0, 2}, {1e-3f, 1, 0, 0, 2}, {50, 2, 0, 0, 2}, {1e-3f, 1e6f, 0, 0, 2}};
+static const mcst_set mcst_chi_normal[] = {{0, 1, 0, 0, 10}, {-3, 100, 0, 0, 2}, {5, 0.01f, 0, 0, 2}};
+static const mcst_set mcst_chi_power[] = {
+    {2, 0, 0, 0, 10}, {0, 0, 0, 0, 2}, {0.5f, 0, 0, 0, 2}, {10, 0, 0, 0, 2}, {100, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_cone[] = {{0.5f, 0, 0, 0, 10}, {2, 0, 0, 0, 2}, {0.01f, 0, 0, 0, 2}, {1e-8f, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_phong[] = {{10, 0, 0.5f, 0.7f, 10},     {0, 0, 0.7f, 2, 2},    {1, 0, 1, 0, 2},
+                                          {100, 0, 0.0871557f, -2, 2}, {1e4f, 0, 0.7f, 1, 2}, {50, 0, 1e-3f, 1.1f, 2},
+                                          {1e6f, 0, 0.3f, -1, 2}};
+static const mcst_set mcst_chi_alpha[] = {{0.5f, 0.2f, 0.5f, 0.7f, 10}, {0.1f, 0.1f, 1, 0, 2},  {1e-3f, 1e-3f, 0.0871557f, 2, 2},
+                                          {0.01f, 1, 0.7f, -2.5f, 2},   {1, 1, 1e-3f, 1.1f, 2}, {10, 3, 0.26f, 0.3f, 2},
+                                          {1e-4f, 1e-4f, 0.7f, 1, 2}};
+static const mcst_set mcst_chi_exponents[] = {{10, 100, 0.5f, 0.7f, 10}, {0, 0, 0.7f, 2, 2},     {1e3f, 1e3f, 0.0871557f, -2, 2},
+                                              {1e5f, 10, 0.7f, 1, 2},    {1, 1, 1e-3f, 1.1f, 2}, {1e6f, 1e6f, 1, 0, 2}};
+
+/* --- adapters ------------------------------------------------------------------------------------------------------------ */
+
+#define MCST_W 1
+#include "adapters.h"
+#ifdef MCST_WIDE
+#define MCST_W 4
+#include "adapters.h"
+#define MCST_W 8
+#include "adapters.h"
+#define MCST_W 16
+#include "adapters.h"
+#endif
+
+static inline o_vec3 mcst_o3(const float *x) { return o_v3(x[0], x[1], x[2]); }
+
+static inline o_vec2 mcst_o2(const float *x) {
+    o_vec2 v;
+    v.x = x[0];
+    v.y = x[1];
+    return v;
+}
+
+#define OA_0
+#define OA_1 (ld) p[0],
+#define OA_2 (ld) p[0], (ld)p[1],
+#define OA_phong OA_1
+#define OA_ward OA_2
+#define OA_ward_gmd OA_2 0,
+#define OA_ward_duer OA_2 1,
+#define OA_ward_1992 OA_2 2,
+#define OA_beckmann OA_2
+#define OA_ggx OA_2
+#define OA_ashikhmin OA_2
+#define OWO mcst_o3(p + 3)
+
+#define MCST_O_LINE(row, fn, args)                                                                                  \
+    static inline void mcsto_##row##_map(const float *p, ld u1, ld u2, ld *x) {                                     \
+        (void)p, (void)u2;                                                                                          \
+        x[0] = o_##fn##_map(OA_##args u1);                                                                          \
+    }                                                                                                               \
+    static inline ld mcsto_##row##_pdf(const float *p, const float *x) { return o_##fn##_pdf(OA_##args(ld) x[0]); } \
+    static inline ld mcsto_##row##_pdf_u(const float *p, ld u1, ld u2) {                                            \
+        (void)u2;                                                                                                   \
+        return o_##fn##_pdf_u(OA_##args u1);                                                                        \
+    }                                                                                                               \
+    static inline void mcsto_##row##_invert(const float *p, const float *x, ld *u) { u[0] = o_##fn##_invert(OA_##args(ld) x[0]); }
+
+/* `point` takes the floats of a point to the oracle's type; `put` stores a mapped point; `lead` may end in wo. */
+#define MCST_O_UV(row, fn, lead, type, point, put)                              \
+    static inline void mcsto_##row##_map(const float *p, ld u1, ld u2, ld *x) { \
+        const type v = o_##fn##_map(lead u1, u2);                               \
+        (void)p;                                                                \
+        put;                                                                    \
+    }                                                                           \
+    static inline ld mcsto_##row##_pdf(const float *p, const float *x) {        \
+        (void)p;                                                                \
+        return o_##fn##_pdf(lead point(x));                                     \
+    }                                                                           \
+    static inline ld mcsto_##row##_pdf_u(const float *p, ld u1, ld u2) {        \
+        (void)p;                                                                \
+        return o_##fn##_pdf_u(lead u1, u2);                                     \
+    }
+#define MCST_O_INVERT(row, fn, lead, point)                                          \
+    static inline void mcsto_##row##_invert(const float *p, const float *x, ld *u) { \
+        const o_vec2 v = o_##fn##_invert(lead point(x));                             \
+        (void)p;                                                                     \
+        u[0] = v.x, u[1] = v.y;                                                      \
+    }
+#define MCST_PUT2 x[0] = v.x, x[1] = v.y
+#define MCST_PUT3 x[0] = v.x, x[1] = v.y, x[2] = v.z
+#define MCST_LEAD_WO(args) OA_##args OWO,
+#define MCST_O_PLANE(row, fn, args)                           \
+    MCST_O_UV(row, fn, OA_##args, o_vec2, mcst_o2, MCST_PUT2) \
+    MCST_O_INVERT(row, fn, OA_##args, mcst_o2)
+#define MCST_O_DIR(row, fn, args)                             \
+    MCST_O_UV(row, fn, OA_##args, o_vec3, mcst_o3, MCST_PUT3) \
+    MCST_O_INVERT(row, fn, OA_##args, mcst_o3)
+#define MCST_O_LOBE(row, fn, args) MCST_O_DIR(row, fn, args)
+#define MCST_O_VLOBE(row, fn, args)                                    \
+    MCST_O_UV(row, fn, MCST_LEAD_WO(args), o_vec3, mcst_o3, MCST_PUT3) \
+    MCST_O_INVERT(row, fn, MCST_LEAD_WO(args), mcst_o3)
+#define MCST_O_BRDF(row, fn, args)                                                                                               \
+    MCST_O_UV(row, fn, MCST_LEAD_WO(args), o_vec3, mcst_o3, MCST_PUT3)                                                           \
+    static inline ld mcsto_##row##_eval(const float *p, const float *x) { return o_##fn##_eval(MCST_LEAD_WO(args) mcst_o3(x)); } \
+    static inline ld mcsto_##row##_weight(const float *p, const float *x) { return o_##fn##_weight(MCST_LEAD_WO(args) mcst_o3(x)); }
+#define MCST_O(shape, row, fn, arg, base, coord, grid) MCST_O_##shape(row, fn, arg)
+MCST_ROWS(MCST_O)
+
+/* --- the table ----------------------------------------------------------------------------------------------------------- */
+
+/* clang-format off */
+#ifdef MCST_WIDE
+#define MCST_FOR_WIDTHS(M, row) {M(mcst1_, row), M(mcst4_, row), M(mcst8_, row), M(mcst16_, row)}
+#else
+#define MCST_FOR_WIDTHS(M, row) {M(mcst1_, row), {0}, {0}, {0}}
+#endif
+#define MCST_FNS_UV(w, row) {w##row##_sample, w##row##_pdf, w##row##_invert, NULL, NULL}
+#define MCST_FNS_BRDF(w, row) {w##row##_sample, w##row##_pdf, NULL, w##row##_eval, w##row##_weight}
+#define MCST_TAIL_UV(row) \
+    MCST_FOR_WIDTHS(MCST_FNS_UV, row), mcstn_##row, NULL, NULL, \
+        {mcsto_##row##_map, mcsto_##row##_pdf, mcsto_##row##_pdf_u, mcsto_##row##_invert, NULL, NULL}
+#define MCST_TAIL_BRDF(row) \
+    MCST_FOR_WIDTHS(MCST_FNS_BRDF, row), mcstn_##row, mcstn_##row##_pdf, mcstn_##row##_eval, \
+        {mcsto_##row##_map, mcsto_##row##_pdf, mcsto_##row##_pdf_u, NULL, mcsto_##row##_eval, mcsto_##row##_weight}
+#define MCST_COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define MCST_COUNT_0 0
+#define MCST_COUNT_1 1
+#define MCST_COUNT_2 2
+#define MCST_COUNT_phong 1
+#define MCST_COUNT_ward 2
+#define MCST_COUNT_ward_gmd 2
+#define MCST_COUNT_ward_duer 2
+#define MCST_COUNT_ward_1992 2
+#define MCST_COUNT_beckmann 2
+#define MCST_COUNT_ggx 2
+#define MCST_COUNT_ashikhmin 2
+#define MCST_SHAPE_LINE(row) MCST_IS_LINE, MCST_LENGTH
+#define MCST_SHAPE_PLANE(row) MCST_IS_PLANE, MCST_AREA
+#define MCST_SHAPE_DIR(row) MCST_IS_DIR, MCST_SOLID_ANGLE
+#define MCST_SHAPE_LOBE(row) MCST_IS_LOBE, MCST_SOLID_ANGLE_OF_H
+#define MCST_SHAPE_VLOBE(row) MCST_IS_VLOBE, MCST_SOLID_ANGLE_OF_H
+#define MCST_SHAPE_BRDF(row) MCST_IS_BRDF, MCST_SOLID_ANGLE
+#define MCST_SIZE_LINE 1, 1
+#define MCST_SIZE_PLANE 2, 2
+#define MCST_SIZE_DIR 2, 3
+#define MCST_SIZE_LOBE 2, 3
+#define MCST_SIZE_VLOBE 2, 3
+#define MCST_SIZE_BRDF 2, 3
+#define MCST_WO_LINE 0
+#define MCST_WO_PLANE 0
+#define MCST_WO_DIR 0
+#define MCST_WO_LOBE 0
+#define MCST_WO_VLOBE 1
+#define MCST_WO_BRDF 1
+#define MCST_T_LINE(row) MCST_TAIL_UV(row)
+#define MCST_T_PLANE(row) MCST_TAIL_UV(row)
+#define MCST_T_DIR(row) MCST_TAIL_UV(row)
+#define MCST_T_LOBE(row) MCST_TAIL_UV(row)
+#define MCST_T_VLOBE(row) MCST_TAIL_UV(row)
+#define MCST_T_BRDF(row) MCST_TAIL_BRDF(row)
+#define MCST_TABLE(shape, row, fn, arg, base, coord, grid) \
+    {#row, #fn, MCST_SHAPE_##shape(row), MCST_##coord, MCST_SIZE_##shape, MCST_COUNT_##arg, MCST_WO_##shape, mcst_grid_##grid, \
+     MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row)},
+/* clang-format on */
+
+static const mcst_row mcst_rows[] = {MCST_ROWS(MCST_TABLE)};
+enum { MCST_NROWS = MCST_COUNT(mcst_rows) };
+
+static inline const mcst_row *mcst_find(const char *name) {
+    size_t i;
+    for (i = 0; i < MCST_NROWS; i++)
+        if (!strcmp(mcst_rows[i].name, name)) return &mcst_rows[i];
+    fprintf(stderr, "registry: no row %s\n", name);
+    exit(2);
+}
+
+static inline void mcst_fill(const mcst_row *row, float a, float b, float cos_o, float azimuth, float p[MCST_P]) {
+    const double s = sqrt((1 - (double)cos_o) * (1 + (double)cos_o));
+    p[0] = a, p[1] = b, p[2] = 0;
+    p[3] = row->has_wo ? (float)(s * cos((double)azimuth)) : 0;
+    p[4] = row->has_wo ? (float)(s * sin((double)azimuth)) : 0;
+    p[5] = row->has_wo ? cos_o : 1;
+}
+
+/* The full grid: sampler parameters times incidences. */
+static inline size_t mcst_grid_count(const mcst_row *row) {
+    return row->grid_size * (row->has_wo ? MCST_COUNT(mcst_incidence) : 1);
+}
+
+static inline void mcst_grid_get(const mcst_row *row, size_t i, float p[MCST_P]) {
+    const float *g = row->grid[i % row->grid_size], *o = mcst_incidence[i / row->grid_size];
+    mcst_fill(row, g[0], g[1], o[0], o[1], p);
+}
+
+/* --- random numbers of the tests: splitmix64 (Steele, Lea, Flood 2014) -------------------------------------------------------- */
+
+static inline uint64_t mcst_mix(uint64_t *state) {
+    uint64_t z = *state += 0x9E3779B97F4A7C15u;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return z ^ (z >> 31);
+}
+
+static inline void mcst_uniform(uint64_t *state, size_t n, float *u1, float *u2) {
+    size_t i;
+    for (i = 0; i < n; i++) {
+        const uint64_t z = mcst_mix(state);
+        u1[i] = (float)(int32_t)(z >> 40) * 0x1p-24f;
+        u2[i] = (float)(int32_t)(z >> 16 & 0xFFFFFF) * 0x1p-24f;
+    }
+}
+
+/* A seed for one use (a test's tag) of one row and parameter set, from the seed of the run. */
+static inline uint64_t mcst_seed_for(const char *row, const char *use, size_t set) {
+    uint64_t state = mcst.seed + 0x632BE59BD9B4E019u * (set + 1);
+    for (; *row; row++) state = (state ^ (unsigned char)*row) * 0x100000001B3u;
+    for (; *use; use++) state = (state ^ (unsigned char)*use) * 0x100000001B3u;
+    return mcst_mix(&state);
+}
+
+/* MCS_TEST_SCALE multiplies sample counts (sanitizer runs are slow). */
+static inline double mcst_scale(void) {
+    const char *s = getenv("MCS_TEST_SCALE");
+    const double v = s ? atof(s) : 1;
+    return v > 0 ? v : 1;
+}
+#endif

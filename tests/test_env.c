@@ -1,0 +1,699 @@
+/* Environment map. The truth is the image itself: luminance times solid angle of each texel, summed in long double. */
+#include <float.h>
+#include <math.h>
+#include "mcs_test.h"
+#include "mcsample.h"
+#include "stats.h"
+
+typedef long double ld;
+
+enum { GUARD = 64, MAX_TEXELS = 8192 * 16 };
+static const double pi = 3.14159265358979323846;
+static const double level = 1e-5;      /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
+static const double eps = 0x1p-24;     /* rounding of a float, relative; also the step of u */
+static const double quantum = 0x1p-31; /* probabilities of rows and of columns are integers over 2^31 */
+
+/* MCS_TEST_SCALE below 1 (sanitizer builds) draws fewer samples. */
+static int scaled(int n) {
+    const char *s = getenv("MCS_TEST_SCALE");
+    const double f = s ? atof(s) : 1;
+    return f > 0 && f < 1 ? (int)(n * f) + 1 : n;
+}
+
+/* ---- maps ---- */
+
+typedef struct {
+    const char *name;
+    uint32_t w, h;
+    float (*value)(uint32_t col, uint32_t row, uint32_t w, uint32_t h);
+    int draws; /* random samples that are checked one by one */
+} map;
+
+static float hash01(uint32_t i) { return mcs_u01(mcs_philox(mcst.seed, i, 2).v[0]); }
+
+static float v_one(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)c, (void)r, (void)w, (void)h, 1.0f; }
+static float v_random(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)h, 0.1f + hash01(r * w + c); }
+static float v_checker(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)w, (void)h, (c + r) & 1 ? 1.0f : 0.0f; }
+static float v_poles(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return (void)w, r == 0 || r == h - 1 ? 1.0f + (float)(c % 3) : 0.0f;
+}
+static float v_equator(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)w, r == h / 2 && c % 5 ? 1.0f : 0.0f; }
+static float v_peak(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return c == w / 3 && r == h / 3 ? 1e30f : (c ^ r) & 3 ? hash01(r * w + c) : 0.0f;
+}
+static float v_huge(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return (void)w, (void)h, (c + r) % 3 ? FLT_MAX : FLT_MAX / 4;
+}
+static float v_tiny(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return (void)w, (void)h, (float)((c + r) % 4) * 1.4012984643e-45f;
+}
+static float v_corner(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return c == w - 1 && r == h - 1 ? 2.0f : 0.0f; }
+/* A sky brighter towards its horizon, dark ground, and a sun of one texel in every 32 x 32 that is 1e5 times brighter. */
+static float v_sky(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    const float up = 1.0f - 2.0f * ((float)r + 0.5f) / (float)h;
+    if (c == w / 5 && r == h / 4) return 1e5f;
+    return up > 0 ? 1.0f - 0.7f * up + 0.1f * hash01(r * w + c) : 0.05f;
+}
+
+static const map maps[] = {
+    {"1 x 1", 1, 1, v_one, 20000},
+    {"1 x 16", 1, 16, v_random, 100000},
+    {"16 x 1", 16, 1, v_random, 100000},
+    {"4 x 2", 4, 2, v_random, 100000},
+    {"7 x 5", 7, 5, v_random, 100000},
+    {"1 x 1000, poles", 1, 1000, v_poles, 100000},
+    {"1000 x 3", 1000, 3, v_random, 100000},
+    {"33 x 17, last texel only", 33, 17, v_corner, 20000},
+    {"300 x 123, equator", 300, 123, v_equator, 100000},
+    {"3 x 4099, poles", 3, 4099, v_poles, 200000},
+    {"8192 x 16, checkerboard", 8192, 16, v_checker, 1000000},
+    {"100 x 1000, checkerboard", 100, 1000, v_checker, 1000000},
+    {"256 x 128, sky and sun", 256, 128, v_sky, 1000000},
+    {"130 x 70, one pixel 1e30", 130, 70, v_peak, 100000},
+    {"64 x 32, FLT_MAX", 64, 32, v_huge, 100000},
+    {"20 x 10, denormals", 20, 10, v_tiny, 100000},
+};
+enum { MAPS = (int)(sizeof maps / sizeof *maps), POLES = 9, CHECKER = 10, SKY = 12 };
+
+static float pixels[MAX_TEXELS];
+static ld prob[MAX_TEXELS], row_prob[8192], total;
+
+/* cos(pi r / h) - cos(pi (r+1) / h) without cancellation, times the width of a column. */
+static ld solid_angle(uint32_t r, uint32_t w, uint32_t h) {
+    const ld p = acosl(-1.0L);
+    return 2 * p / w * 2 * sinl(p / 2 / h) * sinl(p * (r + 0.5L) / h);
+}
+
+static void load(const map *m) {
+    uint32_t r, c;
+    total = 0;
+    for (r = 0; r < m->h; r++)
+        for (c = 0; c < m->w; c++) {
+            const float v = m->value(c, r, m->w, m->h);
+            pixels[r * m->w + c] = v;
+            total += prob[r * m->w + c] = v * solid_angle(r, m->w, m->h);
+        }
+    for (r = 0; r < m->h; r++) {
+        row_prob[r] = 0;
+        for (c = 0; c < m->w; c++) row_prob[r] += prob[r * m->w + c] /= total;
+    }
+}
+
+/* ---- the caller's memory, exactly as many bytes as were asked for, between two guards ---- */
+
+typedef struct {
+    unsigned char *raw;
+    mcs_env *e;
+    size_t bytes;
+} arena;
+
+static arena arena_make(size_t bytes) {
+    arena a;
+    a.bytes = bytes;
+    a.raw = (unsigned char *)malloc(bytes + 2 * GUARD);
+    if (!a.raw) {
+        fprintf(stderr, "out of memory\n");
+        exit(2);
+    }
+    memset(a.raw, 0xa5, bytes + 2 * GUARD);
+    a.e = (mcs_env *)(void *)(a.raw + GUARD);
+    return a;
+}
+
+static int untouched(const unsigned char *p, size_t n) {
+    size_t i;
+    for (i = 0; i < n; i++)
+        if (p[i] != 0xa5) return 0;
+    return 1;
+}
+
+static int arena_intact(const arena *a) { return untouched(a->raw, GUARD) && untouched(a->raw + GUARD + a->bytes, GUARD); }
+
+static void arena_free(arena *a) { free(a->raw); }
+
+static arena build(const map *m) {
+    arena a = arena_make(mcs_env_bytes(m->w, m->h));
+    int rc;
+    load(m);
+    rc = mcs_env_build(a.e, a.bytes, pixels, m->w, m->h, 1, 0);
+    CHECK(rc == MCS_OK, "build returns %d", rc);
+    CHECK(arena_intact(&a), "build wrote outside its %zu bytes", a.bytes);
+    CHECK(a.e->bad == 0, "%llu bad texels", (unsigned long long)a.e->bad);
+    /* row borders are doubles between 0 and 2: the height of a row is off by 2^-51, and no row is lower than the first */
+    CHECK(fabs((double)(a.e->total / total - 1)) <= 1e-12 + 0x1p-51 / (1 - cos(pi / m->h)), "total %g, not %g", a.e->total,
+          (double)total);
+    return a;
+}
+
+/* Direction of a point of a texel, from fractions of its column and of its cos(theta) range. */
+static mcs_vec3 point(const map *m, uint32_t col, uint32_t row, double fc, double fr) {
+    const double phi = 2 * pi * (col + fc) / m->w;
+    /* (1 - cos theta) / 2 = sin^2(theta/2) keeps its digits at the poles */
+    const double a = pow(sin(pi / 2 * row / m->h), 2), b = pow(sin(pi / 2 * (row + 1) / m->h), 2);
+    const double half = a + (b - a) * fr, s = 2 * sqrt(half * (1 - half));
+    mcs_vec3 w;
+    w.x = (float)(s * cos(phi)), w.y = (float)(s * sin(phi)), w.z = (float)(1 - 2 * half);
+    return w;
+}
+
+/* Texel of a direction by double atan2, independent of the header. */
+static void texel_of(const map *m, mcs_vec3 w, double *col, double *row) {
+    double turn = atan2(w.y, w.x) / (2 * pi);
+    if (turn < 0) turn += 1;
+    *col = turn * m->w;
+    *row = atan2(hypot((double)w.x, (double)w.y), w.z) / pi * m->h;
+}
+
+/* ---- checks of a map ---- */
+
+/* Probabilities of rows, and of columns within a row, are integers over 2^31 with at least one where there is light: each moves by
+ * one of rounding, its own one, and its share of those for all. The bound is relative to the probability of the texel. */
+static double slack(const map *m, uint32_t col, uint32_t row) {
+    const double prow = (double)row_prob[row], pcol = (double)(prob[row * m->w + col] / row_prob[row]);
+    return (1 + (2 / prow + m->h) * quantum) * (1 + (2 / pcol + m->w) * quantum) - 1;
+}
+
+static void check_density(const map *m, const mcs_env *e) {
+    uint32_t r, c;
+    double mass = 0;
+    const uint32_t step = m->w > 1000 ? 61 : 1;
+    for (r = 0; r < m->h; r++)
+        for (c = 0; c < m->w; c++) {
+            const mcs_vec3 w = point(m, c, r, 0.5, 0.5);
+            const double omega = (double)solid_angle(r, m->w, m->h), p = mcs_env_pdf(e, w), want = (double)prob[r * m->w + c];
+            const mcs_texel at = mcs_env_texel(e, w);
+            mass += p * omega;
+            CHECK(at.col == c && at.row == r, "texel of the centre of (%u, %u): (%u, %u)", c, r, at.col, at.row);
+            CHECK((p > 0) == (want > 0), "texel (%u, %u): density %g where the probability is %g", c, r, p, want);
+            /* weight of the row, sum of the weights, density: three float roundings */
+            if (want > 0 && c % step == 0) {
+                const double tol = slack(m, c, r) + 4 * eps;
+                CHECK(fabs(p * omega - want) <= tol * want, "texel (%u, %u): probability %g, not %g", c, r, p * omega, want);
+            }
+        }
+    CHECK(fabs(mass - 1) <= 4 * eps, "the density integrates to 1 + %g", mass - 1);
+}
+
+/* Everything that must hold for a sample whatever u was. */
+static void check_sample(const map *m, const mcs_env *e, float u1, float u2) {
+    const mcs_texel s = mcs_env_sample(e, u1, u2);
+    const double len = sqrt((double)s.w.x * s.w.x + (double)s.w.y * s.w.y + (double)s.w.z * s.w.z);
+    mcs_texel at;
+    double c, r, off;
+    mcs_vec2 back;
+    const int inside = s.col < m->w && s.row < m->h;
+    CHECK(inside, "u = %a, %a: texel (%u, %u)", (double)u1, (double)u2, s.col, s.row);
+    if (!inside) return;
+    CHECK(fabs(len - 1) <= 4 * eps, "u = %a, %a: length 1 + %g", (double)u1, (double)u2, len - 1);
+    CHECK(pixels[s.row * m->w + s.col] > 0, "u = %a, %a: black texel (%u, %u)", (double)u1, (double)u2, s.col, s.row);
+    CHECK(s.pdf > 0 && s.pdf <= FLT_MAX, "u = %a, %a: pdf %g", (double)u1, (double)u2, (double)s.pdf);
+    CHECK(mcs_env_pdf(e, s.w) == s.pdf, "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2, (double)mcs_env_pdf(e, s.w),
+          (double)s.pdf);
+    at = mcs_env_texel(e, s.w);
+    CHECK(at.pdf == s.pdf && at.col == s.col && at.row == s.row, "u = %a, %a: texel (%u, %u), returned (%u, %u)", (double)u1, (double)u2,
+          at.col, at.row, s.col, s.row);
+    texel_of(m, s.w, &c, &r);
+    off = fabs(c - s.col - 0.5);
+    if (off > m->w / 2.0) off = m->w - off;
+    CHECK(off <= 0.5 + 4 * eps * m->w, "u = %a, %a: column %.9g, returned %u", (double)u1, (double)u2, c, s.col);
+    CHECK(fabs(r - s.row - 0.5) <= 0.5 + 4 * eps * m->h, "u = %a, %a: row %.9g, returned %u", (double)u1, (double)u2, r, s.row);
+    back = mcs_env_invert(e, s.w);
+    {
+        /* In parts of a cell, the place is off by the margin of 4 eps cells times their number that samples keep from borders, by
+         * the rounding of the azimuth (2 eps of a turn) or of z (2 eps), and once more that much in the inverse. */
+        const double prow = (double)row_prob[s.row], pcol = (double)(prob[s.row * m->w + s.col] / row_prob[s.row]);
+        const double dz = (double)solid_angle(s.row, m->w, m->h) * m->w / (2 * pi);
+        const double d1 = pcol * m->w * 8 * eps, d2 = prow * (m->h * 4 + 4 / dz) * eps;
+        const int pole = s.w.x == 0 && s.w.y == 0; /* no azimuth there */
+        CHECK(back.x >= 0 && back.x < 1 &&
+                  (pole || fabs((double)back.x - u1) <= (d1 < pcol ? d1 : pcol) + 2 * quantum * m->w + 2 * eps),
+              "u1 = %a: invert %a", (double)u1, (double)back.x);
+        CHECK(back.y >= 0 && back.y < 1 && fabs((double)back.y - u2) <= (d2 < prow ? d2 : prow) + 2 * quantum * m->h + 2 * eps,
+              "u2 = %a: invert %a", (double)u2, (double)back.y);
+    }
+}
+
+static const float corner[] = {0.0f,     1.4e-45f, FLT_MIN, 1e-30f, 0x1p-32f,      0x1p-25f,     0x1p-24f,
+                               0x1p-12f, 0.25f,    0.5f,    0.75f,  0x0.fffffep0f, 0x0.ffffffp0f};
+enum { CORNERS = (int)(sizeof corner / sizeof *corner) };
+
+static void check_samples(const map *m, const mcs_env *e) {
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 41);
+    const int draws = scaled(m->draws);
+    int i, j;
+    for (i = 0; i < CORNERS; i++)
+        for (j = 0; j < CORNERS; j++) check_sample(m, e, corner[i], corner[j]);
+    for (i = 0; i < draws; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        check_sample(m, e, u1, mcs_pcg32_float(&rng));
+    }
+}
+
+/* The row never decreases with u2 whatever u1, nor the column with u1 at a given u2; within a cell z falls and phi grows. */
+static void check_monotone(const map *m, const mcs_env *e) {
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 43);
+    enum { STEPS = 1 << 14 };
+    uint32_t last = 0;
+    float z = 2;
+    double turn = -1;
+    int i, j, falls = 0;
+    for (i = 0; i < STEPS; i++) {
+        const mcs_texel s = mcs_env_sample(e, mcs_pcg32_float(&rng), ((float)i + 0.5f) / STEPS);
+        falls += !(s.row >= last) || !(s.w.z <= z);
+        last = s.row, z = s.w.z;
+    }
+    CHECK(falls == 0, "row falls or z grows %d times with u2", falls);
+    for (j = 0; j < 3; j++) {
+        falls = 0, last = 0, turn = -1;
+        for (i = 0; i < STEPS; i++) {
+            const mcs_texel s = mcs_env_sample(e, ((float)i + 0.5f) / STEPS, (float)(j + 1) * 0.2500001f);
+            double c, r;
+            texel_of(m, s.w, &c, &r);
+            falls += !(s.col >= last) || !(c >= turn - 4 * eps * m->w);
+            last = s.col, turn = c;
+        }
+        CHECK(falls == 0, "column or azimuth falls %d times with u1, u2 = %g", falls, (j + 1) * 0.25);
+    }
+}
+
+/* L / pdf is the integral of L, whatever was drawn: every sample is off by rounding and the integers only. */
+static void check_estimate(const map *m, const mcs_env *e) {
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 47);
+    const int draws = scaled(20000);
+    int i;
+    for (i = 0; i < draws; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const mcs_texel s = mcs_env_sample(e, u1, mcs_pcg32_float(&rng));
+        double ratio, tol;
+        if (s.col >= m->w || s.row >= m->h) continue;
+        ratio = pixels[s.row * m->w + s.col] / (double)s.pdf / e->total;
+        tol = 4 * eps + slack(m, s.col, s.row);
+        CHECK(fabs(ratio - 1) <= tol, "texel (%u, %u): L / pdf is 1 + %g of the total", s.col, s.row, ratio - 1);
+    }
+}
+
+/* ---- statistics ---- */
+
+/* 1e7 draws by _sample_n, binned by a double atan2 and a search of cos(theta), over all texels of the sky. */
+static void test_whole_map(void) {
+    enum { BATCH = 1 << 14 };
+    const map *m = &maps[SKY];
+    const int draws = scaled(10000000);
+    const size_t texels = (size_t)m->w * m->h;
+    arena a = build(m);
+    double *observed = (double *)calloc(2 * texels, sizeof *observed), *expected = observed ? observed + texels : NULL, cuts[129],
+           p;
+    static float u1[BATCH], u2[BATCH], x[BATCH], y[BATCH], z[BATCH], pdf[BATCH];
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 53);
+    size_t i;
+    int done, stray = 0;
+    if (!observed) {
+        CHECK(0, "out of memory");
+        arena_free(&a);
+        return;
+    }
+    for (i = 0; i < texels; i++) expected[i] = (double)prob[i] * draws;
+    for (i = 0; i <= m->h; i++) cuts[i] = cos(pi * (double)i / m->h);
+    for (done = 0; done < draws; done += BATCH) {
+        const size_t n = draws - done < BATCH ? (size_t)(draws - done) : BATCH;
+        mcs_pcg32_fill_n(&rng, n, u1);
+        mcs_pcg32_fill_n(&rng, n, u2);
+        mcs_env_sample_n(a.e, n, u1, u2, x, y, z, pdf);
+        for (i = 0; i < n; i++) {
+            double turn = atan2(y[i], x[i]) / (2 * pi);
+            uint32_t row = (uint32_t)(acos(z[i]) / pi * m->h), col;
+            if (turn < 0) turn += 1;
+            col = (uint32_t)(turn * m->w);
+            if (row > m->h - 1) row = m->h - 1;
+            while (row > 0 && z[i] > cuts[row]) row--;
+            while (row < m->h - 1 && z[i] <= cuts[row + 1]) row++;
+            if (col < m->w) observed[row * m->w + col] += 1;
+            else stray++;
+        }
+    }
+    p = chi2_test(observed, expected, texels, NULL, NULL);
+    CHECK(p >= level, "chi-square over %zu texels: p = %g", texels, p);
+    CHECK(stray == 0, "%d draws without a texel", stray);
+    free(observed);
+    arena_free(&a);
+}
+
+/* Eight cells of phi by eight of cos(theta) in each of 4 x 2 texels; a big texel is where theta in place of cos(theta) shows. */
+static void test_inside_texels(void) {
+    enum { CELLS = 8 * 64 };
+    static double observed[CELLS], expected[CELLS];
+    const map *m = &maps[3];
+    const int draws = scaled(2000000);
+    arena a = build(m);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 59);
+    int i;
+    double p;
+    for (i = 0; i < CELLS; i++) observed[i] = 0, expected[i] = (double)prob[i / 64] * draws / 64;
+    for (i = 0; i < draws; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const mcs_texel s = mcs_env_sample(a.e, u1, mcs_pcg32_float(&rng));
+        double turn = atan2(s.w.y, s.w.x) / (2 * pi), down = (1 - s.w.z) * 8; /* two rows of eight: cos(pi/2) is 0 */
+        int c, r;
+        if (turn < 0) turn += 1;
+        c = (int)(turn * 32), r = (int)down;
+        if (c > 31) c = 31;
+        if (r > 15) r = 15;
+        if (c >= 0 && r >= 0) observed[((r / 8) * 4 + c / 8) * 64 + (r % 8) * 8 + c % 8] += 1;
+    }
+    p = chi2_test(observed, expected, CELLS, NULL, NULL);
+    CHECK(p >= level, "chi-square: p = %g", p);
+    arena_free(&a);
+}
+
+/* Both caps of 4099 rows: 1 - |z| = 2 sin^2(theta/2) spreads evenly from 0 to 1 - cos(pi/4099) = 2.9e-7. Taken from x and y. */
+static void test_caps(void) {
+    static double observed[64], expected[64];
+    const map *m = &maps[POLES];
+    const int draws = scaled(500000);
+    const double cap = pow(sin(pi / 2 / m->h), 2);
+    arena a = build(m);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 61);
+    int i;
+    double p;
+    for (i = 0; i < 64; i++) observed[i] = 0, expected[i] = draws / 64.0;
+    for (i = 0; i < draws; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const mcs_texel s = mcs_env_sample(a.e, u1, mcs_pcg32_float(&rng));
+        const double half = atan2(hypot((double)s.w.x, (double)s.w.y), fabs((double)s.w.z)) / 2;
+        int cell = (int)(32 * pow(sin(half), 2) / cap);
+        if (cell > 31) cell = 31;
+        observed[(s.w.z < 0) * 32 + cell] += 1;
+    }
+    p = chi2_test(observed, expected, 64, NULL, NULL);
+    CHECK(p >= level, "chi-square: p = %g", p);
+    arena_free(&a);
+}
+
+/* ---- input ---- */
+
+/* Luminance of Rec. 709 primaries; the same map as 1, 3 and 4 channels, with and without a stride, draws the same. */
+static void test_channels(void) {
+    enum { W = 37, H = 19, STRIDE = W * 4 + 5 };
+    static float in[H * STRIDE];
+    static const map m = {"channels", W, H, v_random, 0};
+    uint32_t channels;
+    for (channels = 1; channels <= 4; channels++) {
+        int padded;
+        if (channels == 2) continue;
+        for (padded = 0; padded < 2; padded++) {
+            const size_t stride = padded ? STRIDE : W * channels;
+            arena a = arena_make(mcs_env_bytes(W, H));
+            uint32_t r, c;
+            int rc;
+            ld sum = 0;
+            for (r = 0; r < H * STRIDE; r++) in[r] = NAN; /* padding and further channels must not be read as light */
+            for (r = 0; r < H; r++)
+                for (c = 0; c < W; c++) {
+                    float *px = in + r * stride + c * channels;
+                    const uint32_t i = (r * W + c) * 3;
+                    ld lum;
+                    px[0] = hash01(i);
+                    if (channels > 2) px[1] = hash01(i + 1), px[2] = hash01(i + 2);
+                    if (channels > 3) px[3] = 1e6f * hash01(i);
+                    lum = channels == 1 ? px[0] : 0.2126L * px[0] + 0.7152L * px[1] + 0.0722L * px[2];
+                    pixels[r * W + c] = (float)lum;
+                    sum += prob[r * W + c] = lum * solid_angle(r, W, H);
+                }
+            for (r = 0; r < H; r++)
+                for (c = 0, row_prob[r] = 0; c < W; c++) row_prob[r] += prob[r * W + c] /= sum;
+            rc = mcs_env_build(a.e, a.bytes, in, W, H, channels, padded ? STRIDE : 0);
+            CHECK(rc == MCS_OK && a.e->bad == 0, "%u channels, stride %zu: returns %d, %llu bad", channels, stride, rc,
+                  (unsigned long long)a.e->bad);
+            CHECK(fabs((double)(a.e->total / sum - 1)) <= 4 * eps, "%u channels, stride %zu: total %g, not %g", channels, stride,
+                  a.e->total, (double)sum);
+            check_density(&m, a.e);
+            arena_free(&a);
+        }
+    }
+}
+
+static void test_bad_pixels(void) {
+    enum { W = 24, H = 12 };
+    const float bad[5] = {NAN, -1.0f, INFINITY, -INFINITY, -FLT_MIN};
+    static float in[W * H * 3], clean[W * H * 3];
+    uint32_t channels;
+    for (channels = 1; channels <= 3; channels += 2) {
+        arena a = arena_make(mcs_env_bytes(W, H)), b = arena_make(mcs_env_bytes(W, H));
+        mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 67);
+        uint32_t i, j, count = 0;
+        int rc;
+        for (i = 0; i < W * H; i++) {
+            const int broken = i % 3 == 1;
+            for (j = 0; j < channels; j++) {
+                in[i * channels + j] = broken ? bad[i / 3 % 5] : 0.1f + hash01(i);
+                clean[i * channels + j] = broken ? 0.0f : 0.1f + hash01(i);
+            }
+            count += (uint32_t)broken;
+        }
+        rc = mcs_env_build(a.e, a.bytes, in, W, H, channels, 0);
+        CHECK(rc == MCS_OK && a.e->bad == count && arena_intact(&a), "%u channels: returns %d, %llu bad, not %u", channels, rc,
+              (unsigned long long)a.e->bad, count);
+        rc = mcs_env_build(b.e, b.bytes, clean, W, H, channels, 0);
+        CHECK(rc == MCS_OK && b.e->bad == 0 && a.e->total == b.e->total, "%u channels: total %g, not %g", channels, a.e->total,
+              b.e->total);
+        for (i = 0; i < 20000; i++) {
+            const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+            const mcs_texel s = mcs_env_sample(a.e, u1, u2), t = mcs_env_sample(b.e, u1, u2);
+            CHECK(s.w.x == t.w.x && s.w.y == t.w.y && s.w.z == t.w.z && s.pdf == t.pdf && s.col == t.col && s.row == t.row,
+                  "u = %a, %a: not as with zeros", (double)u1, (double)u2);
+        }
+        arena_free(&a);
+        arena_free(&b);
+    }
+    if (mcst.open) { /* one bad channel makes the texel bad */
+        arena a = arena_make(mcs_env_bytes(2, 1));
+        const float two[6] = {1, 1, 1, 1, NAN, 1};
+        const int rc = mcs_env_build(a.e, a.bytes, two, 2, 1, 3, 0);
+        CHECK(rc == MCS_OK && a.e->bad == 1, "returns %d, %llu bad", rc, (unsigned long long)a.e->bad);
+        CHECK(fabs(mcs_env_sample(a.e, 0.9f, 0.5f).pdf * 2 * pi - 1) <= 4 * eps, "density of the other half");
+        arena_free(&a);
+    }
+}
+
+static void test_black(void) {
+    enum { W = 10, H = 6 };
+    static const map m = {"black", W, H, v_one, 0};
+    static float in[W * H];
+    const float fill[3] = {0.0f, -0.0f, NAN};
+    int k;
+    for (k = 0; k < 3; k++) {
+        arena a = arena_make(mcs_env_bytes(W, H));
+        mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 71);
+        int i, rc;
+        for (i = 0; i < W * H; i++) in[i] = fill[k];
+        load(&m);
+        rc = mcs_env_build(a.e, a.bytes, in, W, H, 1, 0);
+        CHECK(rc == MCS_UNIFORM && arena_intact(&a), "all %g: returns %d", (double)fill[k], rc);
+        CHECK(a.e->total == 0 && a.e->bad == (k == 2 ? W * H : 0), "all %g: total %g, %llu bad", (double)fill[k], a.e->total,
+              (unsigned long long)a.e->bad);
+        for (i = 0; i < 20000; i++) {
+            const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+            const float pdf = mcs_env_sample(a.e, u1, u2).pdf;
+            CHECK(fabs(pdf * 4 * pi - 1) <= 4 * eps + 2 * W * H * quantum, "u = %a, %a: density %g", (double)u1, (double)u2,
+                  (double)pdf);
+            check_sample(&m, a.e, u1, u2);
+        }
+        arena_free(&a);
+    }
+}
+
+static void test_refused(void) {
+    const uint32_t w = 20, h = 10, big = 0xffffffffu;
+    const size_t need = mcs_env_bytes(w, h);
+    arena a = arena_make(need + 8);
+    unsigned char *at = a.raw + GUARD;
+    size_t i;
+    load(&maps[15]);
+    CHECK(mcs_env_build(NULL, need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "no memory");
+    CHECK(mcs_env_build(a.e, need, NULL, w, h, 1, 0) == MCS_ERR_ARG, "no pixels");
+    CHECK(mcs_env_build(a.e, need, pixels, 0, h, 1, 0) == MCS_ERR_SIZE, "no columns");
+    CHECK(mcs_env_build(a.e, need, pixels, w, 0, 1, 0) == MCS_ERR_SIZE, "no rows");
+    CHECK(mcs_env_build(a.e, need, pixels, w, h, 0, 0) == MCS_ERR_ARG, "no channels");
+    CHECK(mcs_env_build(a.e, need, pixels, w, h, 2, 0) == MCS_ERR_ARG, "two channels");
+    CHECK(mcs_env_build(a.e, need, pixels, w, h, 1, w - 1) == MCS_ERR_SIZE, "stride below a row");
+    CHECK(mcs_env_build((mcs_env *)(void *)(at + 4), need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "misaligned memory");
+    for (i = 0; i < need; i++) {
+        const int rc = mcs_env_build(a.e, i, pixels, w, h, 1, 0);
+        CHECK(rc == MCS_ERR_MEMORY, "%zu of %zu bytes: %d", i, need, rc);
+    }
+    CHECK(mcs_env_bytes(0, 1) == 0 && mcs_env_bytes(1, 0) == 0, "bytes of an empty map");
+    CHECK(mcs_env_bytes(big, big) == 0, "bytes of 2^64 texels: %zu", mcs_env_bytes(big, big));
+    CHECK(mcs_env_build(a.e, SIZE_MAX, pixels, big, big, 1, 0) == MCS_ERR_SIZE, "2^64 texels");
+    CHECK(mcs_env_build(a.e, need, pixels, big, big, 4, 0) == MCS_ERR_SIZE, "2^64 texels");
+    CHECK(mcs_env_build(a.e, need, pixels, big, 1, big, 0) < 0, "2^64 floats in a row");
+    CHECK(mcs_env_build(a.e, need, pixels, w, h, 1, SIZE_MAX / 2) < 0, "a stride beyond memory");
+    CHECK(untouched(at, need + 8) && arena_intact(&a), "a refused build wrote");
+    arena_free(&a);
+}
+
+static void test_bad_sampler_input(void) {
+    const float odd[] = {1.0f, -1e-45f, -0.5f, 1.5f, 1e30f, INFINITY, -INFINITY, NAN};
+    const size_t n = sizeof odd / sizeof *odd;
+    const map *m = &maps[4];
+    arena a = build(m);
+    size_t i, j, k;
+    for (i = 0; i < n; i++)
+        for (k = 0; k < 3; k++) {
+            const float u1 = k == 1 ? 0.3f : odd[i], u2 = k == 0 ? 0.3f : odd[i];
+            const mcs_texel s = mcs_env_sample(a.e, u1, u2);
+            CHECK(s.pdf == 0 && fabsf(s.w.x) <= 2 && fabsf(s.w.y) <= 2 && fabsf(s.w.z) <= 2 && s.col < m->w && s.row < m->h,
+                  "u = %g, %g: pdf %g at (%g, %g, %g)", (double)u1, (double)u2, (double)s.pdf, (double)s.w.x, (double)s.w.y,
+                  (double)s.w.z);
+        }
+    for (i = 4; i < n; i++)
+        for (j = 0; j < 3; j++) {
+            mcs_vec3 w = {0.5f, 0.5f, 0.5f};
+            mcs_vec2 u;
+            mcs_texel at;
+            float pdf;
+            if (i == 4) w.x = w.y = w.z = 0;
+            else if (j == 0) w.x = odd[i];
+            else if (j == 1) w.y = odd[i];
+            else w.z = odd[i];
+            pdf = mcs_env_pdf(a.e, w);
+            u = mcs_env_invert(a.e, w);
+            CHECK(pdf == 0, "w = (%g, %g, %g): pdf %g", (double)w.x, (double)w.y, (double)w.z, (double)pdf);
+            CHECK(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1, "w = (%g, %g, %g): invert", (double)w.x, (double)w.y, (double)w.z);
+            at = mcs_env_texel(a.e, w);
+            CHECK(at.pdf == 0 && at.col < m->w && at.row < m->h && at.w.z == 1, "w = (%g, %g, %g): texel (%u, %u)", (double)w.x, (double)w.y,
+                  (double)w.z, at.col, at.row);
+        }
+    arena_free(&a);
+}
+
+/* Exact axes and signed zeros: +z is in row 0, -z in the last, and a column is found for both. */
+static void test_axes(void) {
+    const float v[] = {0.0f, -0.0f, 1.0f, -1.0f};
+    const map *m = &maps[4];
+    arena a = build(m);
+    int i;
+    for (i = 0; i < 64; i++) {
+        const mcs_vec3 w = {v[i & 3], v[i >> 2 & 3], v[i >> 4]};
+        const mcs_texel at = mcs_env_texel(a.e, w);
+        const float pdf = mcs_env_pdf(a.e, w);
+        if (w.x == 0 && w.y == 0 && w.z == 0) continue;
+        CHECK(at.col < m->w && at.row < m->h && pdf > 0 && pdf <= FLT_MAX, "(%g, %g, %g): (%u, %u), pdf %g", (double)w.x, (double)w.y,
+              (double)w.z, at.col, at.row, (double)pdf);
+        if (w.x == 0 && w.y == 0) CHECK(at.row == (w.z > 0 ? 0 : m->h - 1), "pole %g: row %u", (double)w.z, at.row);
+    }
+    arena_free(&a);
+}
+
+/* ---- batches, memory ---- */
+
+static void test_batch(void) {
+    enum { MAX = 67, ROOM = 2100 };
+    static float u1[ROOM], u2[ROOM], out[4][ROOM];
+    const map *m = &maps[SKY];
+    arena a = build(m);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 73);
+    size_t n, shift, i;
+    for (n = 0; n <= MAX + 1; n++) {
+        const size_t count = n <= MAX ? n : 2053;
+        for (shift = 0; shift < 4; shift++) {
+            uint32_t skip;
+            const size_t at = shift + 1;
+            mcs_pcg32_fill_n(&rng, ROOM, u1);
+            mcs_pcg32_fill_n(&rng, ROOM, u2);
+            for (skip = 0; skip < 16; skip += n <= MAX ? 1 : 15) {
+                float *p[4];
+                int k, same = 1, kept = 1;
+                for (k = 0; k < 4; k++) {
+                    for (i = 0; i < count + 8; i++) out[k][i] = -7.0f;
+                    p[k] = skip >> k & 1 ? NULL : out[k] + at;
+                }
+                mcs_env_sample_n(a.e, count, u1 + shift, u2 + at, p[0], p[1], p[2], p[3]);
+                for (i = 0; i < count; i++) {
+                    const mcs_texel s = mcs_env_sample(a.e, u1[shift + i], u2[at + i]);
+                    const float want[4] = {s.w.x, s.w.y, s.w.z, s.pdf};
+                    for (k = 0; k < 4; k++) same &= !p[k] || p[k][i] == want[k];
+                }
+                for (k = 0; k < 4; k++) kept &= out[k][at - 1] == -7.0f && out[k][at + count] == -7.0f;
+                CHECK(same, "n = %zu, shift %zu, without %x: differs from scalar", count, shift, skip);
+                CHECK(kept, "n = %zu, shift %zu, without %x: written outside", count, shift, skip);
+                if (skip == 0) {
+                    static float pdf[ROOM];
+                    for (i = 0; i < count + 8; i++) pdf[i] = -7.0f;
+                    mcs_env_pdf_n(a.e, count, out[0] + at, out[1] + at, out[2] + at, pdf + at);
+                    for (i = 0; i < count; i++) CHECK(pdf[at + i] == out[3][at + i], "n = %zu: pdf_n of sample %zu", count, i);
+                    CHECK(pdf[at - 1] == -7.0f && pdf[at + count] == -7.0f, "n = %zu: pdf_n wrote outside", count);
+                    mcs_env_pdf_n(a.e, count, out[0] + at, out[1] + at, out[2] + at, NULL);
+                    memcpy(pdf, u1 + shift, count * sizeof *pdf); /* in place */
+                    mcs_env_sample_n(a.e, count, pdf, u2 + at, pdf, NULL, NULL, NULL);
+                    CHECK(memcmp(pdf, out[0] + at, count * sizeof *pdf) == 0, "n = %zu: in place", count);
+                }
+            }
+        }
+    }
+    arena_free(&a);
+}
+
+static void test_relocation(void) {
+    enum { N = 20000 };
+    static mcs_texel before[N];
+    arena a = build(&maps[SKY]), b = arena_make(a.bytes);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 79), again = rng;
+    int i;
+    for (i = 0; i < N; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        before[i] = mcs_env_sample(a.e, u1, mcs_pcg32_float(&rng));
+    }
+    memcpy(b.e, a.e, a.bytes);
+    memset(a.e, 0xff, a.bytes);
+    for (i = 0; i < N; i++) {
+        const float u1 = mcs_pcg32_float(&again);
+        const mcs_texel s = mcs_env_sample(b.e, u1, mcs_pcg32_float(&again)), t = before[i];
+        CHECK(s.w.x == t.w.x && s.w.y == t.w.y && s.w.z == t.w.z && s.pdf == t.pdf && s.col == t.col && s.row == t.row,
+              "sample %d differs", i);
+        CHECK(mcs_env_pdf(b.e, s.w) == s.pdf, "sample %d: pdf", i);
+    }
+    arena_free(&a);
+    arena_free(&b);
+}
+
+static void test_size(void) {
+    const uint32_t w[2] = {1024, 8192};
+    int i;
+    for (i = 0; i < 2; i++) {
+        const double each = (double)mcs_env_bytes(w[i], w[i] / 2) / ((double)w[i] * w[i] / 2);
+        printf("     %u x %u: %.3f bytes a texel\n", w[i], w[i] / 2, each);
+        CHECK(each >= 4 && each <= 16, "%u x %u: %g bytes a texel", w[i], w[i] / 2, each); /* at most what the largest peer takes */
+    }
+}
+
+int main(int argc, char **argv) {
+    int i;
+    mcst_start(argc, argv);
+    mcst_group("env maps");
+    for (i = 0; i < MAPS; i++) {
+        arena a;
+        if (!mcst_case("%s", maps[i].name)) continue;
+        a = build(&maps[i]);
+        check_density(&maps[i], a.e);
+        check_samples(&maps[i], a.e);
+        check_monotone(&maps[i], a.e);
+        check_estimate(&maps[i], a.e);
+        arena_free(&a);
+    }
+    mcst_group("env statistics");
+    if (mcst_case("chi-square of 1e7 draws over the sky")) test_whole_map();
+    if (mcst_case("uniform in solid angle inside 4 x 2 texels")) test_inside_texels();
+    if (mcst_case("uniform in solid angle inside both caps of 4099 rows")) test_caps();
+    mcst_group("env input");
+    if (mcst_case("1, 3, 4 channels and strides")) test_channels();
+    if (mcst_case("bad pixels")) test_bad_pixels();
+    if (mcst_case("black")) test_black();
+    if (mcst_case("refused builds")) test_refused();
+    if (mcst_case("bad u and directions")) test_bad_sampler_input();
+    if (mcst_case("axes")) test_axes();
+    mcst_group("env memory and batches");
+    if (mcst_case("n = 0..67 and 2053, shifted, NULL outputs, in place, pdf_n")) test_batch();
+    if (mcst_case("moved by memcpy")) test_relocation();
+    if (mcst_case("bytes a texel")) test_size();
+    return mcst_finish();
+}

@@ -1,0 +1,583 @@
+/* Frame, microfacet helpers, multiple importance sampling, estimator statistics. */
+#include <float.h>
+#include <math.h>
+#include "mcs_test.h"
+#include "mcsample.h"
+#include "oracle.h"
+#include "stats.h"
+
+static const double eps = 0x1p-24;  /* rounding of a float, relative */
+static const double level = 1e-5;   /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
+static const double z_level = 4.42; /* that level of the normal distribution, both sides */
+
+static mcs_vec3 unit(double x, double y, double z) {
+    const double len = sqrt(x * x + y * y + z * z);
+    mcs_vec3 v;
+    v.x = (float)(x / len), v.y = (float)(y / len), v.z = (float)(z / len);
+    return v;
+}
+
+static mcs_vec3 random_unit(mcs_pcg32 *r) {
+    const double z = 1 - 2.0 * mcs_pcg32_float(r), phi = 6.283185307179586 * mcs_pcg32_float(r), s = sqrt((1 - z) * (1 + z));
+    return unit(s * cos(phi), s * sin(phi), z);
+}
+
+static double dot(mcs_vec3 a, mcs_vec3 b) { return (double)a.x * b.x + (double)a.y * b.y + (double)a.z * b.z; }
+
+static int finite3(mcs_vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+
+/* ---- frame ---- */
+
+/* With d = |n|^2 - 1 of the rounded normal the exact formulas (Duff et al. 2017) are off by d at most in every product of two
+ * axes. An axis has components of up to 1 that pass five roundings, so its products with the other unit axes move by 5 sqrt(3). */
+static void check_frame(mcs_vec3 n) {
+    const mcs_frame f = mcs_frame_make(n);
+    const double d = fabs(dot(n, n) - 1), tol = 10 * eps + d;
+    double det;
+    CHECK(f.n.x == n.x && f.n.y == n.y && f.n.z == n.z, "n = (%a, %a, %a): not kept", (double)n.x, (double)n.y, (double)n.z);
+    CHECK(fabs(dot(f.s, f.s) - 1) <= tol && fabs(dot(f.t, f.t) - 1) <= tol, "n = (%a, %a, %a): lengths 1 + %g, 1 + %g", (double)n.x,
+          (double)n.y, (double)n.z, dot(f.s, f.s) / 2 - 0.5, dot(f.t, f.t) / 2 - 0.5);
+    CHECK(fabs(dot(f.s, f.t)) <= tol && fabs(dot(f.s, n)) <= tol && fabs(dot(f.t, n)) <= tol,
+          "n = (%a, %a, %a): products %g, %g, %g", (double)n.x, (double)n.y, (double)n.z, dot(f.s, f.t), dot(f.s, n), dot(f.t, n));
+    det = ((double)f.s.y * f.t.z - (double)f.s.z * f.t.y) * n.x + ((double)f.s.z * f.t.x - (double)f.s.x * f.t.z) * n.y +
+          ((double)f.s.x * f.t.y - (double)f.s.y * f.t.x) * n.z;
+    CHECK(fabs(det - 1) <= 3 * tol, "n = (%a, %a, %a): determinant %g", (double)n.x, (double)n.y, (double)n.z, det);
+}
+
+/* There and back: three axes off by 10 eps + d each way, and twice three products and two sums. */
+static void check_round_trip(mcs_vec3 n, mcs_vec3 v) {
+    const mcs_frame f = mcs_frame_make(n);
+    const mcs_vec3 w = mcs_to_world(&f, v), back = mcs_to_local(&f, w);
+    const double tol = 3 * (10 * eps + fabs(dot(n, n) - 1)) + 12 * eps;
+    const double err = fmax(fabs((double)back.x - v.x), fmax(fabs((double)back.y - v.y), fabs((double)back.z - v.z)));
+    const double x = (double)f.s.x * v.x + (double)f.t.x * v.y + (double)f.n.x * v.z;
+    const double y = (double)f.s.y * v.x + (double)f.t.y * v.y + (double)f.n.y * v.z;
+    const double z = (double)f.s.z * v.x + (double)f.t.z * v.y + (double)f.n.z * v.z;
+    CHECK(err <= tol, "v = (%a, %a, %a): off by %g", (double)v.x, (double)v.y, (double)v.z, err);
+    CHECK(fabs(w.x - x) <= 6 * eps && fabs(w.y - y) <= 6 * eps && fabs(w.z - z) <= 6 * eps, "v = (%a, %a, %a): to_world",
+          (double)v.x, (double)v.y, (double)v.z);
+}
+
+static const mcs_vec3 odd_normals[] = {
+    {0, 0, 1},       {0, 0, -1},           {-0.0f, -0.0f, 1},   {-0.0f, 0, -1},  {1, 0, 0},           {-1, 0, 0},
+    {0, 1, 0},       {0, -1, 0},           {1, 0, -0.0f},       {0, 1, -0.0f},   {1e-40f, 1e-42f, 1}, {1e-45f, -1e-45f, -1},
+    {1e-40f, 0, -1}, {1e-20f, 1e-30f, -1}, {1e-8f, -1e-8f, -1}, {0, 1e-10f, -1}, {1, 1e-40f, 1e-45f}, {1e-40f, 1, -1e-45f},
+};
+static const mcs_vec3 bad_normals[] = {
+    {0, 0, 0},
+    {-0.0f, -0.0f, -0.0f},
+    {NAN, 0, 1},
+    {0, NAN, 1},
+    {0, 0, NAN},
+    {INFINITY, 0, 0},
+    {0, -INFINITY, 0},
+    {0, 0, INFINITY},
+    {0, 0, -INFINITY},
+    {1e30f, 1e30f, 1e30f},
+    {1e30f, 0, -1},
+    {FLT_MAX, FLT_MAX, -FLT_MAX},
+    {1e-30f, 0, 0},
+    {0, 0, 1e-40f},
+    {INFINITY, NAN, -INFINITY},
+};
+
+static void test_frame(void) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 101);
+    size_t i;
+    if (mcst_case("orthonormal: 1e6 random normals"))
+        for (i = 0; i < 1000000; i++) check_frame(random_unit(&r));
+    if (mcst_case("orthonormal: near both poles, near the equator"))
+        for (i = 0; i < 300000; i++) {
+            const double s = pow(10, -12.0 * mcs_pcg32_float(&r)), phi = 6.283185307179586 * mcs_pcg32_float(&r);
+            check_frame(unit(s * cos(phi), s * sin(phi), i & 1 ? -1 : 1));
+            check_frame(unit(cos(phi), sin(phi), i & 1 ? -s : s));
+        }
+    if (mcst_case("orthonormal: axes, signed zeros, subnormals"))
+        for (i = 0; i < sizeof odd_normals / sizeof *odd_normals; i++) check_frame(odd_normals[i]);
+    if (mcst_case("bad normals give a finite frame"))
+        for (i = 0; i < sizeof bad_normals / sizeof *bad_normals; i++) {
+            const mcs_frame f = mcs_frame_make(bad_normals[i]);
+            CHECK(finite3(f.s) && finite3(f.t) && finite3(f.n), "normal (%g, %g, %g)", (double)bad_normals[i].x,
+                  (double)bad_normals[i].y, (double)bad_normals[i].z);
+        }
+    if (mcst_case("to_local undoes to_world")) {
+        for (i = 0; i < 300000; i++) check_round_trip(random_unit(&r), random_unit(&r));
+        for (i = 0; i < sizeof odd_normals / sizeof *odd_normals; i++) check_round_trip(odd_normals[i], random_unit(&r));
+    }
+    if (mcst_case("+z goes to the normal, exactly"))
+        for (i = 0; i < 1000; i++) {
+            const mcs_vec3 n = random_unit(&r), up = {0, 0, 1};
+            const mcs_frame f = mcs_frame_make(n);
+            const mcs_vec3 w = mcs_to_world(&f, up);
+            CHECK(w.x == n.x && w.y == n.y && w.z == n.z, "normal (%a, %a, %a)", (double)n.x, (double)n.y, (double)n.z);
+        }
+}
+
+/* ---- microfacet helpers ---- */
+
+static double far_from(mcs_vec3 a, o_vec3 b) {
+    return fmax(fabs((double)(a.x - b.x)), fmax(fabs((double)(a.y - b.y)), fabs((double)(a.z - b.z))));
+}
+
+/* A wi at about the distance s from wo, or from -wo when s is negative: where half-vectors cancel. */
+static mcs_vec3 beside(mcs_pcg32 *r, mcs_vec3 wo, double s) {
+    const mcs_vec3 d = random_unit(r);
+    const double sign = s < 0 ? -1 : 1;
+    return unit(sign * wo.x + fabs(s) * d.x, sign * wo.y + fabs(s) * d.y, sign * wo.z + fabs(s) * d.z);
+}
+
+static void test_microfacet(void) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 103);
+    int i;
+    /* dot product 3 eps, doubled 6, product with a component 2 more of up to 2, difference 1: 11 eps */
+    if (mcst_case("reflect"))
+        for (i = 0; i < 300000; i++) {
+            const mcs_vec3 wo = random_unit(&r), h = random_unit(&r), wi = mcs_reflect(wo, h);
+            const double err = far_from(wi, o_reflect(o_v3(wo.x, wo.y, wo.z), o_v3(h.x, h.y, h.z)));
+            CHECK(err <= 12 * eps, "off by %g", err);
+        }
+    /* wo + wi is rounded once a component, hence right to eps however much it cancels; squares, sum and root 3, quotient 1 */
+    if (mcst_case("half and cos_d, down to 1e-7 from grazing and from opposed"))
+        for (i = 0; i < 300000; i++) {
+            const double s = pow(10, -7.0 * mcs_pcg32_float(&r));
+            const mcs_vec3 wo = random_unit(&r), wi = i % 3 ? beside(&r, wo, i % 3 == 1 ? s : -s) : random_unit(&r);
+            const o_vec3 o = o_v3(wo.x, wo.y, wo.z), in = o_v3(wi.x, wi.y, wi.z);
+            const mcs_vec3 h = mcs_half(wo, wi);
+            const double c = mcs_cos_d(wo, wi), want = (double)o_cos_d(o, in);
+            CHECK(fabs(c - want) <= 5 * eps * want, "cos_d %g, not %g", c, want);
+            if (want == 0) continue; /* exactly opposed */
+            CHECK(far_from(h, o_half(o, in)) <= 6 * eps, "half is off by %g", far_from(h, o_half(o, in)));
+        }
+    if (mcst_case("half of opposed and bad directions is finite")) {
+        const mcs_vec3 dirs[] = {{0, 0, 1},
+                                 {0, 0, -1},
+                                 {0.6f, 0, -0.8f},
+                                 {-0.6f, 0, 0.8f},
+                                 {0, 0, 0},
+                                 {1e-25f, 0, 1},
+                                 {1e-25f, 0, -1},
+                                 {NAN, 0, 1},
+                                 {0, INFINITY, 0},
+                                 {0, -INFINITY, 0},
+                                 {FLT_MAX, FLT_MAX, FLT_MAX},
+                                 {-FLT_MAX, FLT_MAX, 0}};
+        const int n = (int)(sizeof dirs / sizeof *dirs);
+        for (i = 0; i < n * n; i++) {
+            const mcs_vec3 wo = dirs[i / n], wi = dirs[i % n], h = mcs_half(wo, wi), w = mcs_reflect(wo, wi);
+            const float c = mcs_cos_d(wo, wi);
+            CHECK(finite3(h) && finite3(w) && isfinite(c),
+                  "directions %d and %d: half (%g, %g, %g), reflect (%g, %g, %g), cos_d %g", i / n, i % n, (double)h.x, (double)h.y,
+                  (double)h.z, (double)w.x, (double)w.y, (double)w.z, (double)c);
+        }
+    }
+    if (mcst_case("reflect_pdf")) {
+        const float odd[] = {0.0f, -0.0f, -1e-3f, -1.0f, -INFINITY, NAN};
+        for (i = 0; i < 100000; i++) {
+            const float p = (float)pow(10, 40.0 * mcs_pcg32_float(&r) - 20), c = (float)pow(10, -8.0 * mcs_pcg32_float(&r));
+            const double want = p / (4.0 * c), got = mcs_reflect_pdf(p, c);
+            CHECK(fabs(got - want) <= 2 * eps * want, "%g / (4 * %g): %g", (double)p, (double)c, got);
+        }
+        for (i = 0; i < 6; i++)
+            CHECK(mcs_reflect_pdf(1.0f, odd[i]) == 0, "cos_d %g: %g", (double)odd[i], (double)mcs_reflect_pdf(1.0f, odd[i]));
+        CHECK(isfinite(mcs_reflect_pdf(FLT_MAX, 1e-30f)) && isfinite(mcs_reflect_pdf(NAN, 0.5f)) &&
+                  isfinite(mcs_reflect_pdf(INFINITY, 0.5f)) && isfinite(mcs_reflect_pdf(1.0f, 1e-45f)),
+              "overflow, NaN and infinity");
+    }
+    /* 1 - c is exact or rounded once, its fifth power 5 + 3, its product with 1 - f0 two more, the sum one */
+    if (mcst_case("schlick")) {
+        const float odd[] = {-1.0f, -1e-30f, 0.0f, 1e-30f, 0.5f, 1.0f, 1.0000001f, 2.0f, 1e30f, INFINITY, -INFINITY, NAN};
+        for (i = 0; i < 100000; i++) {
+            const float f0 = i % 7 ? mcs_pcg32_float(&r) : 0.0f,
+                        c = i % 5 ? mcs_pcg32_float(&r) : (float)(1 - pow(10, -7.0 * mcs_pcg32_float(&r)));
+            const double want = (double)o_schlick(f0, c), got = mcs_schlick(f0, c);
+            CHECK(fabs(got - want) <= 12 * eps * want + FLT_MIN, "f0 = %g, cos_d = %g: %g, not %g", (double)f0, (double)c, got,
+                  want);
+        }
+        CHECK(mcs_schlick(0.04f, 0.0f) == 1.0f && mcs_schlick(0.04f, 1.0f) == 0.04f, "both ends");
+        for (i = 0; i < 144; i++) {
+            const float f = mcs_schlick(odd[i / 12], odd[i % 12]);
+            CHECK(isfinite(f), "f0 = %g, cos_d = %g: %g", (double)odd[i / 12], (double)odd[i % 12], (double)f);
+        }
+    }
+}
+
+/* ---- multiple importance sampling ---- */
+
+static const float densities[] = {0.0f,  1e-45f, 1e-40f, FLT_MIN, 1e-30f, 1e-20f,  1e-10f,   0.3f, 1.0f,  1.0000001f, 3.0f,
+                                  1e10f, 1e19f,  1e20f,  1e30f,   1e38f,  FLT_MAX, INFINITY, NAN,  -1.0f, -INFINITY};
+enum { DENSITIES = (int)(sizeof densities / sizeof *densities) };
+
+/* Quotient g/f: eps; balance: 1 + g/f and the reciprocal once each, 3 eps. Power: the square makes it 3, then the same, 5 eps.
+ * A weight below FLT_MIN may be lost. */
+static void check_heuristics(float f, float g) {
+    const ld lf = f, lg = g;
+    const double b = mcs_mis_balance(f, g), p = mcs_mis_power(f, g);
+    CHECK(b >= 0 && b <= 1 && p >= 0 && p <= 1, "f = %g, g = %g: balance %g, power %g", (double)f, (double)g, b, p);
+    if (f == 0) CHECK(b == 0 && p == 0, "f = 0, g = %g: balance %g, power %g", (double)g, b, p);
+    if (!(f >= 0 && g >= 0) || (f == 0 && g == 0)) return;
+    CHECK(fabs((double)(b + (ld)mcs_mis_balance(g, f) - 1)) <= 6 * eps || isinf(f + g), "f = %g, g = %g: balance sums to %g",
+          (double)f, (double)g, b + mcs_mis_balance(g, f));
+    CHECK(fabs((double)(p + (ld)mcs_mis_power(g, f) - 1)) <= 10 * eps || isinf(f + g), "f = %g, g = %g: power sums to %g",
+          (double)f, (double)g, p + mcs_mis_power(g, f));
+    if (isinf(f) && isinf(g)) return;
+    if (isinf(f) || isinf(g)) {
+        CHECK(b == (isinf(f) ? 1 : 0) && p == b, "f = %g, g = %g: balance %g, power %g", (double)f, (double)g, b, p);
+    } else {
+        const double wb = (double)(lf / (lf + lg)), wp = (double)(lf * lf / (lf * lf + lg * lg));
+        CHECK(fabs(b - wb) <= 3 * eps * wb + FLT_MIN, "f = %g, g = %g: balance %g, not %g", (double)f, (double)g, b, wb);
+        CHECK(fabs(p - wp) <= 5 * eps * wp + FLT_MIN, "f = %g, g = %g: power %g, not %g", (double)f, (double)g, p, wp);
+    }
+}
+
+static void test_heuristics(void) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 107);
+    int i;
+    if (mcst_case("heuristics: extremes"))
+        for (i = 0; i < DENSITIES * DENSITIES; i++) check_heuristics(densities[i / DENSITIES], densities[i % DENSITIES]);
+    if (mcst_case("heuristics: 1e-38 to 1e38, and close to each other"))
+        for (i = 0; i < 300000; i++) {
+            const double f = pow(10, 76.0 * mcs_pcg32_float(&r) - 38);
+            check_heuristics((float)f, (float)pow(10, 76.0 * mcs_pcg32_float(&r) - 38));
+            check_heuristics((float)(f * 1e-2), (float)(f * 1e-2 * pow(10, 4.0 * mcs_pcg32_float(&r) - 2)));
+        }
+    /* 1 - c, two products and the sum: 3 eps of a sum of positive terms */
+    if (mcst_case("mix_pdf")) {
+        const float c[] = {0.0f, 0x1p-24f, 0.25f, 0.3f, 0.5f, 0.999f, 1.0f};
+        int j;
+        for (j = 0; j < 7; j++)
+            for (i = 0; i < DENSITIES * DENSITIES; i++) {
+                const float f = densities[i / DENSITIES], g = densities[i % DENSITIES], p = mcs_mix_pdf(c[j], f, g);
+                const double want = (double)((ld)c[j] * f + (1 - (ld)c[j]) * g);
+                CHECK(isfinite(p), "c = %g, f = %g, g = %g: %g", (double)c[j], (double)f, (double)g, (double)p);
+                if (f >= 0 && g >= 0 && want <= FLT_MAX)
+                    CHECK(fabs(p - want) <= 3 * eps * want + FLT_MIN, "c = %g, f = %g, g = %g: %g, not %g", (double)c[j], (double)f,
+                          (double)g, (double)p, want);
+            }
+        for (i = 0; i < 100000; i++) {
+            const float w = mcs_pcg32_float(&r), f = 10 * mcs_pcg32_float(&r), g = 10 * mcs_pcg32_float(&r);
+            const double want = (double)((ld)w * f + (1 - (ld)w) * g), p = mcs_mix_pdf(w, f, g);
+            CHECK(fabs(p - want) <= 3 * eps * want, "c = %g, f = %g, g = %g: %g, not %g", (double)w, (double)f, (double)g, p, want);
+        }
+        for (i = 0; i < DENSITIES; i++) CHECK(isfinite(mcs_mix_pdf(densities[i], 1.0f, 2.0f)), "c = %g", (double)densities[i]);
+    }
+}
+
+/* The integral of 12 x^2 (1 - x) over [0,1] is 1. Strategies: density 3 x^2 and density 2 (1 - x); each misses one factor. */
+static void test_mis_estimates(void) {
+    enum { ROWS = 5, N = 200000 };
+    static const char *const names[ROWS] = {"balance 1+1", "power 1+1", "balance 1+3", "power 3+1", "one sample, 0.3"};
+    mcs_stat s[ROWS];
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 109);
+    int row, i, k;
+    memset(s, 0, sizeof s);
+    for (row = 0; row < ROWS; row++)
+        for (i = 0; i < N; i++) {
+            const int nf = row == 3 ? 3 : 1, ng = row == 2 ? 3 : 1;
+            double sum = 0;
+            for (k = 0; k < (row == 4 ? 1 : nf + ng); k++) {
+                const int first = row == 4 ? mcs_pcg32_float(&r) < 0.3f : k < nf;
+                const float u = mcs_pcg32_float(&r), x = first ? mcs_power_sample(2, u).x : mcs_linear_sample(1, 0, u).x;
+                const float pf = mcs_power_pdf(2, x), pg = mcs_linear_pdf(1, 0, x);
+                const double f = 12.0 * x * x * (1.0 - x);
+                if (row == 4) {
+                    const double p = mcs_mix_pdf(0.3f, pf, pg);
+                    sum += p > 0 ? f / p : 0;
+                } else {
+                    const float mine = first ? (float)nf * pf : (float)ng * pg, other = first ? (float)ng * pg : (float)nf * pf;
+                    const double w = row & 1 ? mcs_mis_power(mine, other) : mcs_mis_balance(mine, other);
+                    sum += mine > 0 ? w * f / mine : 0;
+                }
+            }
+            mcs_stat_add(&s[row], sum);
+        }
+    for (row = 0; row < ROWS; row++) {
+        const double off = fabs(s[row].mean - 1) / mcs_stat_error(&s[row]);
+        CHECK(off <= z_level, "%s: %g, %g standard errors from 1", names[row], s[row].mean, off);
+        for (i = 0; i < row; i++) {
+            const double e = hypot(mcs_stat_error(&s[row]), mcs_stat_error(&s[i]));
+            CHECK(fabs(s[row].mean - s[i].mean) <= z_level * e, "%s and %s disagree", names[row], names[i]);
+        }
+    }
+}
+
+/* ---- estimator ---- */
+
+/* Badly conditioned: mean 1e9, deviation 1, so the condition number is k = 1e9. Chan, Golub and LeVeque 1983, table 1: updating has
+ * a relative error of the sum of squares of n k u at most, u = 2^-53 (the textbook sum of squares n k^2 u, of which nothing is
+ * left). The mean moves by half an ulp of itself at most in each step. */
+enum { HARD = 4000 };
+static double hard[HARD];
+static ld hard_mean, hard_m2;
+
+static void make_hard(void) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 113);
+    int i;
+    hard_mean = hard_m2 = 0;
+    for (i = 0; i < HARD; i++) hard_mean += hard[i] = 1e9 + mcs_normal_sample(0, 1, mcs_pcg32_float(&r)).x;
+    hard_mean /= HARD;
+    for (i = 0; i < HARD; i++) hard_m2 += (hard[i] - hard_mean) * (hard[i] - hard_mean);
+}
+
+static void check_hard(const char *what, const mcs_stat *s) {
+    const double u = 0x1p-53, k = 1e9;
+    const double mean = fabs((double)(s->mean - hard_mean)), m2 = fabs((double)(s->m2 / hard_m2 - 1));
+    CHECK(s->n == HARD, "%s: n = %g", what, s->n);
+    CHECK(mean <= HARD * u * 1e9, "%s: mean is off by %g", what, mean);
+    CHECK(m2 <= HARD * k * u, "%s: sum of squares is off by %g relative", what, m2);
+    CHECK(fabs(mcs_stat_variance(s) / (double)(hard_m2 / (HARD - 1)) - 1) <= HARD * k * u, "%s: variance %g", what,
+          mcs_stat_variance(s));
+    CHECK(fabs(mcs_stat_error(s) / sqrt(mcs_stat_variance(s) / HARD) - 1) <= 4 * u, "%s: standard error %g", what,
+          mcs_stat_error(s));
+    CHECK(fabs(mcs_stat_ci(s, 1.96) / (1.96 * mcs_stat_error(s)) - 1) <= 4 * u, "%s: half width %g", what, mcs_stat_ci(s, 1.96));
+}
+
+static mcs_stat stat_of(int from, int to) {
+    mcs_stat s;
+    memset(&s, 0, sizeof s);
+    for (; from < to; from++) mcs_stat_add(&s, hard[from]);
+    return s;
+}
+
+/* Merges as a tree: halves, quarters, down to single values. */
+static mcs_stat stat_tree(int from, int to) {
+    const int mid = from + (to - from) / 2;
+    if (to - from <= 1) return stat_of(from, to);
+    return mcs_stat_merge(stat_tree(from, mid), stat_tree(mid, to));
+}
+
+static int same_stat(mcs_stat a, mcs_stat b) { return a.n == b.n && a.mean == b.mean && a.m2 == b.m2; }
+
+static void test_stat_values(void) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 127);
+    int i;
+    make_hard();
+    if (mcst_case("mean 1e9, deviation 1")) {
+        const mcs_stat s = stat_of(0, HARD);
+        check_hard("adding", &s);
+    }
+    if (mcst_case("merge of any partition is the whole")) {
+        mcs_stat s = stat_tree(0, HARD);
+        check_hard("tree", &s);
+        for (i = 0; i <= HARD; i += i < 20 || i >= HARD - 20 ? 1 : 97) {
+            s = mcs_stat_merge(stat_of(0, i), stat_of(i, HARD));
+            check_hard("two parts", &s);
+            s = mcs_stat_merge(stat_of(i, HARD), stat_of(0, i));
+            check_hard("two parts, swapped", &s);
+        }
+        for (i = 0; i < 100; i++) {
+            int from = 0;
+            memset(&s, 0, sizeof s);
+            while (from < HARD) {
+                int to = from + (int)(mcs_pcg32_next(&r) % 500);
+                if (to > HARD) to = HARD;
+                s = mcs_stat_merge(s, stat_of(from, to));
+                from = to;
+            }
+            check_hard("many parts", &s);
+        }
+    }
+    if (mcst_case("empty and single")) {
+        mcs_stat empty, one, s;
+        memset(&empty, 0, sizeof empty);
+        one = empty;
+        mcs_stat_add(&one, 3.5);
+        s = stat_of(0, 10);
+        CHECK(same_stat(mcs_stat_merge(empty, s), s) && same_stat(mcs_stat_merge(s, empty), s), "empty is neutral");
+        CHECK(same_stat(mcs_stat_merge(empty, empty), empty), "empty and empty");
+        CHECK(one.n == 1 && one.mean == 3.5 && one.m2 == 0, "single: %g, %g, %g", one.n, one.mean, one.m2);
+        CHECK(mcs_stat_variance(&empty) == 0 && mcs_stat_error(&empty) == 0 && mcs_stat_ci(&empty, 2) == 0,
+              "empty: variance %g, error %g", mcs_stat_variance(&empty), mcs_stat_error(&empty));
+        CHECK(mcs_stat_variance(&one) == 0 && mcs_stat_error(&one) == 0 && mcs_stat_ci(&one, 2) == 0,
+              "single: variance %g, error %g", mcs_stat_variance(&one), mcs_stat_error(&one));
+        s = one;
+        mcs_stat_add(&s, 5.5);
+        CHECK(s.mean == 4.5 && s.m2 == 2 && mcs_stat_variance(&s) == 2 && fabs(mcs_stat_error(&s) - 1) <= 0x1p-52, "3.5 and 5.5");
+    }
+    if (mcst_case("equal values have no variance")) {
+        mcs_stat s;
+        memset(&s, 0, sizeof s);
+        for (i = 0; i < 1000; i++) mcs_stat_add(&s, 0.1);
+        CHECK(s.mean == 0.1 && s.m2 == 0 && mcs_stat_error(&s) == 0, "mean %g, sum of squares %g", s.mean, s.m2);
+    }
+}
+
+/* x^2 over [0,1]: integral 1/3, variance 4/45, kurtosis 15/7. Over R repetitions, (R - 1) var(means) N / (4/45) is chi-square with
+ * R - 1 degrees of freedom (means of 64 and more values: their excess kurtosis, -6/7 / 64, moves its deviation by 0.3 %), and the
+ * mean of the reported variances is off by sqrt((2/(N-1) - 6/7/N) / R) relative. */
+static void test_standard_error(void) {
+    enum { R = 400 };
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 131);
+    double last = 0;
+    int n, i, j;
+    for (n = 64; n <= 4096; n *= 4) {
+        mcs_stat means, reported, errors;
+        double p, off, ratio;
+        memset(&means, 0, sizeof means);
+        reported = errors = means;
+        for (i = 0; i < R; i++) {
+            mcs_stat s;
+            memset(&s, 0, sizeof s);
+            for (j = 0; j < n; j++) {
+                const double x = mcs_pcg32_float(&r);
+                mcs_stat_add(&s, x * x);
+            }
+            mcs_stat_add(&means, s.mean);
+            mcs_stat_add(&reported, mcs_stat_variance(&s));
+            mcs_stat_add(&errors, mcs_stat_error(&s));
+        }
+        p = chi2_p(means.m2 * n * 45 / 4, R - 1);
+        off = fabs(reported.mean * 45 / 4 - 1) / sqrt((2.0 / (n - 1) - 6.0 / 7 / n) / R);
+        CHECK(p >= level / 2 && 1 - p >= level / 2, "N = %d: the spread of the means has p = %g", n, p);
+        CHECK(off <= z_level, "N = %d: reported variance %g, %g deviations from 4/45", n, reported.mean, off);
+        CHECK(fabs(means.mean - 1.0 / 3) <= z_level * sqrt(4.0 / 45 / n / R), "N = %d: mean %g", n, means.mean);
+        /* Four times the samples halve the error. Its mean has a relative deviation of sqrt((2 - 6/7) / N / R) / 2; the mean of a
+         * root lies below the root of the mean by (2 - 6/7) / (8 N), which is known to a tenth of itself. */
+        ratio = errors.mean * sqrt(n) / (1 - (2 - 6.0 / 7) / (8.0 * n)) / sqrt(4.0 / 45);
+        CHECK(fabs(ratio - 1) <= z_level * sqrt((2 - 6.0 / 7) / n / R) / 2 + 0.1 / (8.0 * n), "N = %d: error sqrt(N) / sigma = %g",
+              n, ratio);
+        CHECK(last == 0 || errors.mean < last, "N = %d: the error does not fall", n);
+        last = errors.mean;
+    }
+}
+
+/* Intervals mean +- 1.96 standard errors of 400 normal values hold the truth as often as |t| of 399 degrees of freedom stays below
+ * 1.96: P(|normal| < z) - phi(z) (z^3 + z) / (2 * 399). The count over 2000 repetitions is binomial: tails summed exactly. */
+static void test_coverage(void) {
+    enum { REPEAT = 2000, N = 400 };
+    const double z = 1.96,
+                 p = erf(z / sqrt(2.0)) - exp(-z * z / 2) / sqrt(2 * 3.14159265358979323846) * (z * z * z + z) / (2.0 * (N - 1));
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 137);
+    double below = 0, above = 0;
+    int i, j, held = 0;
+    for (i = 0; i < REPEAT; i++) {
+        mcs_stat s;
+        memset(&s, 0, sizeof s);
+        for (j = 0; j < N; j++) mcs_stat_add(&s, mcs_normal_sample(5, 2, mcs_u01_open(mcs_pcg32_next(&r))).x);
+        held += fabs(s.mean - 5) <= mcs_stat_ci(&s, z);
+    }
+    for (i = 0; i <= REPEAT; i++) {
+        const double mass =
+            exp(lgamma(REPEAT + 1.0) - lgamma(i + 1.0) - lgamma(REPEAT - i + 1.0) + i * log(p) + (REPEAT - i) * log1p(-p));
+        if (i <= held) below += mass;
+        if (i >= held) above += mass;
+    }
+    CHECK(below >= level / 2 && above >= level / 2, "%d of %d intervals hold the mean, expected %g", held, REPEAT, p * REPEAT);
+}
+
+/* ---- widths ---- */
+
+/* Every lane of a wide form has the bits of the scalar one (the tests are built without contraction of a*b + c). NaN never appears
+ * but in frame products with NaN or infinite components. */
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wpsabi" /* wide functions are inlined: no vector crosses a call */
+#endif
+#define WIDE(W)                                                                                                             \
+    static void wide##W(const float(*in)[16]) {                                                                             \
+        mcs##W##_f v[6], c, b, p, m, d, rp;                                                                                 \
+        mcs##W##_vec3 n, w, h, world, local, mirror;                                                                        \
+        mcs##W##_frame f;                                                                                                   \
+        int i, k;                                                                                                           \
+        for (k = 0; k < 6; k++)                                                                                             \
+            for (i = 0; i < W; i++) v[k][i] = in[k][i];                                                                     \
+        n.x = v[0], n.y = v[1], n.z = v[2], w.x = v[3], w.y = v[4], w.z = v[5];                                             \
+        f = mcs##W##_frame_make(n);                                                                                         \
+        world = mcs##W##_to_world(&f, w);                                                                                   \
+        local = mcs##W##_to_local(&f, w);                                                                                   \
+        mirror = mcs##W##_reflect(n, w);                                                                                    \
+        h = mcs##W##_half(n, w);                                                                                            \
+        c = mcs##W##_cos_d(n, w);                                                                                           \
+        rp = mcs##W##_reflect_pdf(v[0], v[1]);                                                                              \
+        b = mcs##W##_mis_balance(v[0], v[3]);                                                                               \
+        p = mcs##W##_mis_power(v[0], v[3]);                                                                                 \
+        m = mcs##W##_mix_pdf(v[1], v[0], v[3]);                                                                             \
+        d = mcs##W##_schlick(v[0], v[1]);                                                                                   \
+        for (i = 0; i < W; i++) {                                                                                           \
+            const mcs_vec3 sn = {in[0][i], in[1][i], in[2][i]}, sw = {in[3][i], in[4][i], in[5][i]};                        \
+            const mcs_frame sf = mcs_frame_make(sn);                                                                        \
+            const mcs_vec3 sworld = mcs_to_world(&sf, sw), slocal = mcs_to_local(&sf, sw), sh = mcs_half(sn, sw),           \
+                           sm = mcs_reflect(sn, sw);                                                                        \
+            const float got[] = {f.s.x[i],   f.s.y[i], f.s.z[i],   f.t.x[i],    f.t.y[i],    f.t.z[i],   f.n.x[i],          \
+                                 f.n.y[i],   f.n.z[i], world.x[i], world.y[i],  world.z[i],  local.x[i], local.y[i],        \
+                                 local.z[i], h.x[i],   h.y[i],     h.z[i],      c[i],        rp[i],      b[i],              \
+                                 p[i],       m[i],     d[i],       mirror.x[i], mirror.y[i], mirror.z[i]};                  \
+            const float want[] = {sf.s.x,                                                                                   \
+                                  sf.s.y,                                                                                   \
+                                  sf.s.z,                                                                                   \
+                                  sf.t.x,                                                                                   \
+                                  sf.t.y,                                                                                   \
+                                  sf.t.z,                                                                                   \
+                                  sf.n.x,                                                                                   \
+                                  sf.n.y,                                                                                   \
+                                  sf.n.z,                                                                                   \
+                                  sworld.x,                                                                                 \
+                                  sworld.y,                                                                                 \
+                                  sworld.z,                                                                                 \
+                                  slocal.x,                                                                                 \
+                                  slocal.y,                                                                                 \
+                                  slocal.z,                                                                                 \
+                                  sh.x,                                                                                     \
+                                  sh.y,                                                                                     \
+                                  sh.z,                                                                                     \
+                                  mcs_cos_d(sn, sw),                                                                        \
+                                  mcs_reflect_pdf(in[0][i], in[1][i]),                                                      \
+                                  mcs_mis_balance(in[0][i], in[3][i]),                                                      \
+                                  mcs_mis_power(in[0][i], in[3][i]),                                                        \
+                                  mcs_mix_pdf(in[1][i], in[0][i], in[3][i]),                                                \
+                                  mcs_schlick(in[0][i], in[1][i]),                                                          \
+                                  sm.x,                                                                                     \
+                                  sm.y,                                                                                     \
+                                  sm.z};                                                                                    \
+            for (k = 0; k < (int)(sizeof got / sizeof *got); k++)                                                           \
+                CHECK(got[k] == want[k] || (k >= 9 && k < 15 && isnan(got[k]) && isnan(want[k])),                           \
+                      #W " wide, output %d, lane %d: %a, scalar %a; first input %a", k, i, (double)got[k], (double)want[k], \
+                      (double)in[0][i]);                                                                                    \
+        }                                                                                                                   \
+    }
+
+#ifndef MCS_NO_WIDE
+WIDE(4)
+WIDE(8)
+WIDE(16)
+
+static void test_widths(void) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 139);
+    const int n_odd = (int)(sizeof odd_normals / sizeof *odd_normals), n_bad = (int)(sizeof bad_normals / sizeof *bad_normals);
+    int i, k;
+    for (i = 0; i < 20000; i++) {
+        float in[6][16];
+        for (k = 0; k < 16; k++) {
+            const uint32_t pick = mcs_pcg32_next(&r) % 8;
+            const mcs_vec3 n = pick == 0   ? odd_normals[mcs_pcg32_next(&r) % (uint32_t)n_odd]
+                               : pick == 1 ? bad_normals[mcs_pcg32_next(&r) % (uint32_t)n_bad]
+                                           : random_unit(&r);
+            mcs_vec3 w = random_unit(&r);
+            if (pick == 2) w.x = densities[mcs_pcg32_next(&r) % DENSITIES];
+            if (pick == 3) w.x = -n.x, w.y = -n.y, w.z = -n.z;
+            in[0][k] = n.x, in[1][k] = n.y, in[2][k] = n.z, in[3][k] = w.x, in[4][k] = w.y, in[5][k] = w.z;
+        }
+        wide4((const float(*)[16])in);
+        wide8((const float(*)[16])in);
+        wide16((const float(*)[16])in);
+    }
+}
+#endif
+
+int main(int argc, char **argv) {
+    mcst_start(argc, argv);
+    mcst_group("frame");
+    test_frame();
+    mcst_group("microfacet");
+    test_microfacet();
+    mcst_group("mis");
+    test_heuristics();
+    if (mcst_case("estimates of a known integral agree")) test_mis_estimates();
+    mcst_group("estimator");
+    test_stat_values();
+    if (mcst_case("standard error falls as 1/sqrt(N)")) test_standard_error();
+    if (mcst_case("confidence interval covers")) test_coverage();
+#ifndef MCS_NO_WIDE
+    mcst_group("frame, microfacet, mis: widths");
+    if (mcst_case("4, 8, 16 wide have the bits of scalar")) test_widths();
+#endif
+    return mcst_finish();
+}

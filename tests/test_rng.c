@@ -1,0 +1,337 @@
+/* Uniform variates: published reference outputs, jump-ahead, integer to float, batch fills. */
+#include <math.h>
+#include "mcs_test.h"
+#include "mcsample.h"
+#include "stats.h"
+
+enum { FILL_MAX = 67, GUARD = 16 };
+static const double level = 1e-5;           /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
+static const float guard_value = -12345.5f; /* no generator of [0,1) can write it */
+
+/* ---- PCG32 ---- */
+
+/* O'Neill's bounded draw of the demo: rejection of the first 2^32 mod bound values. */
+static uint32_t demo_bounded(mcs_pcg32 *r, uint32_t bound) {
+    const uint32_t threshold = (0u - bound) % bound;
+    uint32_t v;
+    do v = mcs_pcg32_next(r);
+    while (v < threshold);
+    return v % bound;
+}
+
+/* The five rounds of the pcg32 demo (pcg-c, test-high/expected/check-pcg32.out): six words, stepped back over and drawn again,
+ * 65 coins, 33 dice, a shuffle of 52 cards. Coins as bits, the first in bit 0; heads are 1. Dice from 1. */
+static void test_pcg32_demo(void) {
+    static const uint32_t words[5][6] = {{0xa15c02b7u, 0x7b47f409u, 0xba1d3330u, 0x83d2f293u, 0xbfa4784bu, 0xcbed606eu},
+                                         {0x74ab93adu, 0x1c1da000u, 0x494ff896u, 0x34462f2fu, 0xd308a3e5u, 0x0fa83babu},
+                                         {0x39af5f9fu, 0x04196b18u, 0xc3c3eb28u, 0xc076c60cu, 0xc693e135u, 0xf8f63932u},
+                                         {0x55ce6851u, 0x97a7726du, 0x17e10815u, 0x58007d43u, 0x962fb148u, 0xb9bb55bdu},
+                                         {0xfcef7cd6u, 0x1b488b5au, 0xd0daf7eau, 0x1d9a70f7u, 0x241a37cfu, 0x9a3857b7u}};
+    static const char coins[] = "HHTTTHTHHHTHTTTHHHHHTTTHHHTHTHTHTTHTTTHHHHHHTTTTHHTTTTTHTTTTTTTHT";
+    static const char rolls[] = "341122324324335231315141564662633";
+    mcs_pcg32 r = mcs_pcg32_make(42, 54);
+    int round, i;
+    for (round = 0; round < 5; round++) {
+        for (i = 0; i < 6; i++) {
+            const uint32_t v = mcs_pcg32_next(&r);
+            CHECK(v == words[round][i], "round %d word %d: %08x, not %08x", round, i, v, words[round][i]);
+        }
+        mcs_pcg32_advance(&r, (uint64_t)0 - 6);
+        for (i = 0; i < 6; i++) CHECK(mcs_pcg32_next(&r) == words[round][i], "round %d word %d again", round, i);
+        for (i = 0; i < 65; i++) {
+            const char c = demo_bounded(&r, 2) ? 'H' : 'T';
+            CHECK(round || c == coins[i], "coin %d: %c", i, c);
+        }
+        for (i = 0; i < 33; i++) {
+            const char c = (char)('1' + (int)demo_bounded(&r, 6));
+            CHECK(round || c == rolls[i], "roll %d: %c", i, c);
+        }
+        for (i = 52; i > 1; i--) demo_bounded(&r, (uint32_t)i);
+    }
+}
+
+static void test_pcg32_advance(void) {
+    static const uint64_t far[] = {1, 0xffffffffu, 0x100000000u, 0x8000000000000000u, 0x123456789abcdef1u, 0xffffffffffffffffu};
+    size_t i, j;
+    if (mcst_case("forward and backward equal stepping")) {
+        mcs_pcg32 step = mcs_pcg32_make(mcst.seed, 3);
+        const mcs_pcg32 start = step;
+        uint64_t k;
+        for (k = 0; k <= 3000; k++) {
+            mcs_pcg32 jump = start, back = step;
+            mcs_pcg32_advance(&jump, k);
+            mcs_pcg32_advance(&back, (uint64_t)0 - k);
+            CHECK(jump.state == step.state && jump.inc == step.inc, "forward %llu", (unsigned long long)k);
+            CHECK(back.state == start.state && back.inc == start.inc, "backward %llu", (unsigned long long)k);
+            mcs_pcg32_next(&step);
+        }
+        for (; k < 1000003; k++) mcs_pcg32_next(&step);
+        {
+            mcs_pcg32 jump = start;
+            mcs_pcg32_advance(&jump, k);
+            CHECK(jump.state == step.state, "forward %llu", (unsigned long long)k);
+        }
+    }
+    if (mcst_case("jumps add modulo the period 2^64")) {
+        for (i = 0; i < sizeof far / sizeof *far; i++)
+            for (j = 0; j < sizeof far / sizeof *far; j++) {
+                mcs_pcg32 a = mcs_pcg32_make(7, 9), b = a;
+                mcs_pcg32_advance(&a, far[i]);
+                mcs_pcg32_advance(&a, far[j]);
+                mcs_pcg32_advance(&b, far[i] + far[j]);
+                CHECK(a.state == b.state, "%llx + %llx", (unsigned long long)far[i], (unsigned long long)far[j]);
+            }
+    }
+}
+
+/* Over all pairs of 256 streams and 64 places, equal words come by chance about 256*255/2*64/2^32 = 5e-4 times in all. */
+static void test_pcg32_streams(void) {
+    enum { STREAMS = 256, WORDS = 64 };
+    static uint32_t v[STREAMS][WORDS];
+    int a, b, i, same = 0;
+    for (a = 0; a < STREAMS; a++) {
+        mcs_pcg32 r = mcs_pcg32_make(mcst.seed, (uint64_t)a);
+        for (i = 0; i < WORDS; i++) v[a][i] = mcs_pcg32_next(&r);
+    }
+    for (a = 0; a < STREAMS; a++)
+        for (b = 0; b < a; b++)
+            for (i = 0; i < WORDS; i++) same += v[a][i] == v[b][i];
+    CHECK(same <= 1, "%d equal words", same);
+}
+
+static void test_pcg32_float(void) {
+    mcs_pcg32 a = mcs_pcg32_make(1, 2), b = a;
+    int i;
+    for (i = 0; i < 100000; i++) {
+        const float f = mcs_pcg32_float(&a), g = mcs_u01(mcs_pcg32_next(&b));
+        CHECK(f == g, "draw %d: %a, not %a", i, (double)f, (double)g);
+    }
+}
+
+/* ---- Philox ---- */
+
+/* Random123 (Salmon, Moraes, Dror, Shaw 2011), kat_vectors, the three lines "philox4x32 10". */
+static void test_philox_known_answers(void) {
+    static const struct {
+        uint64_t key, lo, hi;
+        uint32_t v[4];
+    } kat[3] = {
+        {0, 0, 0, {0x6627e8d5u, 0xe169c58du, 0xbc57ac4cu, 0x9b00dbd8u}},
+        {0xffffffffffffffffu, 0xffffffffffffffffu, 0xffffffffffffffffu, {0x408f276du, 0x41c83b0eu, 0xa20bc7c6u, 0x6d5451fdu}},
+        {0x299f31d0a4093822u, 0x85a308d3243f6a88u, 0x0370734413198a2eu, {0xd16cfe09u, 0x94fdccebu, 0x5001e420u, 0x24126ea1u}}};
+    int i, j;
+    for (i = 0; i < 3; i++) {
+        const mcs_philox4 b = mcs_philox(kat[i].key, kat[i].lo, kat[i].hi);
+        for (j = 0; j < 4; j++) CHECK(b.v[j] == kat[i].v[j], "vector %d word %d: %08x, not %08x", i, j, b.v[j], kat[i].v[j]);
+    }
+}
+
+/* One flipped input bit flips each of the 128 output bits with probability 1/2. Over T trials the count of flips of one output
+ * bit by one input bit is binomial(T, 1/2); 192 input by 128 output bits are 24576 counts, and 6.5 standard deviations are
+ * passed by one of them with probability 24576 * 8e-11 = 2e-6. */
+static void test_philox_avalanche(void) {
+    enum { TRIALS = 256 };
+    static int flips[192][128];
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 77);
+    int t, in, out;
+    for (t = 0; t < TRIALS; t++) {
+        uint64_t w[3];
+        mcs_philox4 base;
+        for (in = 0; in < 3; in++) {
+            w[in] = mcs_pcg32_next(&r);
+            w[in] = w[in] << 32 | mcs_pcg32_next(&r);
+        }
+        base = mcs_philox(w[0], w[1], w[2]);
+        for (in = 0; in < 192; in++) {
+            mcs_philox4 b;
+            w[in >> 6] ^= (uint64_t)1 << (in & 63);
+            b = mcs_philox(w[0], w[1], w[2]);
+            w[in >> 6] ^= (uint64_t)1 << (in & 63);
+            for (out = 0; out < 128; out++) flips[in][out] += (int)((b.v[out >> 5] ^ base.v[out >> 5]) >> (out & 31) & 1u);
+        }
+    }
+    for (in = 0; in < 192; in++)
+        for (out = 0; out < 128; out++) {
+            const double sd = fabs(flips[in][out] - TRIALS / 2.0) / sqrt(TRIALS / 4.0);
+            CHECK(sd <= 6.5, "input bit %d, output bit %d: %d of %d", in, out, flips[in][out], TRIALS);
+        }
+}
+
+/* ---- integer to float ---- */
+
+static void test_u01(void) {
+    if (mcst_case("u01: all 2^24 values, exact, each for 256 words")) {
+        const uint32_t low[3] = {0, 0xff, 0x5a};
+        uint32_t k;
+        int j, bad = 0;
+        for (k = 0; k < 1u << 24; k++) {
+            const double want = k * 0x1p-24;
+            for (j = 0; j < 3; j++) bad += !((double)mcs_u01(k << 8 | low[j]) == want);
+        }
+        CHECK(bad == 0, "%d of 3 * 2^24 values differ from (bits >> 8) * 2^-24", bad);
+        for (k = 0; k < 256; k++) {
+            CHECK(mcs_u01(k) == 0.0f, "low bits %x", k);
+            CHECK(mcs_u01(0xffffff00u | k) == 0x0.ffffffp0f, "top word %x: %a", 0xffffff00u | k, (double)mcs_u01(0xffffff00u | k));
+        }
+        CHECK(mcs_u01(0xffffffffu) < 1.0f, "top word reaches 1");
+    }
+    if (mcst_case("u01_open: all 2^23 values, inside (0,1), symmetric")) {
+        uint32_t k;
+        int bad = 0;
+        for (k = 0; k < 1u << 23; k++) {
+            const uint32_t bits = k << 9 | (k * 37 & 511);
+            const float u = mcs_u01_open(bits);
+            bad += !((double)u == (k + 0.5) * 0x1p-23) || !(u > 0.0f && u < 1.0f) || !(mcs_u01_open(~bits) == 1.0f - u);
+        }
+        CHECK(bad == 0, "%d of 2^23 values are wrong", bad);
+        CHECK(mcs_u01_open(0) == 0x1p-24f, "%a", (double)mcs_u01_open(0));
+        CHECK(mcs_u01_open(0xffffffffu) == 0x0.ffffffp0f, "%a", (double)mcs_u01_open(0xffffffffu));
+    }
+}
+
+#ifndef MCS_NO_WIDE
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wpsabi" /* wide functions are inlined: no vector crosses a call */
+#endif
+#define WIDE(W)                                                                                                              \
+    static void wide##W(const uint32_t *bits) {                                                                              \
+        mcs##W##_u b;                                                                                                        \
+        mcs##W##_f u, open;                                                                                                  \
+        int i;                                                                                                               \
+        memcpy(&b, bits, sizeof b);                                                                                          \
+        u = mcs##W##_u01(b);                                                                                                 \
+        open = mcs##W##_u01_open(b);                                                                                         \
+        for (i = 0; i < W; i++)                                                                                              \
+            CHECK(u[i] == mcs_u01(bits[i]) && open[i] == mcs_u01_open(bits[i]), #W " wide, lane %d, word %08x", i, bits[i]); \
+    }
+WIDE(4)
+WIDE(8)
+WIDE(16)
+
+static void test_u01_wide(void) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 6);
+    int i, k;
+    for (i = 0; i < 10000; i++) {
+        uint32_t bits[16];
+        for (k = 0; k < 16; k++) bits[k] = i == 0 ? 0xffffffffu - (uint32_t)k : i == 1 ? (uint32_t)k << 7 : mcs_pcg32_next(&r);
+        wide4(bits);
+        wide8(bits);
+        wide16(bits);
+    }
+}
+#endif
+
+/* ---- fills ---- */
+
+typedef void fill_fn(void *state, uint64_t where, size_t n, float *out);
+
+static void fill_pcg(void *state, uint64_t where, size_t n, float *out) {
+    (void)where;
+    mcs_pcg32_fill_n((mcs_pcg32 *)state, n, out);
+}
+
+static void fill_philox(void *state, uint64_t where, size_t n, float *out) { mcs_philox_fill_n(*(uint64_t *)state, where, n, out); }
+
+/* Fills n values at a place of every alignment of a float within 64 bytes; the guards on both sides must stay. */
+static void check_fill(fill_fn *fill, void *state, uint64_t where, size_t n, size_t shift, const float *want) {
+    static float buf[GUARD + 16 + 4096 + GUARD];
+    const size_t begin = GUARD + shift, total = begin + n + GUARD;
+    size_t i;
+    int same = 1, kept = 1;
+    for (i = 0; i < total; i++) buf[i] = guard_value;
+    fill(state, where, n, buf + begin);
+    for (i = 0; i < total; i++) {
+        if (i >= begin && i < begin + n) same &= buf[i] == want[i - begin];
+        else kept &= buf[i] == guard_value;
+    }
+    CHECK(same, "n = %zu, shift %zu: differs from the scalar sequence", n, shift);
+    CHECK(kept, "n = %zu, shift %zu: written outside", n, shift);
+}
+
+static void test_fills(void) {
+    static float want[4096];
+    size_t n, i, shift;
+    if (mcst_case("pcg32_fill_n equals the scalar sequence, n = 0..67 and 4093")) {
+        for (n = 0; n <= FILL_MAX + 1; n++) {
+            const size_t count = n <= FILL_MAX ? n : 4093;
+            for (shift = 0; shift < 16; shift++) {
+                mcs_pcg32 a = mcs_pcg32_make(n, shift), b = a;
+                for (i = 0; i < count; i++) want[i] = mcs_pcg32_float(&a);
+                check_fill(fill_pcg, &b, 0, count, shift, want);
+                CHECK(a.state == b.state && a.inc == b.inc, "n = %zu: state after the fill", count);
+            }
+        }
+    }
+    if (mcst_case("philox_fill_n equals the blocks, n = 0..67 and 4093")) {
+        static const uint64_t starts[] = {0, 1, 0xfffffffcu, 0xfffffffffffffffcu}; /* carries into the upper half, and wraps */
+        uint64_t key = 0x0123456789abcdefu;
+        size_t s;
+        for (s = 0; s < sizeof starts / sizeof *starts; s++)
+            for (n = 0; n <= FILL_MAX + 1; n++) {
+                const size_t count = n <= FILL_MAX ? n : 4093;
+                for (i = 0; i < count; i++) want[i] = mcs_u01(mcs_philox(key, starts[s] + i / 4, 0).v[i & 3]);
+                for (shift = 0; shift<16; shift += n> 20 ? 3 : 1) check_fill(fill_philox, &key, starts[s], count, shift, want);
+            }
+    }
+    if (mcst_case("fills accept NULL")) {
+        mcs_pcg32 a = mcs_pcg32_make(1, 1);
+        mcs_pcg32_fill_n(&a, 0, NULL);
+        mcs_pcg32_fill_n(&a, 5, NULL);
+        mcs_philox_fill_n(1, 2, 0, NULL);
+        mcs_philox_fill_n(1, 2, 5, NULL);
+        CHECK(1, "returned");
+    }
+}
+
+/* 2^22 floats over 2^12 cells; then neighbours (u_2i, u_2i+1) over 64 x 64 cells. Expected counts 1024 and 512. */
+static void check_uniform(const char *what, const float *u, size_t n) {
+    static double count[4096], expect[4096];
+    size_t i;
+    int pairs;
+    for (pairs = 0; pairs < 2; pairs++) {
+        const double total = pairs ? (double)n / 2 : (double)n;
+        double p;
+        for (i = 0; i < 4096; i++) count[i] = 0, expect[i] = total / 4096;
+        if (pairs)
+            for (i = 0; i + 1 < n; i += 2) count[(int)(u[i] * 64) * 64 + (int)(u[i + 1] * 64)] += 1;
+        else
+            for (i = 0; i < n; i++) count[(int)(u[i] * 4096)] += 1;
+        p = chi2_test(count, expect, 4096, NULL, NULL);
+        CHECK(p >= level, "%s%s: p = %g", what, pairs ? ", pairs" : "", p);
+    }
+}
+
+static void test_uniformity(void) {
+    const size_t n = (size_t)1 << 22;
+    float *u = (float *)malloc(n * sizeof *u);
+    CHECK(u != NULL, "out of memory");
+    if (u) {
+        mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 5);
+        mcs_pcg32_fill_n(&r, n, u);
+        check_uniform("pcg32", u, n);
+        mcs_philox_fill_n(mcst.seed, 0, n, u);
+        check_uniform("philox", u, n);
+    }
+    free(u);
+}
+
+int main(int argc, char **argv) {
+    mcst_start(argc, argv);
+    mcst_group("pcg32");
+    if (mcst_case("five rounds of the published demo")) test_pcg32_demo();
+    test_pcg32_advance();
+    if (mcst_case("streams differ")) test_pcg32_streams();
+    if (mcst_case("float is u01 of the word")) test_pcg32_float();
+    mcst_group("philox");
+    if (mcst_case("known-answer vectors")) test_philox_known_answers();
+    if (mcst_case("avalanche")) test_philox_avalanche();
+    mcst_group("u01");
+    test_u01();
+#ifndef MCS_NO_WIDE
+    if (mcst_case("4, 8, 16 wide equal scalar")) test_u01_wide();
+#endif
+    mcst_group("fills");
+    test_fills();
+    if (mcst_case("chi-square of values and pairs")) test_uniformity();
+    return mcst_finish();
+}

@@ -1,0 +1,277 @@
+/* Design check 7: the 4, 8 and 16 wide forms and the array forms give what the scalar form gives, bit for bit, for every row; and
+ * the registry is complete: every public sampler of the header has a row or a test of its own.
+ *
+ * Same bits need a build without contraction (the header's terms). Where the compiler contracts a*b + c, values differ by roundings
+ * and by what a sharp lobe makes of them: there only gross errors (0.1 %) are looked for. */
+#define MCST_WIDE
+#include "registry.h"
+
+/* 1 where a*b + c is contracted: with c the rounded product, only a fused operation finds what the rounding took away. */
+static int contracts_plain(volatile const float *v) {
+    const float a = v[0], b = v[1], c = v[2];
+    return a * b + c != 0;
+}
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+__attribute__((target("avx2,fma"))) static int contracts_fma(volatile const float *v) {
+    const float a = v[0], b = v[1], c = v[2];
+    return a * b + c != 0;
+}
+#else
+static int contracts_fma(volatile const float *v) { return contracts_plain(v); }
+#endif
+
+static int lanes_contract, arrays_contract; /* the wide forms; the array forms, which choose their instructions at run time */
+
+static void find_contraction(void) {
+    volatile float v[3] = {1 + 0x1p-12f, 1 + 0x1p-12f, 0};
+    v[2] = -(v[0] * v[1]);
+    lanes_contract = contracts_plain(v);
+    arrays_contract = lanes_contract;
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+    if (__builtin_cpu_supports("fma")) arrays_contract = contracts_fma(v);
+#else
+    arrays_contract = contracts_fma(v);
+#endif
+    printf("a*b + c is contracted in: %s\n", lanes_contract ? "everything" : arrays_contract ? "the array forms" : "nothing");
+}
+
+#ifndef MCS_HEADER
+#define MCS_HEADER "mcsample.h" /* its path from where the test is run */
+#endif
+
+enum { N = 67, LANES = 16 };
+
+static int same(float a, float b, int contracted) {
+    if (!contracted) return !memcmp(&a, &b, sizeof a);
+    return fabs((double)a - (double)b) <= 1e-3 * fmax(fabs((double)a), fabs((double)b)) + 1e-6;
+}
+
+/* Random numbers of all kinds: mostly ordinary, some at the edges, some bad. */
+static float any_u(uint64_t *state) {
+    static const float edge[] = {0, -0.0f, 0x1p-149f, 0x1p-24f, 0.25f, 0.5f, 0.75f, 1 - 0x1p-24f, 1, -1, 2};
+    const uint64_t z = mcst_mix(state);
+    if (z % 8) return (float)(int32_t)(z >> 40) * 0x1p-24f;
+    return z >> 8 & 1 ? edge[(z >> 9) % 11] : z >> 9 & 1 ? NAN : edge[(z >> 10) % 8];
+}
+
+/* A parameter set of the grid, sometimes a bad one. */
+static void any_p(const mcst_row *row, uint64_t *state, float *p) {
+    const uint64_t z = mcst_mix(state);
+    mcst_grid_get(row, (size_t)(z % mcst_grid_count(row)), p);
+    if (z >> 40 & 15) return;
+    p[(z >> 44) % 6] = z >> 50 & 1 ? NAN : z >> 51 & 1 ? -1.0f : 0.0f;
+}
+
+/* The scalar results for lane l: 5 of sample, then pdf, invert (2), eval, weight at the point x. */
+enum { RESULTS = 10 };
+static void scalar(const mcst_row *row, const float *p, const float *u, const float *x, float *out) {
+    memset(out, 0, RESULTS * sizeof *out);
+    row->fn[0].sample(p, &u[0], &u[1], out);
+    row->fn[0].pdf(p, x, &out[5]);
+    if (row->fn[0].invert) row->fn[0].invert(p, x, &out[6]);
+    if (row->fn[0].eval) {
+        row->fn[0].eval(p, x, &out[8]);
+        row->fn[0].weight(p, x, &out[9]);
+    }
+}
+
+/* One call of every wide form with a different parameter set, u and point in each lane. */
+static void check_lanes(const mcst_row *row, int form, int lanes, uint64_t *state) {
+    float p[MCST_P * LANES], u1[LANES], u2[LANES], x[3 * LANES], out[RESULTS * LANES], want[LANES][RESULTS];
+    int i, l;
+    memset(out, 0, sizeof out);
+    for (l = 0; l < lanes; l++) {
+        float q[MCST_P], u[2], y[3], drawn[5] = {0};
+        any_p(row, state, q);
+        u[0] = any_u(state), u[1] = any_u(state);
+        for (i = 0; i < 3; i++) y[i] = any_u(state);
+        if (mcst_mix(state) % 4) { /* mostly a point that the sampler draws */
+            const float v[2] = {any_u(state), any_u(state)};
+            row->fn[0].sample(q, &v[0], &v[1], drawn);
+            memcpy(y, drawn, sizeof y);
+        }
+        scalar(row, q, u, y, want[l]);
+        for (i = 0; i < MCST_P; i++) p[i * lanes + l] = q[i];
+        for (i = 0; i < 3; i++) x[i * lanes + l] = y[i];
+        u1[l] = u[0], u2[l] = u[1];
+    }
+    row->fn[form].sample(p, u1, u2, out);
+    row->fn[form].pdf(p, x, out + 5 * lanes);
+    if (row->fn[form].invert) row->fn[form].invert(p, x, out + 6 * lanes);
+    if (row->fn[form].eval) {
+        row->fn[form].eval(p, x, out + 8 * lanes);
+        row->fn[form].weight(p, x, out + 9 * lanes);
+    }
+    for (l = 0; l < lanes; l++)
+        for (i = 0; i < RESULTS; i++) {
+            if (lanes_contract && (i == 6 || i == 7))
+                continue; /* the azimuth of a point at the pole is nothing but its roundings */
+            CHECK(same(out[i * lanes + l], want[l][i], lanes_contract),
+                  "%d wide, lane %d, result %d: %.9g, scalar %.9g (p %g %g, wo %g %g %g, u %a %a, x %.9g %.9g %.9g)", lanes, l, i,
+                  (double)out[i * lanes + l], (double)want[l][i], (double)p[l], (double)p[lanes + l], (double)p[3 * lanes + l],
+                  (double)p[4 * lanes + l], (double)p[5 * lanes + l], (double)u1[l], (double)u2[l], (double)x[l],
+                  (double)x[lanes + l], (double)x[2 * lanes + l]);
+        }
+}
+
+/* --- array forms ------------------------------------------------------------------------------------------------------------ */
+
+static const float guard = -123456.0f;
+enum { ROOM = N + 8 };
+
+/* Which of x, y, z, pdf, weight the array form writes. */
+static int writes(const mcst_row *row, int k) { return k < row->dim || k == 3 || (k == 4 && row->shape == MCST_IS_BRDF); }
+
+static void check_arrays(const mcst_row *row, const float *p, uint64_t *state) {
+    float u1[ROOM], u2[ROOM], want[5][N], buffer[5][ROOM], value[2][N];
+    size_t n, i;
+    int k, shift;
+    for (i = 0; i < ROOM; i++) u1[i] = any_u(state), u2[i] = any_u(state);
+    for (shift = 0; shift < 4; shift++) {
+        for (i = 0; i < N; i++) {
+            float out[5] = {0};
+            row->fn[0].sample(p, &u1[i + (size_t)shift], &u2[i + (size_t)((shift * 2) % 4)], out);
+            for (k = 0; k < 5; k++) want[k][i] = out[k];
+        }
+        for (n = 0; n <= N; n++) {
+            const unsigned missing =
+                n % 6 ? 0 : 1 + (unsigned)(mcst_mix(state) % 31); /* now and then some outputs are not wanted */
+            float *out[5];
+            for (k = 0; k < 5; k++) {
+                for (i = 0; i < ROOM; i++) buffer[k][i] = guard;
+                out[k] = missing >> k & 1 ? NULL : buffer[k] + (shift + k) % 4;
+            }
+            row->sample_n(p, n, u1 + shift, u2 + (shift * 2) % 4, out);
+            for (k = 0; k < 5; k++) {
+                const size_t first = (size_t)((shift + k) % 4), count = out[k] && writes(row, k) ? n : 0;
+                for (i = 0; i < ROOM; i++) {
+                    if (i >= first && i < first + count)
+                        CHECK(same(buffer[k][i], want[k][i - first], arrays_contract), "n %zu, output %d[%zu]: %.9g, scalar %.9g",
+                              n, k, i - first, (double)buffer[k][i], (double)want[k][i - first]);
+                    else CHECK(buffer[k][i] == guard, "n %zu, output %d: wrote at %zu of %zu", n, k, i - first, n);
+                }
+            }
+        }
+    }
+    /* in place: two of the outputs are the inputs, as given and crossed */
+    for (shift = 0; shift < 2; shift++) {
+        float a[N], b[N], rest[3][N];
+        float *out[5] = {NULL, rest[0], rest[0], rest[1], rest[2]};
+        const int first = 0, second = row->dim > 1 ? 1 : 3;
+        memcpy(a, u1, sizeof a);
+        memcpy(b, u2, sizeof b);
+        out[first] = shift ? b : a, out[second] = shift ? a : b;
+        row->sample_n(p, N, a, b, out);
+        for (i = 0; i < N; i++) {
+            float one[5] = {0};
+            row->fn[0].sample(p, &u1[i], &u2[i], one);
+            for (k = 0; k < 5; k++)
+                if (writes(row, k))
+                    CHECK(same(out[k][i], one[k], arrays_contract), "in place%s, output %d[%zu]: %.9g, scalar %.9g",
+                          shift ? ", crossed" : "", k, i, (double)out[k][i], (double)one[k]);
+        }
+    }
+    if (!row->pdf_n) return;
+    for (n = 0; n <= N; n++) {
+        float f[ROOM];
+        for (k = 0; k < 2; k++) {
+            const size_t first = n % 4;
+            for (i = 0; i < ROOM; i++) f[i] = guard;
+            for (i = 0; i < n; i++) {
+                const float x[3] = {want[0][i], want[1][i], want[2][i]};
+                (k ? row->fn[0].eval : row->fn[0].pdf)(p, x, &value[k][i]);
+            }
+            (k ? row->eval_n : row->pdf_n)(p, n, want[0], want[1], want[2], f + first);
+            for (i = 0; i < ROOM; i++) {
+                if (i >= first && i < first + n)
+                    CHECK(same(f[i], value[k][i - first], arrays_contract), "%s_n, n %zu, [%zu]: %.9g, scalar %.9g",
+                          k ? "eval" : "pdf", n, i - first, (double)f[i], (double)value[k][i - first]);
+                else CHECK(f[i] == guard, "%s_n, n %zu: wrote at %zu", k ? "eval" : "pdf", n, i - first);
+            }
+        }
+    }
+    {
+        float x[N], y[N], z[N]; /* in place */
+        memcpy(x, want[0], sizeof x);
+        memcpy(y, want[1], sizeof y);
+        memcpy(z, want[2], sizeof z);
+        row->pdf_n(p, N, x, y, z, y);
+        for (i = 0; i < N; i++)
+            CHECK(same(y[i], value[0][i], arrays_contract), "pdf_n in place [%zu]: %.9g, scalar %.9g", i, (double)y[i],
+                  (double)value[0][i]);
+    }
+}
+
+/* --- is the registry complete? -------------------------------------------------------------------------------------------------
+ * */
+
+static int is_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
+
+static int is_known(const char *name) {
+    size_t i;
+    for (i = 0; i < MCST_NROWS; i++)
+        if (!strcmp(mcst_rows[i].function, name)) return 1;
+    for (i = 0; i < MCST_COUNT(mcst_exempt); i++)
+        if (!strcmp(mcst_exempt[i], name)) return 1;
+    return 0;
+}
+
+/* Public samplers are written MCS_(name_sample) in the body of all widths, mcs_name_sample( where there is only a scalar form. */
+static void check_registry(void) {
+    static char text[1 << 20];
+    FILE *f = fopen(MCS_HEADER, "rb");
+    const char *at;
+    size_t length, found = 0, i;
+    CHECK(f != NULL, "cannot read %s; run the test where it is, or compile with -DMCS_HEADER", MCS_HEADER);
+    if (!f) return;
+    length = fread(text, 1, sizeof text - 1, f);
+    fclose(f);
+    CHECK(length > 1000 && length < sizeof text - 1, "%zu bytes of %s", length, MCS_HEADER);
+    text[length] = 0;
+    for (at = text; (at = strstr(at, "_sample")) != NULL; at += 7) {
+        const char *start = at;
+        char name[64];
+        while (start > text && is_word(start[-1])) start--;
+        if (!(start - text >= 5 && !strncmp(start - 5, "MCS_(", 5) && at[7] == ')')) {
+            if (strncmp(start, "mcs_", 4) != 0 || at[7] != '(') continue;
+            start += 4;
+        }
+        if (at <= start || (size_t)(at - start) >= sizeof name) continue;
+        memcpy(name, start, (size_t)(at - start));
+        name[at - start] = 0;
+        found++;
+        CHECK(is_known(name), "mcs_%s_sample has no row in registry.h", name);
+    }
+    CHECK(found >= MCST_NROWS, "only %zu mentions of samplers in %s", found, MCS_HEADER);
+    for (i = 0; i < MCST_NROWS; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s_sample", mcst_rows[i].function);
+        CHECK(strstr(text, name) != NULL, "row %s: %s is not in %s", mcst_rows[i].name, name, MCS_HEADER);
+    }
+}
+
+int main(int argc, char **argv) {
+    size_t i, j;
+    int w;
+    mcst_start(argc, argv);
+    if (!mcst.list) find_contraction();
+    mcst_group("registry");
+    if (mcst_case("every sampler has a row")) check_registry();
+    for (i = 0; i < MCST_NROWS; i++) {
+        const mcst_row *row = &mcst_rows[i];
+        uint64_t state = mcst_seed_for(row->name, "width", 0);
+        const int rounds = (int)(800 * fmin(1, mcst_scale())) + 1;
+        mcst_group(row->name);
+        for (w = 1; w < 4; w++) {
+            if (!mcst_case("%d wide", 2 << w)) continue;
+            for (j = 0; j < (size_t)rounds; j++) check_lanes(row, w, 2 << w, &state);
+        }
+        for (j = 0; j < 4; j++) {
+            float p[MCST_P];
+            mcst_grid_get(row, (j * 37) % mcst_grid_count(row), p);
+            if (mcst_case("arrays %g %g, wo %g %g %g", (double)p[0], (double)p[1], (double)p[3], (double)p[4], (double)p[5]))
+                check_arrays(row, p, &state);
+        }
+    }
+    return mcst_finish();
+}
