@@ -1,0 +1,98 @@
+/* One array loop per sampler of the registry over the functions of one width; material and parameters are prepared outside of the loop.
+ * No include guard: included once per BENCH_W = 1, 4, 8 or 16, for bench1_<row> and so on, of the type bench_form, and the array
+ * bench1_forms in the order of the registry. n is a multiple of BENCH_W; a weight is left to the compiler to leave out. */
+#define FORM_CAT_(a, b, c) a##b##c
+#define FORM_CAT(a, b, c) FORM_CAT_(a, b, c)
+#if BENCH_W == 1
+#define M_(name) FORM_CAT(mcs, _, name)
+#define F_ float
+#else
+#define M_(name) FORM_CAT(mcs, BENCH_W, _##name)
+#define F_ FORM_CAT(mcs, BENCH_W, _f)
+#endif
+#define B_(name) FORM_CAT(bench, BENCH_W, _##name)
+
+/* By pointers to unaligned vectors: gcc 12 copies with memcpy in halves, and a load of both halves then waits for the stores. */
+#if BENCH_W == 1
+typedef float B_(any);
+#else
+typedef F_ B_(any) __attribute__((aligned(4), may_alias));
+#endif
+static inline F_ B_(load)(const float *a) { return *(const B_(any) *)(const void *)a; }
+static inline void B_(store)(float *a, F_ v) { *(B_(any) *)(void *)a = v; }
+static inline F_ B_(set)(float x) {
+    float a[BENCH_W];
+    int i;
+    for (i = 0; i < BENCH_W; i++) a[i] = x;
+    return B_(load)(a);
+}
+
+#define FORM_ARGS_0
+#define FORM_ARGS_1 a,
+#define FORM_ARGS_2 a, b,
+#define FORM_MAKE_phong const M_(phong) m = M_(phong_make)(a)
+#define FORM_MAKE_ward const M_(ward) m = M_(ward_make)(a, b, MCS_WARD_GMD)
+#define FORM_MAKE_ward_gmd FORM_MAKE_ward
+#define FORM_MAKE_ward_duer const M_(ward) m = M_(ward_make)(a, b, MCS_WARD_DUER)
+#define FORM_MAKE_ward_1992 const M_(ward) m = M_(ward_make)(a, b, MCS_WARD_1992)
+#define FORM_MAKE_beckmann const M_(beckmann) m = M_(beckmann_make)(a, b)
+#define FORM_MAKE_ggx const M_(ggx) m = M_(ggx_make)(a, b)
+#define FORM_MAKE_ashikhmin const M_(ashikhmin) m = M_(ashikhmin_make)(a, b)
+
+#define FORM(row, prepare, type, call, keep)                                                                        \
+    static void B_(row)(const float *p, size_t n, const float *u1, const float *u2, float *const out[BENCH_OUT]) { \
+        const F_ a = B_(set)(p[0]), b = B_(set)(p[1]);                                                              \
+        const M_(vec3) wo = {B_(set)(p[3]), B_(set)(p[4]), B_(set)(p[5])};                                          \
+        float *const x = out[0], *const y = out[1], *const z = out[2], *const pdf = out[3];                         \
+        size_t i;                                                                                                   \
+        prepare;                                                                                                    \
+        (void)a, (void)b, (void)wo, (void)y, (void)z, (void)u2;                                                     \
+        for (i = 0; i < n; i += BENCH_W) {                                                                          \
+            const M_(type) s = call;                                                                                \
+            keep;                                                                                                   \
+            B_(store)(pdf + i, s.pdf);                                                                              \
+        }                                                                                                           \
+    }
+#define FORM_U B_(load)(u1 + i), B_(load)(u2 + i)
+#define FORM_XYZ(v) B_(store)(x + i, v.x), B_(store)(y + i, v.y), B_(store)(z + i, v.z)
+#define FORM_LINE(row, fn, args) \
+    FORM(row, (void)0, sample1, M_(fn##_sample)(FORM_ARGS_##args B_(load)(u1 + i)), B_(store)(x + i, s.x))
+#define FORM_PLANE(row, fn, args) \
+    FORM(row, (void)0, sample2, M_(fn##_sample)(FORM_ARGS_##args FORM_U), (B_(store)(x + i, s.x), B_(store)(y + i, s.y)))
+#define FORM_DIR(row, fn, args) FORM(row, (void)0, dir, M_(fn##_sample)(FORM_ARGS_##args FORM_U), FORM_XYZ(s.w))
+#define FORM_LOBE(row, fn, mat) FORM(row, FORM_MAKE_##mat, dir, M_(fn##_sample)(&m, FORM_U), FORM_XYZ(s.w))
+#define FORM_VLOBE(row, fn, mat) FORM(row, FORM_MAKE_##mat, dir, M_(fn##_sample)(&m, wo, FORM_U), FORM_XYZ(s.w))
+#define FORM_BRDF(row, fn, mat) FORM(row, FORM_MAKE_##mat, brdf, M_(fn##_sample)(&m, wo, FORM_U), FORM_XYZ(s.wi))
+#define FORM_ROW(shape, row, fn, arg, base, coord, grid) FORM_##shape(row, fn, arg)
+#define FORM_NAME(shape, row, fn, arg, base, coord, grid) B_(row),
+MCST_ROWS(FORM_ROW)
+bench_form *const B_(forms)[] = {MCST_ROWS(FORM_NAME)};
+
+#undef FORM_CAT_
+#undef FORM_CAT
+#undef M_
+#undef F_
+#undef B_
+#undef FORM_ARGS_0
+#undef FORM_ARGS_1
+#undef FORM_ARGS_2
+#undef FORM_MAKE_phong
+#undef FORM_MAKE_ward
+#undef FORM_MAKE_ward_gmd
+#undef FORM_MAKE_ward_duer
+#undef FORM_MAKE_ward_1992
+#undef FORM_MAKE_beckmann
+#undef FORM_MAKE_ggx
+#undef FORM_MAKE_ashikhmin
+#undef FORM
+#undef FORM_U
+#undef FORM_XYZ
+#undef FORM_LINE
+#undef FORM_PLANE
+#undef FORM_DIR
+#undef FORM_LOBE
+#undef FORM_VLOBE
+#undef FORM_BRDF
+#undef FORM_ROW
+#undef FORM_NAME
+#undef BENCH_W

@@ -1,0 +1,187 @@
+/* A plot as an SVG file: scatter or line series over log or linear axes, with grid, ticks and a legend.
+ *
+ *     svg_plot p;
+ *     svg_begin(&p, "file.svg", "title", "time, ns", "error, ulp", 1, 1, xmin, xmax, ymin, ymax);   the flags: log axis
+ *     svg_series(&p, "name", n, x, y, SVG_LINE);      the first call gets the first marker, dash pattern and colour, and so on
+ *     svg_label(&p, x, y, "text");                    a remark in the plot, to the right of the point
+ *     svg_note(&p, "text");                           a line below the legend
+ *     if (svg_end(&p)) fail;
+ *
+ * Series differ in marker shape and dash pattern, so that no colour is needed to tell them apart (colours: Okabe and Ito 2008, which
+ * the colour-blind can tell apart too). Points that an axis cannot show (not finite, not positive on a log axis, outside of the
+ * limits) are left out; lines are cut at the frame. */
+#ifndef BENCH_SVG_H
+#define BENCH_SVG_H
+#include <math.h>
+#include <stdio.h>
+
+enum { SVG_POINTS, SVG_LINE, SVG_LINE_ONLY };            /* markers; markers joined by a line; a line without markers */
+enum { SVG_W = 1000, SVG_H = 600, SVG_L = 84, SVG_R = 770, SVG_T = 50, SVG_B = 530, SVG_SHAPES = 8 }; /* sheet and frame, pixels */
+
+typedef struct {
+    FILE *out;
+    int log[2], series, row; /* axis 0: x, 1: y; rows of the legend used */
+    double min[2], max[2];
+} svg_plot;
+
+/* Widens [*lo, *hi] (empty while lo > hi) to hold the values that a log or linear axis can show. */
+static inline void svg_range(int n, const double *v, int is_log, double *lo, double *hi) {
+    int i;
+    for (i = 0; i < n; i++) {
+        if (!isfinite(v[i]) || (is_log && v[i] <= 0)) continue;
+        if (*lo > *hi) *lo = *hi = v[i];
+        if (v[i] < *lo) *lo = v[i];
+        if (v[i] > *hi) *hi = v[i];
+    }
+}
+
+static inline void svg_text(svg_plot *p, const char *s) {
+    for (; *s; s++) {
+        switch (*s) {
+        case '<': fputs("&lt;", p->out); break;
+        case '>': fputs("&gt;", p->out); break;
+        case '&': fputs("&amp;", p->out); break;
+        default: putc(*s, p->out);
+        }
+    }
+}
+
+static inline double svg_at(const svg_plot *p, int axis, double v) {
+    double lo = p->min[axis], hi = p->max[axis], t;
+    t = p->log[axis] ? (log(v) - log(lo)) / (log(hi) - log(lo)) : (v - lo) / (hi - lo);
+    return axis ? SVG_B - t * (SVG_B - SVG_T) : SVG_L + t * (SVG_R - SVG_L);
+}
+
+static inline void svg_tick(svg_plot *p, int axis, double v, int labelled) {
+    double at = svg_at(p, axis, v);
+    int e = (int)lround(log10(fabs(v) > 0 ? fabs(v) : 1));
+    if (!(v >= p->min[axis] * (1 - 1e-9) && v <= p->max[axis] * (1 + 1e-9)) && v != 0) return;
+    fprintf(p->out, "<path d=\"M%.1f %.1f%c%.1f\" stroke=\"%s\"/>\n", axis ? (double)SVG_L : at, axis ? at : (double)SVG_B,
+            axis ? 'H' : 'V', (double)(axis ? SVG_R : SVG_T), labelled ? "#c8c8c8" : "#ececec");
+    if (!labelled) return;
+    fprintf(p->out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", axis ? SVG_L - 8.0 : at, axis ? at + 5 : SVG_B + 22.0,
+            axis ? "end" : "middle");
+    if (p->log[axis] && (e < -3 || e > 4) && fabs(v / pow(10, e) - 1) < 1e-9)
+        fprintf(p->out, "10<tspan dy=\"-6\" font-size=\"11\">%d</tspan></text>\n", e);
+    else
+        fprintf(p->out, "%g</text>\n", v);
+}
+
+static inline void svg_axis(svg_plot *p, int axis) {
+    double lo = p->min[axis], hi = p->max[axis];
+    if (p->log[axis]) {
+        int first = (int)floor(log10(lo)), last = (int)ceil(log10(hi)), e, m;
+        double decades = log10(hi / lo);
+        int step = decades > 20 ? 5 : decades > 10 ? 2 : 1;
+        for (e = first; e <= last; e++) {
+            for (m = 1; m < 10; m++) {
+                int labelled = m == 1 ? e % step == 0 : decades < 1.3 ? m < 6 || m == 8 : decades < 3 && (m == 2 || m == 5);
+                if (m == 1 || decades < 8) svg_tick(p, axis, (double)m * pow(10, e), labelled);
+            }
+        }
+    } else {
+        double raw = (hi - lo) / 7, unit = pow(10, floor(log10(raw))), step = raw / unit > 5 ? 10 : raw / unit > 2 ? 5 : 2, v;
+        step *= raw / unit > 1 ? unit : unit / 2;
+        for (v = ceil(lo / step - 1e-9); v * step <= hi * (1 + 1e-9); v++) svg_tick(p, axis, v * step + 0.0, 1);
+    }
+}
+
+static inline void svg_begin(svg_plot *p, const char *file, const char *title, const char *xlabel, const char *ylabel, int xlog,
+                             int ylog, double xmin, double xmax, double ymin, double ymax) {
+    p->out = fopen(file, "w");
+    p->series = p->row = 0;
+    p->log[0] = xlog, p->log[1] = ylog;
+    p->min[0] = xmin, p->max[0] = xmax, p->min[1] = ymin, p->max[1] = ymax;
+    if (!p->out) return;
+    fprintf(p->out, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\"", SVG_W, SVG_H, SVG_W,
+            SVG_H);
+    fprintf(p->out, " font-family=\"Helvetica, Arial, sans-serif\" font-size=\"15\" fill=\"none\">\n<title>");
+    svg_text(p, title);
+    fprintf(p->out, "</title>\n<rect width=\"%d\" height=\"%d\" fill=\"white\"/>\n", SVG_W, SVG_H);
+    fprintf(p->out, "<clipPath id=\"frame\"><rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/></clipPath>\n", SVG_L, SVG_T,
+            SVG_R - SVG_L, SVG_B - SVG_T);
+    fprintf(p->out, "<g fill=\"black\">\n");
+    svg_axis(p, 0);
+    svg_axis(p, 1);
+    fprintf(p->out, "<text x=\"%d\" y=\"%d\" font-size=\"18\" font-weight=\"bold\">", SVG_L, SVG_T - 20);
+    svg_text(p, title);
+    fprintf(p->out, "</text>\n<text x=\"%d\" y=\"%d\" text-anchor=\"middle\" font-size=\"16\">", (SVG_L + SVG_R) / 2, SVG_B + 52);
+    svg_text(p, xlabel);
+    fprintf(p->out, "</text>\n<text transform=\"translate(22 %d) rotate(-90)\" text-anchor=\"middle\" font-size=\"16\">",
+            (SVG_T + SVG_B) / 2);
+    svg_text(p, ylabel);
+    fprintf(p->out, "</text>\n</g>\n<path d=\"M%d %dH%dV%dH%dZ\" stroke=\"black\"/>\n", SVG_L, SVG_T, SVG_R, SVG_B, SVG_L);
+}
+
+static inline void svg_mark(svg_plot *p, int series, double x, double y) {
+    static const char *const path[SVG_SHAPES] = {
+        "m-5 0a5 5 0 1 0 10 0a5 5 0 1 0 -10 0z", "m-4.5 -4.5h9v9h-9z", "m0 -6l5.5 10h-11z", "m0 -6.5l6 6.5l-6 6.5l-6 -6.5z",
+        "m0 6l5.5 -10h-11z", "m-5 -5l10 10m0 -10l-10 10", "m0 -6v12m-6 -6h12", "m-5 -3l10 6m0 -6l-10 6m5 -9v12"};
+    fprintf(p->out, "<path d=\"M%.1f %.1f%s\"/>\n", x, y, path[series % SVG_SHAPES]);
+}
+
+static inline void svg_style(svg_plot *p, int series) {
+    static const char *const colour[SVG_SHAPES] = {"#000000", "#0072b2", "#d55e00", "#009e73",
+                                                   "#cc79a7", "#56b4e9", "#8a6d00", "#7f3c8d"};
+    const char *c = colour[series % SVG_SHAPES];
+    int open = series % SVG_SHAPES > 4 || series / SVG_SHAPES % 2; /* crosses have no inside; from the ninth on, hollow marks */
+    fprintf(p->out, "<g stroke=\"%s\" fill=\"%s\" stroke-width=\"1.8\">\n", c, open ? "white" : c);
+}
+
+static inline void svg_stroke(svg_plot *p, int series, double x, double y) { /* opens a path at (x, y) */
+    static const char *const dash[SVG_SHAPES] = {"", "9 4", "2 3", "9 3 2 3", "5 3", "14 4", "9 3 2 3 2 3", "1 5"};
+    fprintf(p->out, "<path fill=\"none\" stroke-dasharray=\"%s\" d=\"M%.1f %.1f", dash[series % SVG_SHAPES], x, y);
+}
+
+static inline void svg_series(svg_plot *p, const char *name, int n, const double *x, const double *y, int kind) {
+    int i, s = p->series++, joined = 0;
+    double ly = SVG_T + 14.0 + 24.0 * p->row++;
+    if (!p->out) return;
+    svg_style(p, s);
+    fprintf(p->out, "<g clip-path=\"url(#frame)\">\n");
+    if (kind != SVG_POINTS) {
+        for (i = 0; i < n; i++) {
+            if (!isfinite(x[i]) || !isfinite(y[i]) || (p->log[0] && x[i] <= 0) || (p->log[1] && y[i] <= 0)) continue;
+            if (!joined++) svg_stroke(p, s, svg_at(p, 0, x[i]), svg_at(p, 1, y[i]));
+            else fprintf(p->out, "L%.1f %.1f", svg_at(p, 0, x[i]), svg_at(p, 1, y[i]));
+        }
+        if (joined) fprintf(p->out, "\"/>\n");
+    }
+    fprintf(p->out, "</g>\n");
+    for (i = 0; i < n && kind != SVG_LINE_ONLY; i++)
+        if (x[i] >= p->min[0] && x[i] <= p->max[0] && y[i] >= p->min[1] && y[i] <= p->max[1])
+            svg_mark(p, s, svg_at(p, 0, x[i]), svg_at(p, 1, y[i]));
+    if (kind != SVG_POINTS) {
+        svg_stroke(p, s, SVG_R + 16, ly);
+        fprintf(p->out, "h40\"/>\n");
+    }
+    if (kind != SVG_LINE_ONLY) svg_mark(p, s, SVG_R + 36, ly);
+    fprintf(p->out, "</g>\n<text fill=\"black\" x=\"%d\" y=\"%.1f\">", SVG_R + 66, ly + 5);
+    svg_text(p, name);
+    fprintf(p->out, "</text>\n");
+}
+
+static inline void svg_label(svg_plot *p, double x, double y, const char *s) {
+    if (!p->out) return;
+    fprintf(p->out, "<text fill=\"#303030\" font-size=\"12\" x=\"%.1f\" y=\"%.1f\">", svg_at(p, 0, x) + 9, svg_at(p, 1, y) + 4);
+    svg_text(p, s);
+    fprintf(p->out, "</text>\n");
+}
+
+static inline void svg_note(svg_plot *p, const char *s) {
+    double ly = SVG_T + 19.0 + 24.0 * p->row++;
+    if (!p->out) return;
+    fprintf(p->out, "<text fill=\"#303030\" font-size=\"13\" x=\"%d\" y=\"%.1f\">", SVG_R + 16, ly);
+    svg_text(p, s);
+    fprintf(p->out, "</text>\n");
+}
+
+/* 0 when the whole file was written. */
+static inline int svg_end(svg_plot *p) {
+    int bad;
+    if (!p->out) return -1;
+    fprintf(p->out, "</svg>\n");
+    bad = ferror(p->out);
+    return fclose(p->out) || bad ? -1 : 0;
+}
+#endif

@@ -1,0 +1,308 @@
+/* The point sets: net properties counted, uniform marginals and independent randomisations by chi-square, permutations, array and wide
+ * forms against scalar ones, and what all of it is for: the rate at which the error of a smooth integral falls. */
+#include "mcs_test.h"
+#include "mcsample.h"
+#include "stats.h"
+#include <math.h>
+
+enum { LOG_N = 12, N = 1 << LOG_N, SEEDS = 16 };
+
+/* Every elementary interval of area 2^-LOG_N of dimensions a and b holds how many of the N points from `first` on? Counts the shapes
+ * (k bits of a, LOG_N - k of b) that do not hold exactly one point each. */
+static int broken_shapes(uint32_t first, uint32_t a, uint32_t b, uint32_t seed) {
+    static unsigned char hit[N];
+    int k, broken = 0;
+    for (k = 0; k <= LOG_N; k++) {
+        uint32_t i;
+        int one = 1;
+        memset(hit, 0, sizeof hit);
+        for (i = 0; i < N; i++) {
+            const uint64_t x = mcs_sobol_bits(first + i, a, seed), y = mcs_sobol_bits(first + i, b, seed);
+            if (hit[(x >> (32 - k)) << (LOG_N - k) | y >> (32 - LOG_N + k)]++) one = 0;
+        }
+        broken += !one;
+    }
+    return broken;
+}
+
+static void nets(void) {
+    uint32_t seed, d;
+    if (mcst_case("dimensions 0 and 1 are a (0,2)-sequence"))
+        for (seed = 0; seed < SEEDS; seed++) {
+            CHECK(broken_shapes(0, 0, 1, seed) == 0, "seed %u, the first points", seed);
+            CHECK(broken_shapes(5u << LOG_N, 0, 1, seed) == 0, "seed %u, a later block", seed);
+            CHECK(broken_shapes(0, 4, 5, seed) == 0, "seed %u, the second group", seed);
+        }
+    if (mcst_case("every dimension alone is a (0,1)-sequence"))
+        for (seed = 0; seed < SEEDS; seed++)
+            for (d = 0; d < 12; d++) {
+                static unsigned char hit[N];
+                uint32_t i;
+                int one = 1;
+                memset(hit, 0, sizeof hit);
+                for (i = 0; i < N; i++) one &= !hit[mcs_sobol_bits(3u * N + i, d, seed) >> (32 - LOG_N)]++;
+                CHECK(one, "seed %u, dimension %u", seed, d);
+            }
+    /* t of Sobol's first dimensions is the sum over the primitive polynomials of degree - 1 (Niederreiter 1987): with degrees 0 (the van
+     * der Corput sequence), 1, 2, 3 pairs have t = 0 for (0,1), 1 with dimension 2, 2 with dimension 3, 3 for (2,3): a shape can be broken
+     * only when it asks more than LOG_N - t bits; there are at most LOG_N + 1 - 2 t unbroken ones otherwise, so broken <= 2 t. */
+    if (mcst_case("dimensions 0 to 3 are Sobol's, t of every pair"))
+        for (seed = 0; seed < SEEDS; seed++) {
+            CHECK(broken_shapes(0, 0, 2, seed) <= 2 && broken_shapes(0, 1, 2, seed) <= 2, "seed %u: with dimension 2", seed);
+            CHECK(broken_shapes(0, 0, 3, seed) <= 4 && broken_shapes(0, 1, 3, seed) <= 4, "seed %u: with dimension 3", seed);
+            CHECK(broken_shapes(0, 2, 3, seed) <= 6, "seed %u: 2 and 3", seed);
+        }
+}
+
+/* chi-square over `bins` equal bins; the level is Sidak's for the 20 tests of this file at 0.01. */
+static void uniform(const double *count, int bins, double total, const char *what) {
+    double expected[4096];
+    int i;
+    for (i = 0; i < bins; i++) expected[i] = total / bins;
+    CHECK(chi2_test(count, expected, (size_t)bins, NULL, NULL) >= sidak(0.01, 20), "%s is not uniform", what);
+}
+
+static void randomisation(void) {
+    enum { BINS = 1024, DRAWS = 1 << 20 };
+    static double count[BINS];
+    uint32_t i, d, s;
+    if (mcst_case("one point over many seeds is uniform, alone and in pairs")) {
+        for (d = 0; d < 5; d++) {
+            memset(count, 0, sizeof count);
+            for (s = 0; s < DRAWS; s++) count[mcs_sobol_bits(77, d, s) >> 22]++;
+            uniform(count, BINS, DRAWS, "a point of Sobol");
+        }
+        memset(count, 0, sizeof count);
+        for (s = 0; s < DRAWS; s++) count[(mcs_sobol_bits(77, 0, s) >> 27) * 32 + (mcs_sobol_bits(77, 1, s) >> 27)]++;
+        uniform(count, BINS, DRAWS, "two dimensions of a point");
+        /* two points of one sequence: in different halves by the net, else uniform */
+        memset(count, 0, sizeof count);
+        for (s = 0; s < DRAWS; s++) count[(mcs_sobol_bits(0, 0, s) >> 27) * 32 + ((mcs_sobol_bits(1, 0, s) << 1) >> 27)]++;
+        uniform(count, BINS, DRAWS, "the second point behind its first bit");
+        memset(count, 0, sizeof count);
+        for (s = 0; s < DRAWS; s++) {
+            const mcs_vec2 p = mcs_r2(5, s);
+            count[(int)(p.x * 32) * 32 + (int)(p.y * 32)]++;
+        }
+        uniform(count, BINS, DRAWS, "a point of R2");
+    }
+    if (mcst_case("hash: bits and pairs")) {
+        memset(count, 0, sizeof count);
+        for (i = 0; i < DRAWS; i++) count[mcs_hash(i, 3) >> 22]++;
+        uniform(count, BINS, DRAWS, "the hash of a counter");
+        memset(count, 0, sizeof count);
+        for (i = 0; i < DRAWS; i++) count[(mcs_hash(i, 0) & 31) * 32 + (mcs_hash(i, 1) & 31)]++;
+        uniform(count, BINS, DRAWS, "hashes of neighbouring keys");
+    }
+}
+
+static void strata(void) {
+    static unsigned char hit[1 << 20];
+    const uint32_t sizes[][2] = {{1, 1}, {2, 3}, {16, 16}, {7, 100}, {1, 4099}, {1000, 1000}, {1u << 20, 1}};
+    uint32_t k, i;
+    for (k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
+        if (mcst_case("one point to a cell, %u x %u", sizes[k][0], sizes[k][1])) {
+            const uint32_t nx = sizes[k][0], ny = sizes[k][1];
+            int one = 1, inside = 1;
+            memset(hit, 0, sizeof hit);
+            for (i = 0; i < nx * ny; i++) {
+                const mcs_vec2 p = mcs_stratified(i, nx, ny, 9);
+                const uint32_t x = (uint32_t)((double)p.x * nx), y = (uint32_t)((double)p.y * ny);
+                inside &= p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1;
+                one &= x == i % nx && y == i / nx && !hit[y * nx + x]++;
+            }
+            CHECK(one && inside, "cells or range");
+        }
+    if (mcst_case("Latin hypercube: one point to a slab in each dimension")) {
+        uint32_t n, d;
+        for (n = 1; n < 5000; n += n < 70 ? 1 : 331)
+            for (d = 0; d < 6; d++) {
+                int one = 1;
+                memset(hit, 0, n);
+                for (i = 0; i < n; i++) {
+                    const float x = mcs_latin(i, n, d, 4);
+                    const uint32_t slab = (uint32_t)((double)x * n);
+                    one &= x >= 0 && x < 1 && slab < n && !hit[slab]++;
+                }
+                CHECK(one, "n = %u, dimension %u", n, d);
+            }
+    }
+    if (mcst_case("Latin hypercube: the slab of a point is uniform over seeds, and pairs of dimensions are independent")) {
+        enum { SLABS = 24, DRAWS = 1 << 18 };
+        static double count[SLABS * SLABS];
+        memset(count, 0, sizeof count);
+        for (i = 0; i < DRAWS; i++)
+            count[(int)(mcs_latin(7, SLABS, 0, i) * SLABS) * SLABS + (int)(mcs_latin(7, SLABS, 1, i) * SLABS)]++;
+        uniform(count, SLABS * SLABS, DRAWS, "the slab");
+    }
+    if (mcst_case("counts out of range")) {
+        const uint32_t odd[] = {0, 1u << 21, 0xffffffffu};
+        for (i = 0; i < 9; i++) {
+            const mcs_vec2 p = mcs_stratified(0xfffffff0u + i, odd[i % 3], odd[i / 3], i);
+            const float l = mcs_latin(0xfffffff0u + i, odd[i % 3], odd[i / 3], i);
+            CHECK(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1 && l >= 0 && l < 1, "%u, %u", odd[i % 3], odd[i / 3]);
+        }
+    }
+}
+
+/* Coverage of R2 in one dimension. Gaps of N points of i alpha mod 1 are at most |q_(k-1) alpha| < 1/q_k for q_k <= N < q_(k+1), the
+ * denominators of the convergents of alpha (three-gap theorem, Sos 1958); q_(k+1) <= (a_(k+1) + 1) q_k, so gap N <= a + 1 with the largest
+ * partial quotient a up to there; one more for the rounding of points to 2^-24. */
+static double gap_bound(double alpha, double n) {
+    double a = 0, q0 = 0, q1 = 1;
+    while (q1 <= n) {
+        const double part = floor(1 / alpha), q = part * q1 + q0;
+        alpha = 1 / alpha - part;
+        a = part > a ? part : a;
+        q0 = q1, q1 = q;
+    }
+    return a + 2;
+}
+static int by_value(const void *a, const void *b) {
+    const float x = *(const float *)a, y = *(const float *)b;
+    return x < y ? -1 : x > y;
+}
+static void r2_gaps(void) {
+    static float v[2][N];
+    uint32_t n, i, d;
+    if (!mcst_case("R2: no large gap in either projection")) return;
+    for (n = 16; n <= N; n *= 2) {
+        for (i = 0; i < n; i++) {
+            const mcs_vec2 p = mcs_r2(i, 11);
+            v[0][i] = p.x, v[1][i] = p.y;
+        }
+        for (d = 0; d < 2; d++) {
+            float gap;
+            qsort(v[d], n, sizeof v[d][0], by_value);
+            gap = v[d][0] + 1 - v[d][n - 1];
+            for (i = 1; i < n; i++) gap = v[d][i] - v[d][i - 1] > gap ? v[d][i] - v[d][i - 1] : gap;
+            CHECK((double)gap * n <= gap_bound(d ? 0.56984029099805327 : 0.75487766624669276, n), "%u points, dimension %u: gap %g", n, d,
+                  (double)gap);
+        }
+    }
+}
+
+static void forms(void) {
+    enum { MAX = 67 };
+    float out[MAX + 2];
+    uint32_t n, i, k, d;
+    if (mcst_case("the array form is the scalar one, every n, nothing beyond it, NULL"))
+        for (d = 0; d < 6; d++)
+            for (n = 0; n <= MAX; n++) {
+                int same = 1;
+                for (i = 0; i < MAX + 2; i++) out[i] = -7;
+                mcs_sobol_n(1000 + d, d, 5, n, out + 1);
+                mcs_sobol_n(1000 + d, d, 5, n, NULL);
+                for (i = 0; i < n; i++) same &= out[1 + i] == mcs_sobol(1000 + d + i, d, 5);
+                CHECK(same && out[0] == -7 && out[n + 1] == -7, "dimension %u, n = %u", d, n);
+            }
+#ifndef MCS_NO_WIDE
+    if (mcst_case("wide forms"))
+        for (d = 0; d < 6; d++) {
+            mcs4_u i4;
+            mcs8_u i8;
+            mcs16_u i16;
+            for (k = 0; k < 16; k++) i4[k & 3] = i8[k & 7] = i16[k] = 0;
+            for (k = 0; k < 16; k++) i16[k] = mcs_hash(k, d), i8[k & 7] = i16[k & 7], i4[k & 3] = i16[k & 3];
+            for (k = 0; k < 16; k++) {
+                CHECK(mcs16_sobol_bits(i16, d, 3)[k] == mcs_sobol_bits(i16[k], d, 3), "16 wide, dimension %u", d);
+                CHECK(mcs8_sobol_bits(i8, d, 3)[k & 7] == mcs_sobol_bits(i8[k & 7], d, 3), "8 wide, dimension %u", d);
+                CHECK(mcs4_sobol_bits(i4, d, 3)[k & 3] == mcs_sobol_bits(i4[k & 3], d, 3), "4 wide, dimension %u", d);
+                CHECK(mcs8_r2(i8, d).y[k & 7] == mcs_r2(i8[k & 7], d).y, "R2, 8 wide");
+            }
+        }
+#else
+    (void)k;
+#endif
+}
+
+/* rms error over seeds of the mean of a smooth function of two dimensions, from 2^6 to 2^14 points: the slope of its logarithm. Owen 1997:
+ * N^-1.5 up to logarithms for scrambled nets; independent points have -0.5. With 64 seeds the logarithm (base 4) of an rms has a standard
+ * deviation of 1/sqrt(2*64)/ln 4 = 0.064, the fitted slope over 5 points one of 0.064 sqrt(12/(5*24)) = 0.02: the bound of -1.3 leaves
+ * five of them to the -1.4 of the logarithms. Latin hypercubes remove what is a sum of one-dimensional terms (Stein 1987). */
+static double smooth(double x, double y) { return x * x * y + (x - 0.3) * y * y * y; }
+static const double smooth_mean = 1.0 / 6 + 0.2 / 4;
+static double slope(mcs_vec2 (*point)(uint32_t i, uint32_t n, uint32_t seed), double *last) {
+    double sx = 0, sy = 0, sxx = 0, sxy = 0, e = 0;
+    uint32_t k, n, seed, i, runs = 0;
+    for (k = 3; k <= 7; k++) {
+        n = 1u << (2 * k);
+        for (e = 0, seed = 0; seed < 64; seed++) {
+            double m = 0;
+            for (i = 0; i < n; i++) {
+                const mcs_vec2 p = point(i, n, seed);
+                m += smooth((double)p.x, (double)p.y);
+            }
+            m = m / n - smooth_mean;
+            e += m * m;
+        }
+        e = sqrt(e / 64);
+        sx += k, sy += log(e) / log(4), sxx += k * (double)k, sxy += k * log(e) / log(4), runs++;
+    }
+    *last = e;
+    return (runs * sxy - sx * sy) / (runs * sxx - sx * sx);
+}
+static mcs_vec2 by_sobol(uint32_t i, uint32_t n, uint32_t seed) {
+    mcs_vec2 p;
+    (void)n;
+    p.x = mcs_sobol(i, 0, seed), p.y = mcs_sobol(i, 1, seed);
+    return p;
+}
+static mcs_vec2 by_sobol_23(uint32_t i, uint32_t n, uint32_t seed) {
+    mcs_vec2 p;
+    (void)n;
+    p.x = mcs_sobol(i, 2, seed), p.y = mcs_sobol(i, 3, seed);
+    return p;
+}
+static mcs_vec2 by_strata(uint32_t i, uint32_t n, uint32_t seed) {
+    uint32_t side = 1;
+    while (side * side < n) side *= 2;
+    return mcs_stratified(i, side, side, seed);
+}
+static mcs_vec2 by_latin(uint32_t i, uint32_t n, uint32_t seed) {
+    mcs_vec2 p;
+    p.x = mcs_latin(i, n, 0, seed), p.y = mcs_latin(i, n, 1, seed);
+    return p;
+}
+static mcs_vec2 by_r2(uint32_t i, uint32_t n, uint32_t seed) {
+    (void)n;
+    return mcs_r2(i, seed);
+}
+static mcs_vec2 by_philox(uint32_t i, uint32_t n, uint32_t seed) {
+    const mcs_philox4 v = mcs_philox(seed, i, n);
+    mcs_vec2 p;
+    p.x = mcs_u01(v.v[0]), p.y = mcs_u01(v.v[1]);
+    return p;
+}
+static void rates(void) {
+    double sobol, pair, strata_error, latin, r2, independent, s;
+    if (!mcst_case("rates on a smooth integrand")) return;
+    s = slope(by_sobol, &sobol);
+    CHECK(s <= -1.3, "Sobol 0, 1: N^%.2f", s);
+    s = slope(by_sobol_23, &pair);
+    CHECK(s <= -1.3, "Sobol 2, 3: N^%.2f", s);
+    s = slope(by_strata, &strata_error); /* one point to a cell: the variance is that within cells, N^-2, so N^-1 */
+    CHECK(fabs(s + 1) <= 0.1, "stratified: N^%.2f", s);
+    s = slope(by_r2, &r2);
+    CHECK(s <= -0.54, "R2: N^%.2f", s); /* N^-1, but for a factor up to a + 1 = 13 between good and bad N: 1 - ln 13 / ln 2^8 */
+    s = slope(by_philox, &independent);
+    CHECK(fabs(s + 0.5) <= 0.1, "independent: N^%.2f", s);
+    s = slope(by_latin, &latin);
+    CHECK(fabs(s + 0.5) <= 0.1 && latin < 0.6 * independent, "Latin hypercube: N^%.2f, error %g of %g", s, latin, independent);
+}
+
+int main(int argc, char **argv) {
+    mcst_start(argc, argv);
+    mcst_group("points, nets");
+    nets();
+    mcst_group("points, randomisation");
+    randomisation();
+    mcst_group("points, strata");
+    strata();
+    r2_gaps();
+    mcst_group("points, forms");
+    forms();
+    mcst_group("points, rates");
+    rates();
+    return mcst_finish();
+}
