@@ -187,6 +187,9 @@ typedef int32_t mcs16_i __attribute__((vector_size(64), aligned(16)));
 typedef uint32_t mcs4_u __attribute__((vector_size(16)));
 typedef uint32_t mcs8_u __attribute__((vector_size(32), aligned(16)));
 typedef uint32_t mcs16_u __attribute__((vector_size(64), aligned(16)));
+typedef uint64_t mcsi4_q __attribute__((vector_size(16)));
+typedef uint64_t mcsi8_q __attribute__((vector_size(32), aligned(16)));
+typedef uint64_t mcsi16_q __attribute__((vector_size(64), aligned(16)));
 typedef double mcsi4_d __attribute__((vector_size(32), aligned(16)));
 typedef double mcsi8_d __attribute__((vector_size(64), aligned(16)));
 typedef double mcsi16_d __attribute__((vector_size(128), aligned(16)));
@@ -299,6 +302,7 @@ typedef double mcsi_d;
 #define MCSI_I mcs4_i
 #define MCSI_U mcs4_u
 #define MCSI_D mcsi4_d
+#define MCSI_Q mcsi4_q
 #include MCS_SELF
 
 #define MCSI_W 8
@@ -311,6 +315,7 @@ typedef double mcsi_d;
 #define MCSI_I mcs8_i
 #define MCSI_U mcs8_u
 #define MCSI_D mcsi8_d
+#define MCSI_Q mcsi8_q
 #if defined(MCSI_X86) && defined(__AVX__)
 #define MCSI_AVX
 #endif
@@ -326,6 +331,7 @@ typedef double mcsi_d;
 #define MCSI_I mcs16_i
 #define MCSI_U mcs16_u
 #define MCSI_D mcsi16_d
+#define MCSI_Q mcsi16_q
 #if defined(MCSI_X86) && defined(__AVX512F__)
 #define MCSI_AVX512
 #endif
@@ -346,6 +352,7 @@ typedef double mcsi_d;
 #define MCSI_I mcs8_i
 #define MCSI_U mcs8_u
 #define MCSI_D mcsi8_d
+#define MCSI_Q mcsi8_q
 #define MCSI_AVX
 #include MCS_SELF
 #if defined(__clang__)
@@ -370,6 +377,7 @@ typedef double mcsi_d;
 #define MCSI_I mcs16_i
 #define MCSI_U mcs16_u
 #define MCSI_D mcsi16_d
+#define MCSI_Q mcsi16_q
 #define MCSI_AVX512
 #include MCS_SELF
 #if defined(__clang__)
@@ -775,29 +783,72 @@ MCS_FN void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
         if (out) out[i] = u;
     }
 }
+#endif
 
-MCS_FN mcs_philox4 mcs_philox(uint64_t key, uint64_t counter_lo, uint64_t counter_hi) {
+#if MCSI_W == 1
+MCSI_FN void mcsi_mul_wide(uint32_t a, uint32_t k, uint32_t *hi, uint32_t *lo) {
+    const uint64_t p = (uint64_t)a * k;
+    *hi = (uint32_t)(p >> 32), *lo = (uint32_t)p;
+}
+#else
+/* 64-bit products of the lower halves of 64-bit lanes; gcc does not see that the upper halves are 0. */
+#if defined(MCSI_X86) && !defined(__clang__) && MCSI_W == 4
+#define MCSI_MUL_HALVES(a, b) ((MCSI_Q)__builtin_ia32_pmuludq128((MCSI_I)(a), (MCSI_I)(b)))
+#elif defined(MCSI_AVX) && defined(MCSI_LOOPS) && !defined(__clang__) /* the passes with loops have AVX2 */
+#define MCSI_MUL_HALVES(a, b) ((MCSI_Q)__builtin_ia32_pmuludq256((MCSI_I)(a), (MCSI_I)(b)))
+#elif defined(MCSI_AVX512) && !defined(__clang__)
+typedef long long MCSI_(any) __attribute__((vector_size(64)));
+#define MCSI_MUL_HALVES(a, b) ((MCSI_Q)__builtin_ia32_pmuludq512_mask((MCSI_I)(a), (MCSI_I)(b), (MCSI_(any))(a), 255))
+#else
+#define MCSI_MUL_HALVES(a, b) (((a)&0xffffffffu) * ((b)&0xffffffffu))
+#endif
+MCSI_FN void MCSI_(mul_wide)(MCSI_U a, uint32_t k, MCSI_U *hi, MCSI_U *lo) {
+    const MCSI_Q all = (MCSI_Q)a, zero = {0}, factor = zero + k;
+    const MCSI_Q p = MCSI_MUL_HALVES(all, factor), q = MCSI_MUL_HALVES(all >> 32, factor);
+    *hi = (MCSI_U)((p >> 32) | (q & ~(uint64_t)0xffffffffu)), *lo = (MCSI_U)((p & 0xffffffffu) | (q << 32));
+}
+#undef MCSI_MUL_HALVES
+#endif
+/* The ten rounds on a block of four words. */
+MCSI_FN void MCSI_(philox_rounds)(uint64_t key, MCSI_U v[4]) {
     uint32_t k0 = (uint32_t)key, k1 = (uint32_t)(key >> 32);
-    mcs_philox4 c;
     int round;
+    for (round = 0; round < 10; round++, k0 += 0x9e3779b9u, k1 += 0xbb67ae85u) {
+        MCSI_U hi0, lo0, hi2, lo2;
+        MCSI_(mul_wide)(v[0], 0xd2511f53u, &hi0, &lo0);
+        MCSI_(mul_wide)(v[2], 0xcd9e8d57u, &hi2, &lo2);
+        v[0] = hi2 ^ v[1] ^ k0, v[1] = lo2, v[2] = hi0 ^ v[3] ^ k1, v[3] = lo0;
+    }
+}
+#if MCSI_W == 1
+MCS_FN mcs_philox4 mcs_philox(uint64_t key, uint64_t counter_lo, uint64_t counter_hi) {
+    mcs_philox4 c;
     c.v[0] = (uint32_t)counter_lo, c.v[1] = (uint32_t)(counter_lo >> 32);
     c.v[2] = (uint32_t)counter_hi, c.v[3] = (uint32_t)(counter_hi >> 32);
-    for (round = 0; round < 10; round++) {
-        uint64_t a = (uint64_t)0xd2511f53u * c.v[0], b = (uint64_t)0xcd9e8d57u * c.v[2];
-        c.v[0] = (uint32_t)(b >> 32) ^ c.v[1] ^ k0, c.v[1] = (uint32_t)b;
-        c.v[2] = (uint32_t)(a >> 32) ^ c.v[3] ^ k1, c.v[3] = (uint32_t)a;
-        k0 += 0x9e3779b9u, k1 += 0xbb67ae85u;
-    }
+    mcsi_philox_rounds(key, c.v);
     return c;
 }
-MCS_FN void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *out) {
-    size_t i = 0;
-    for (; out && i < n; counter++) {
-        mcs_philox4 block = mcs_philox(key, counter, 0);
-        int k;
-        for (k = 0; k < 4 && i < n; k++) out[i++] = mcs_u01(block.v[k]);
+#endif
+#ifndef MCS_NO_BATCH
+/* A lane is a block: 4 W numbers, turned from lanes of words into blocks of words on the way to the array. */
+MCSI_FN void MCSI_(philox_blocks)(uint64_t key, uint64_t counter, float *out) {
+    MCSI_U v[4];
+    float words[4][MCSI_W];
+    int k, lane;
+    for (lane = 0; lane < MCSI_W; lane++) {
+        MCSI_LANE(v[0], lane) = (uint32_t)(counter + (unsigned)lane);
+        MCSI_LANE(v[1], lane) = (uint32_t)((counter + (unsigned)lane) >> 32);
     }
+    v[3] = v[2] = v[0] & 0u;
+    MCSI_(philox_rounds)(key, v);
+    for (k = 0; k < 4; k++) MCSI_(store)(words[k], MCS_(u01)(v[k]));
+    for (lane = 0; lane < MCSI_W; lane++, out += 4)
+        out[0] = words[0][lane], out[1] = words[1][lane], out[2] = words[2][lane], out[3] = words[3][lane];
 }
+MCSI_BATCH(philox_fill_n, (uint64_t key, uint64_t counter, size_t n, float *out), (key, counter, n, out), float rest[4 * MCSI_W];
+           if (!out) return;
+           for (; n >= 4 * MCSI_W; n -= 4 * MCSI_W, out += 4 * MCSI_W, counter += MCSI_W) MCSI_(philox_blocks)(key, counter, out);
+           if (n) MCSI_(philox_blocks)(key, counter, rest), memcpy(out, rest, n * sizeof(float));)
 #endif
 
 /* ==== [points] well-spread points instead of independent ones ==================================================================
@@ -2804,6 +2855,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_I
 #undef MCSI_U
 #undef MCSI_D
+#undef MCSI_Q
 #undef MCSI_LANE
 #undef MCSI_WIDEN
 #undef MCSI_NARROW

@@ -194,7 +194,8 @@ for c in $compilers; do
     [ -s "$dir/symbols" ] && [ -z "$names" ]
     check $? "$c: every symbol starts with mcs_ or mcsi_" $names
 done
-names=$(grep -F mcsample.h "$dir/aux.none" | grep -E ':[NOI]F' | grep -vE '[ *]mcsi?[0-9]*_[A-Za-z0-9_]* \(')
+names=$(grep -F mcsample.h "$dir/aux.none" | sed -nE -e 's/; \/\* .*//' -e 's/^\/\* [^ ]*:[0-9]+:[NOI]F \*\/ [^(]*[ *]([A-Za-z0-9_]+) \(.*/\1/p' |
+    grep -vE '^mcsi?[0-9]*_')
 check "$([ -z "$names" ]; echo $?)" "every function, static ones included, starts with mcs_ or mcsi_" $names
 
 # --- macros and included headers
