@@ -1,6 +1,7 @@
 # mcsample.h is one header: nothing here has to be built to use it. This file builds what proves it and what shows it.
 #
-# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), DESTDIR; for tests also FILTER=text, SEED=number and
+# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), DESTDIR; MAPS (.hdr files for the
+# benchmark, none); for tests also FILTER=text, SEED=number and
 # MCS_TEST_SCALE=0.05 (scales the sample counts of the statistical tests; 1 is the count that the tolerances are meant for).
 
 CFLAGS ?= -O2
@@ -65,7 +66,7 @@ install: ## copy the header and a pkg-config file to DESTDIR/PREFIX
 		'Cflags: -I$${includedir}' 'Libs: -lm' > "$(DESTDIR)$(PREFIX)"/lib/pkgconfig/mcsample.pc
 
 help: ## this list
-	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/    make \1\t\2/p' Makefile | expand -t 22
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/    make \1\t\2/p' Makefile | expand -t 22
 
 clean: ## remove everything that was built
 	rm -rf $(BUILD)
@@ -93,5 +94,46 @@ $(BUILD)/tests/timing-avx2: tests/timing.c mcsample.h $(BUILD)/flags
 # The tests demand the same bits from every width; the header promises them where a*b+c is not contracted.
 $(TEST_BINS): EXACT = -ffp-contract=off
 
+# ---- benchmarks: what a user's build gives, -O2 without -march. Everything below $(BUILD)/bench.
+BENCH = $(BUILD)/bench
+BENCH_FLAGS = $(CFLAGS) -std=gnu17 $(WARNINGS) -Wno-unused-function -I. -Itests -Itests/bench -DBENCH_FLAGS='"$(CFLAGS) -std=gnu17"'
+# $(1) where the compiler takes it, else nothing: then the processor has no such unit, and the forms that want it are skipped.
+BENCH_TAKES = $(shell $(CC) $(1) -E -x c /dev/null >/dev/null 2>&1 && echo '$(1)')
+# Rows of SLEEF, where its development files are installed.
+BENCH_SLEEF = $(shell mkdir -p $(BENCH) && printf '\043include <sleef.h>\nint main(void) { return Sleef_expf8_u10avx2 == 0; }\n' | \
+	$(CC) -mavx2 -x c - -o $(BENCH)/sleef.probe -lsleef 2>/dev/null && echo -DBENCH_SLEEF)
+BENCH_HEADERS = mcsample.h $(wildcard tests/*.h tests/bench/*.h) $(BUILD)/flags
+BENCH_BINS = $(BENCH)/throughput $(BENCH)/tables $(BENCH)/clock $(BENCH)/convergence
+
+bench: bench-binaries ## run time against error: CSV files and plots in build/bench, tables here; a few minutes
+	@$(BENCH)/throughput --out $(BENCH)
+	@$(BENCH)/tables --out $(BENCH)
+	@CLOCK=$(BENCH)/clock sh tests/bench/include.sh $(BENCH)
+	@$(BENCH)/convergence --out $(BENCH) $(MAPS)
+
+bench-quick: bench-binaries ## the same with less repetition and smaller tables, about 30 s
+	@$(BENCH)/throughput --quick --out $(BENCH)
+	@$(BENCH)/tables --quick --out $(BENCH)
+	@CLOCK=$(BENCH)/clock sh tests/bench/include.sh $(BENCH) quick
+	@$(BENCH)/convergence --quick --out $(BENCH) $(MAPS)
+
+bench-binaries:
+	+@$(SUBMAKE) $(BENCH_BINS)
+
+$(BENCH)/wide8.o: tests/bench/wide.c $(BENCH_HEADERS)
+	@mkdir -p $(@D)
+	$(CC) $(BENCH_FLAGS) -DBENCH_W=8 $(BENCH_SLEEF) $(call BENCH_TAKES,-mavx2 -mfma) -c $< -o $@
+
+$(BENCH)/wide16.o: tests/bench/wide.c $(BENCH_HEADERS)
+	@mkdir -p $(@D)
+	$(CC) $(BENCH_FLAGS) -DBENCH_W=16 $(call BENCH_TAKES,-mavx512f -mavx512dq -mavx512bw -mavx512vl) -c $< -o $@
+
+$(BENCH)/throughput: tests/bench/throughput.c $(BENCH)/wide8.o $(BENCH)/wide16.o $(BENCH_HEADERS)
+	$(CC) $(BENCH_FLAGS) $< $(BENCH)/wide8.o $(BENCH)/wide16.o -o $@ $(if $(BENCH_SLEEF),-lsleef) $(LIBS)
+
+$(BENCH)/%: tests/bench/%.c $(BENCH_HEADERS)
+	@mkdir -p $(@D)
+	$(CC) $(BENCH_FLAGS) $< -o $@ $(LIBS)
+
 FORCE:
-.PHONY: test examples demo time hygiene selftest install help clean test-binaries example-binaries FORCE
+.PHONY: test examples demo time hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries

@@ -102,7 +102,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define MCS_VERSION 000100 /* major * 10000 + minor * 100 + patch, as digits */
+#define MCS_VERSION 100 /* major * 10000 + minor * 100 + patch */
 #define MCS_VERSION_STRING "0.1.0"
 
 /* ---- configuration: define before the include --------------------------------------------------------------------------------
@@ -217,6 +217,7 @@ typedef struct {
     const float *in[MCSI_IN_MAX];
     float *out[MCSI_OUT_MAX], *rest_out[MCSI_OUT_MAX];
     size_t n, i, rest;
+    int more;
     float in_copy[MCSI_IN_MAX][MCSI_LANES_MAX], out_copy[MCSI_OUT_MAX][MCSI_LANES_MAX];
 } mcsi_batch;
 
@@ -256,7 +257,10 @@ MCS_FN
     b->rest = rest, b->i = 0, b->n = lanes;
     return 1;
 }
-#define MCSI_EACH(b) for (; (b).i + MCSI_W <= (b).n || mcsi_batch_rest(&(b), MCSI_W); (b).i += MCSI_W)
+/* Two loops, so that the inner one has a plain head: gcc then takes divisions and roots that are constant in the batch out of it. */
+#define MCSI_EACH(b)                                                       \
+    for ((b).more = 1; (b).more; (b).more = mcsi_batch_rest(&(b), MCSI_W)) \
+        for (; (b).i + MCSI_W <= (b).n; (b).i += MCSI_W)
 #define MCSI_IN(b, k) MCSI_(load)((b).in[k] + (b).i)
 #define MCSI_OUT(b, k, v) (void)((b).out[k] ? (MCSI_(store)((b).out[k] + (b).i, v), 0) : 0)
 #endif
@@ -394,12 +398,20 @@ typedef double mcsi_d;
  * F, I, U stand for the float, int32 and uint32 lanes of the pass. Masks are lanes of I: 0 or 1 in the scalar pass, 0 or -1 in the
  * others, so `&` and `|` join them and nothing else may be done with them. */
 
+/* MCSI_FN before public functions of every width, MCSI_CORE before their parts, which compilers would leave as calls that return structs
+ * through memory. */
 #if MCSI_W == 1
 #define MCSI_FN MCS_FN
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define MCSI_CORE __attribute__((always_inline, unused)) static inline
+#else
+#define MCSI_CORE MCS_FN
+#endif
 #define MCSI_REQUIRE(ok) MCS_ASSERT(ok)
 #else
 #define MCSI_REQUIRE(ok) ((void)0)
 #define MCSI_FN __attribute__((always_inline, unused)) static inline
+#define MCSI_CORE MCSI_FN
 #endif
 
 /* Array forms: MCSI_BATCH(x_n, (parameters), (arguments), body) defines the loop in the passes that the `_n` forms use, and in the
@@ -442,63 +454,61 @@ typedef double mcsi_d;
 /* ---- lanes: what C has no operator for --------------------------------------------------------------------------------------- */
 
 #if MCSI_W == 1
-MCSI_FN float mcsi_set(float x) { return x; }
-MCSI_FN float mcsi_load(const float *p) { return *p; }
-MCSI_FN void mcsi_store(float *p, float x) { *p = x; }
-MCSI_FN int32_t mcsi_bits(float x) {
+MCSI_CORE float mcsi_set(float x) { return x; }
+MCSI_CORE float mcsi_load(const float *p) { return *p; }
+MCSI_CORE void mcsi_store(float *p, float x) { *p = x; }
+MCSI_CORE int32_t mcsi_bits(float x) {
     int32_t i;
     memcpy(&i, &x, sizeof i);
     return i;
 }
-MCSI_FN float mcsi_from_bits(int32_t i) {
+MCSI_CORE float mcsi_from_bits(int32_t i) {
     float x;
     memcpy(&x, &i, sizeof x);
     return x;
 }
-MCSI_FN int32_t mcsi_trunc(float x) { return (int32_t)x; }
-MCSI_FN float mcsi_to_float(int32_t i) { return (float)i; }
+MCSI_CORE int32_t mcsi_trunc(float x) { return (int32_t)x; }
+MCSI_CORE float mcsi_to_float(int32_t i) { return (float)i; }
 #define MCSI_LANE(x, k) (*(&(x) + (k)))
 #define MCSI_WIDEN(x) ((double)(x))
 #define MCSI_NARROW(x) ((float)(x))
-MCSI_FN float mcsi_sel(int32_t m, float a, float b) { return m ? a : b; }
-MCSI_FN float mcsi_max(float a, float b) { return a > b ? a : b; }
-MCSI_FN float mcsi_min(float a, float b) { return a < b ? a : b; }
+MCSI_CORE float mcsi_sel(int32_t m, float a, float b) { return m ? a : b; }
+MCSI_CORE float mcsi_max(float a, float b) { return a > b ? a : b; }
+MCSI_CORE float mcsi_min(float a, float b) { return a < b ? a : b; }
 #else
-MCSI_FN MCSI_F MCSI_(set)(float x) {
+MCSI_CORE MCSI_F MCSI_(set)(float x) {
     MCSI_F zero = {0.0f};
     return x - zero;
 }
-MCSI_FN MCSI_F MCSI_(load)(const float *p) {
-    MCSI_F v;
-    memcpy(&v, p, sizeof v);
-    return v;
-}
-MCSI_FN void MCSI_(store)(float *p, MCSI_F v) { memcpy(p, &v, sizeof v); }
-MCSI_FN MCSI_I MCSI_(bits)(MCSI_F x) { return (MCSI_I)x; }
-MCSI_FN MCSI_F MCSI_(from_bits)(MCSI_I i) { return (MCSI_F)i; }
-MCSI_FN MCSI_I MCSI_(trunc)(MCSI_F x) { return __builtin_convertvector(x, MCSI_I); }
-MCSI_FN MCSI_F MCSI_(to_float)(MCSI_I i) { return __builtin_convertvector(i, MCSI_F); }
+/* Through a type that may lie anywhere: gcc 12 copies by memcpy in pieces of 16 bytes, and the vector then waits for them. */
+typedef float MCSI_(anywhere) __attribute__((vector_size(4 * MCSI_W), aligned(4), may_alias));
+MCSI_CORE MCSI_F MCSI_(load)(const float *p) { return *(const MCSI_(anywhere) *)(const void *)p; }
+MCSI_CORE void MCSI_(store)(float *p, MCSI_F v) { *(MCSI_(anywhere) *)(void *)p = v; }
+MCSI_CORE MCSI_I MCSI_(bits)(MCSI_F x) { return (MCSI_I)x; }
+MCSI_CORE MCSI_F MCSI_(from_bits)(MCSI_I i) { return (MCSI_F)i; }
+MCSI_CORE MCSI_I MCSI_(trunc)(MCSI_F x) { return __builtin_convertvector(x, MCSI_I); }
+MCSI_CORE MCSI_F MCSI_(to_float)(MCSI_I i) { return __builtin_convertvector(i, MCSI_F); }
 #define MCSI_LANE(x, k) ((x)[k])
 #define MCSI_WIDEN(x) __builtin_convertvector(x, MCSI_D) /* to double and back; macros, as no unit passes so wide a vector */
 #define MCSI_NARROW(x) __builtin_convertvector(x, MCSI_F)
-MCSI_FN MCSI_F MCSI_(sel)(MCSI_I m, MCSI_F a, MCSI_F b) { return (MCSI_F)(((MCSI_I)a & m) | ((MCSI_I)b & ~m)); }
+MCSI_CORE MCSI_F MCSI_(sel)(MCSI_I m, MCSI_F a, MCSI_F b) { return (MCSI_F)(((MCSI_I)a & m) | ((MCSI_I)b & ~m)); }
 #if defined(MCSI_X86) && MCSI_W == 4
-MCSI_FN MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps(a, b); }
-MCSI_FN MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps(a, b); }
+MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps(a, b); }
+MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps(a, b); }
 #elif defined(MCSI_AVX)
-MCSI_FN MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps256(a, b); }
-MCSI_FN MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps256(a, b); }
+MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps256(a, b); }
+MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps256(a, b); }
 #elif defined(MCSI_AVX512) && defined(__clang__)
-MCSI_FN MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps512(a, b, 4); }
-MCSI_FN MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps512(a, b, 4); }
+MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps512(a, b, 4); }
+MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps512(a, b, 4); }
 #elif defined(MCSI_AVX512)
-MCSI_FN MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps512_mask(a, b, a, -1, 4); }
-MCSI_FN MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps512_mask(a, b, a, -1, 4); }
+MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps512_mask(a, b, a, -1, 4); }
+MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps512_mask(a, b, a, -1, 4); }
 #else
-MCSI_FN MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return MCSI_(sel)(a > b, a, b); }
-MCSI_FN MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return MCSI_(sel)(a < b, a, b); }
+MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return MCSI_(sel)(a > b, a, b); }
+MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return MCSI_(sel)(a < b, a, b); }
 #endif
-MCSI_FN MCSI_F MCSI_(sqrt)(MCSI_F x) {
+MCSI_CORE MCSI_F MCSI_(sqrt)(MCSI_F x) {
 #if defined(MCSI_ELEMENTWISE_SQRT)
     return __builtin_elementwise_sqrt(x);
 #elif defined(MCSI_X86) && MCSI_W == 4
@@ -525,45 +535,54 @@ MCSI_FN MCSI_F MCSI_(sqrt)(MCSI_F x) {
 #endif
 
 /* Bitwise choice, m = 0 or -1 (all bits): for choices that a branch predictor could not learn. */
-MCSI_FN MCSI_F MCSI_(blend)(MCSI_I m, MCSI_F a, MCSI_F b) { return MCSI_(from_bits)((MCSI_(bits)(a) & m) | (MCSI_(bits)(b) & ~m)); }
-MCSI_FN MCSI_F MCSI_(abs)(MCSI_F x) { return MCSI_(from_bits)(MCSI_(bits)(x) & 0x7fffffff); }
-MCSI_FN MCSI_F MCSI_(with_sign)(MCSI_F magnitude, MCSI_F sign) {
+MCSI_CORE MCSI_F MCSI_(blend)(MCSI_I m, MCSI_F a, MCSI_F b) {
+    return MCSI_(from_bits)((MCSI_(bits)(a) & m) | (MCSI_(bits)(b) & ~m));
+}
+MCSI_CORE MCSI_F MCSI_(abs)(MCSI_F x) { return MCSI_(from_bits)(MCSI_(bits)(x) & 0x7fffffff); }
+MCSI_CORE MCSI_F MCSI_(with_sign)(MCSI_F magnitude, MCSI_F sign) {
     return MCSI_(from_bits)((MCSI_(bits)(magnitude) & 0x7fffffff) | (MCSI_(bits)(sign) & (-0x7fffffff - 1)));
 }
 /* A random number made safe: its value clamped into [0, 1 - 2^-24], NaN to 0; *ok keeps only lanes that were in [0,1). */
-MCSI_FN MCSI_F MCSI_(unit)(MCSI_F u, MCSI_I *ok) {
+MCSI_CORE MCSI_F MCSI_(unit)(MCSI_F u, MCSI_I *ok) {
     MCSI_F v = MCSI_(min)(MCSI_(max)(u, MCSI_(set)(0.0f)), MCSI_(set)(0.99999994f));
     *ok = *ok & (v == u);
     return v;
 }
 /* A density or weight made safe: x where ok and x > 0 (so not NaN), at most FLT_MAX, else 0. */
-MCSI_FN MCSI_F MCSI_(keep)(MCSI_I ok, MCSI_F x) {
+MCSI_CORE MCSI_F MCSI_(keep)(MCSI_I ok, MCSI_F x) {
     return MCSI_(sel)(ok & (x > 0.0f), MCSI_(min)(x, MCSI_(set)(FLT_MAX)), MCSI_(set)(0.0f));
 }
 /* A parameter made safe: x within [lo, hi] where x > 0 or x >= 0 holds as `ok` says, else `lo`. */
-MCSI_FN MCSI_F MCSI_(within)(MCSI_I ok, MCSI_F x, float lo, float hi) {
+MCSI_CORE MCSI_F MCSI_(within)(MCSI_I ok, MCSI_F x, float lo, float hi) {
     return MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(x, MCSI_(set)(lo)), MCSI_(set)(hi)), MCSI_(set)(lo));
 }
 /* Lengths, rates and radii whose squares and inverses are floats. */
-MCSI_FN MCSI_I MCSI_(scale_ok)(MCSI_F scale) { return (scale >= 1e-18f) & (scale <= 1e18f); }
-MCSI_FN MCSI_I MCSI_(always)(void) { return MCSI_(set)(0.0f) == MCSI_(set)(0.0f); }
+MCSI_CORE MCSI_I MCSI_(scale_ok)(MCSI_F scale) { return (scale >= 1e-18f) & (scale <= 1e18f); }
+MCSI_CORE MCSI_I MCSI_(always)(void) { return MCSI_(set)(0.0f) == MCSI_(set)(0.0f); }
 
 /* ---- vector maths: own polynomials, the same in every width ------------------------------------------------------------------
- * Minimax fits with float coefficients. Errors in ulp, over every float of the range (tests/test_math.c). */
+ * Minimax fits with float coefficients, summed in pairs (Estrin), as a scalar caller waits for the longest chain of operations. Errors in ulp, over every float of the range (tests/test_math.c). */
 
 /* clang-format off */
-/* (sin, cos)(2 pi t), t in [-1/8, 1]. The reduction to an eighth of a turn is exact. 1.3 and 1.0 ulp. */
-MCSI_FN void MCSI_(sincos_turns)(MCSI_F t, MCSI_F *sine, MCSI_F *cosine) {
+/* (sin, cos)(2 pi t), t in [-1/8, 1]. The reduction to an eighth of a turn is exact. 1.4 ulp. *behind is set within an eighth of half a
+ * turn, where *one_plus is 1 + cos without its cancellation. */
+MCSI_CORE void MCSI_(sincos_behind)(MCSI_F t, MCSI_F *sine, MCSI_F *cosine, MCSI_I *behind, MCSI_F *one_plus) {
     MCSI_I k = MCSI_(trunc)(4.0f * t + 0.5f), swap = -(k & 1);
-    MCSI_F r = t - 0.25f * MCSI_(to_float)(k), z = r * r;
-    MCSI_F s = r * (6.28318548f + (-1.95191802e-07f + z * (-41.3416634f + z * (81.5926895f + z * -75.4075546f))));
-    MCSI_F c = 1.0f + z * (-19.7392082f + z * (64.9391479f + z * (-85.4245148f + z * 58.6202126f)));
+    MCSI_F r = t - 0.25f * MCSI_(to_float)(k), z = r * r, zz = z * z;
+    MCSI_F s = r * (6.28318548f + ((-1.95191802e-07f + z * -41.3416634f) + zz * (81.5926895f + z * -75.4075546f)));
+    MCSI_F less = z * ((-19.7392082f + z * 64.9391479f) + zz * (-85.4245148f + z * 58.6202126f)), c = 1.0f + less;
     *sine = MCSI_(from_bits)(MCSI_(bits)(MCSI_(blend)(swap, c, s)) ^ (MCSI_I)((MCSI_U)(k & 2) << 30));
     *cosine = MCSI_(from_bits)(MCSI_(bits)(MCSI_(blend)(swap, s, c)) ^ (MCSI_I)((MCSI_U)((k + 1) & 2) << 30));
+    *behind = k == 2, *one_plus = -less;
+}
+MCSI_CORE void MCSI_(sincos_turns)(MCSI_F t, MCSI_F *sine, MCSI_F *cosine) {
+    MCSI_I behind;
+    MCSI_F one_plus;
+    MCSI_(sincos_behind)(t, sine, cosine, &behind, &one_plus);
 }
 
 /* atan2(y, x) in turns, [0, 1 - 2^-24]; (0, 0) gives 0. Absolute error below 2^-23 turns, relative 1e-7 in the first octant. */
-MCSI_FN MCSI_F MCSI_(atan2_turns)(MCSI_F y, MCSI_F x) {
+MCSI_CORE MCSI_F MCSI_(atan2_turns)(MCSI_F y, MCSI_F x) {
     MCSI_F ax = MCSI_(abs)(x), ay = MCSI_(abs)(y), big = MCSI_(max)(ax, ay);
     MCSI_F a = MCSI_(min)(ax, ay) / MCSI_(max)(big, MCSI_(set)(FLT_MIN)), z = a * a;
     MCSI_F t = a * (0.159154937f + z * (-0.0530508421f + z * (0.0318125151f + z * (-0.0225589965f + z * (0.016769575f +
@@ -575,40 +594,40 @@ MCSI_FN MCSI_F MCSI_(atan2_turns)(MCSI_F y, MCSI_F x) {
 }
 
 /* ln(w + c) for w in [FLT_MIN, 1e38] and a correction |c| <= ulp(w). 1 ulp. */
-MCSI_FN MCSI_F MCSI_(log_of_sum)(MCSI_F w, MCSI_F c) {
+MCSI_CORE MCSI_F MCSI_(log_of_sum)(MCSI_F w, MCSI_F c) {
     MCSI_I i = MCSI_(bits)(w), k = (i - 0x3f3504f3) >> 23;
     MCSI_F m = MCSI_(from_bits)(i - (MCSI_I)((MCSI_U)k << 23)), e = MCSI_(to_float)(k);
     MCSI_F f = (m - 1.0f) + c * MCSI_(from_bits)((127 - k) << 23), ff = f * f;
-    MCSI_F p = 0.333333313f + f * (-0.250008196f + f * (0.200012416f + f * (-0.166234091f + f * (0.142015815f +
-               f * (-0.131596133f + f * (0.127621993f + f * -0.0763639957f))))));
+    MCSI_F p = ((0.333333313f + f * -0.250008196f) + ff * (0.200012416f + f * -0.166234091f)) +
+               ff * ff * ((0.142015815f + f * -0.131596133f) + ff * (0.127621993f + f * -0.0763639957f));
     return e * 0.693145752f + (f + (e * 1.42860677e-06f + (f * ff * p - 0.5f * ff)));
 }
 /* ln(x), normal x > 0. */
-MCSI_FN MCSI_F MCSI_(log)(MCSI_F x) { return MCSI_(log_of_sum)(x, MCSI_(set)(0.0f)); }
+MCSI_CORE MCSI_F MCSI_(log)(MCSI_F x) { return MCSI_(log_of_sum)(x, MCSI_(set)(0.0f)); }
 /* ln(1 + x), x in (-1, 1e38]. */
-MCSI_FN MCSI_F MCSI_(log1p)(MCSI_F x) {
+MCSI_CORE MCSI_F MCSI_(log1p)(MCSI_F x) {
     MCSI_F w = 1.0f + x;
     return MCSI_(log_of_sum)(w, x - (w - 1.0f));
 }
 
 /* The reduction of both exponentials, x in [-104, 0]: returns e^r - 1 for r = x - k ln 2, |r| <= ln(2)/2. */
-MCSI_FN MCSI_F MCSI_(exp_reduced)(MCSI_F x, MCSI_I *k) {
-    MCSI_F e, r;
+MCSI_CORE MCSI_F MCSI_(exp_reduced)(MCSI_F x, MCSI_I *k) {
+    MCSI_F e, r, rr;
     *k = MCSI_(trunc)(x * 1.44269504f - 0.5f);
     e = MCSI_(to_float)(*k);
     r = (x - e * 0.693145752f) - e * 1.42860677e-06f;
-    return r + r * r * (0.5f + r * (0.166666657f + r * (0.0416664928f + r * (0.00833354425f +
-                        r * (0.00139323424f + r * 0.00019763397f)))));
+    rr = r * r;
+    return r + rr * ((0.5f + r * 0.166666657f) + rr * ((0.0416664928f + r * 0.00833354425f) + rr * (0.00139323424f + r * 0.00019763397f)));
 }
 /* e^min(x, 0), subnormal results included; NaN gives 0. 1 ulp. */
-MCSI_FN MCSI_F MCSI_(exp_neg)(MCSI_F x) {
+MCSI_CORE MCSI_F MCSI_(exp_neg)(MCSI_F x) {
     MCSI_I k, half;
     MCSI_F q = MCSI_(exp_reduced)(MCSI_(min)(MCSI_(max)(x, MCSI_(set)(-104.0f)), MCSI_(set)(0.0f)), &k);
     half = k >> 1;
     return (1.0f + q) * MCSI_(from_bits)((half + 127) << 23) * MCSI_(from_bits)((k - half + 127) << 23);
 }
 /* e^x and e^x - 1, x in [-80, 0]. 1 ulp. */
-MCSI_FN MCSI_F MCSI_(exp_both)(MCSI_F x, MCSI_F *minus_one) {
+MCSI_CORE MCSI_F MCSI_(exp_both)(MCSI_F x, MCSI_F *minus_one) {
     MCSI_I k;
     MCSI_F q = MCSI_(exp_reduced)(x, &k), scale = MCSI_(from_bits)((k + 127) << 23);
     *minus_one = scale * q + (scale - 1.0f);
@@ -617,7 +636,7 @@ MCSI_FN MCSI_F MCSI_(exp_both)(MCSI_F x, MCSI_F *minus_one) {
 
 /* x^n, or x^(1/n) where root is set; x in [0,1], n in [0, 1e9 + 1] given as n - plus, plus 0 or 1. In double, so that the product
  * of exponent and logarithm loses nothing. 1 ulp. *over is x over the result, relatively accurate where both are subnormal too. */
-MCSI_FN MCSI_F MCSI_(pow_unit)(MCSI_F x, MCSI_F n, double plus, int root, MCSI_F *over) {
+MCSI_CORE MCSI_F MCSI_(pow_unit)(MCSI_F x, MCSI_F n, double plus, int root, MCSI_F *over) {
     MCSI_I tiny = x < FLT_MIN, i, k, j;
     MCSI_F v = MCSI_(sel)(tiny, x * 16777216.0f, x), shift = MCSI_(sel)(tiny, MCSI_(set)(24.0f), MCSI_(set)(0.0f));
     MCSI_F low, q, head, tail;
@@ -644,7 +663,7 @@ MCSI_FN MCSI_F MCSI_(pow_unit)(MCSI_F x, MCSI_F n, double plus, int root, MCSI_F
 
 /* Phi(-y) = erfc(y / sqrt 2) / 2, y >= 0: the lower tail of the normal distribution. 8 ulp. The square is split so that e^(-y^2/2)
  * keeps its relative accuracy in the far tail. */
-MCSI_FN MCSI_F MCSI_(normal_tail)(MCSI_F y) {
+MCSI_CORE MCSI_F MCSI_(normal_tail)(MCSI_F y) {
     MCSI_F c = MCSI_(min)(y, MCSI_(set)(14.5f)), v = 1.0f / (1.0f + 0.35f * c);
     MCSI_F head = MCSI_(from_bits)(MCSI_(bits)(c) & ~0xfff), hi = -0.5f * head * head, lo = -0.5f * (c - head) * (c + head);
     MCSI_F sum = hi + lo, rest = (hi - sum) + lo;
@@ -653,7 +672,7 @@ MCSI_FN MCSI_F MCSI_(normal_tail)(MCSI_F y) {
     return MCSI_(exp_neg)(sum) * (g + g * rest);
 }
 /* The quantile of the normal distribution, p in [2^-126, 1). 6 ulp. */
-MCSI_FN MCSI_F MCSI_(normal_quantile)(MCSI_F p) {
+MCSI_CORE MCSI_F MCSI_(normal_quantile)(MCSI_F p) {
     MCSI_F q = p - 0.5f, z = q * q, tail = MCSI_(min)(p, 1.0f - p);
     MCSI_F t = MCSI_(sqrt)(-2.0f * MCSI_(log)(MCSI_(min)(tail, MCSI_(set)(0.125f)))), v = 1.0f / (1.0f + 0.3f * t), x;
     MCSI_F centre = q * (2.50662827f + z * (2.62494898f + z * (5.76870966f + z * (16.0235748f + z * (30.976078f + z * (553.157715f +
@@ -687,23 +706,23 @@ typedef struct {
     MCSI_F pdf, weight;
 } MCS_(brdf);
 
-MCSI_FN MCS_(vec2) MCSI_(vec2)(MCSI_F x, MCSI_F y) {
+MCSI_CORE MCS_(vec2) MCSI_(vec2)(MCSI_F x, MCSI_F y) {
     MCS_(vec2) v;
     v.x = x, v.y = y;
     return v;
 }
-MCSI_FN MCS_(vec3) MCSI_(vec3)(MCSI_F x, MCSI_F y, MCSI_F z) {
+MCSI_CORE MCS_(vec3) MCSI_(vec3)(MCSI_F x, MCSI_F y, MCSI_F z) {
     MCS_(vec3) v;
     v.x = x, v.y = y, v.z = z;
     return v;
 }
-MCSI_FN MCSI_F MCSI_(dot)(MCS_(vec3) a, MCS_(vec3) b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+MCSI_CORE MCSI_F MCSI_(dot)(MCS_(vec3) a, MCS_(vec3) b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 /* The same in double, for where it cancels. */
-MCSI_FN MCSI_F MCSI_(exact_dot)(MCS_(vec3) a, MCS_(vec3) b) {
+MCSI_CORE MCSI_F MCSI_(exact_dot)(MCS_(vec3) a, MCS_(vec3) b) {
     return MCSI_NARROW(MCSI_WIDEN(a.x) * MCSI_WIDEN(b.x) + MCSI_WIDEN(a.y) * MCSI_WIDEN(b.y) + MCSI_WIDEN(a.z) * MCSI_WIDEN(b.z));
 }
 /* A direction made safe: bad ones (not about unit length, NaN) become +z and leave *ok. */
-MCSI_FN MCS_(vec3) MCSI_(direction)(MCS_(vec3) w, MCSI_I *ok) {
+MCSI_CORE MCS_(vec3) MCSI_(direction)(MCS_(vec3) w, MCSI_I *ok) {
     MCSI_F length2 = MCSI_(dot)(w, w);
     MCSI_I good = (length2 > 0.25f) & (length2 < 4.0f);
     *ok = *ok & good;
@@ -711,7 +730,7 @@ MCSI_FN MCS_(vec3) MCSI_(direction)(MCS_(vec3) w, MCSI_I *ok) {
                        MCSI_(sel)(good, w.z, MCSI_(set)(1.0f)));
 }
 /* The same for a direction that must lie above the surface. */
-MCSI_FN MCS_(vec3) MCSI_(above)(MCS_(vec3) w, MCSI_I *ok) {
+MCSI_CORE MCS_(vec3) MCSI_(above)(MCS_(vec3) w, MCSI_I *ok) {
     MCSI_F length2 = MCSI_(dot)(w, w);
     MCSI_I good = (length2 > 0.25f) & (length2 < 4.0f) & (w.z > 0.0f);
     *ok = *ok & good;
@@ -719,7 +738,7 @@ MCSI_FN MCS_(vec3) MCSI_(above)(MCS_(vec3) w, MCSI_I *ok) {
                        MCSI_(sel)(good, w.z, MCSI_(set)(1.0f)));
 }
 /* All lanes alike: how the array forms spread the scalars of a call. */
-MCSI_FN MCS_(vec3) MCSI_(spread)(mcs_vec3 v) { return MCSI_(vec3)(MCSI_(set)(v.x), MCSI_(set)(v.y), MCSI_(set)(v.z)); }
+MCSI_CORE MCS_(vec3) MCSI_(spread)(mcs_vec3 v) { return MCSI_(vec3)(MCSI_(set)(v.x), MCSI_(set)(v.y), MCSI_(set)(v.z)); }
 
 #define MCSI_PI 3.14159274f
 #define MCSI_1_PI 0.318309873f
@@ -786,7 +805,7 @@ MCS_FN void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
 #endif
 
 #if MCSI_W == 1
-MCSI_FN void mcsi_mul_wide(uint32_t a, uint32_t k, uint32_t *hi, uint32_t *lo) {
+MCSI_CORE void mcsi_mul_wide(uint32_t a, uint32_t k, uint32_t *hi, uint32_t *lo) {
     const uint64_t p = (uint64_t)a * k;
     *hi = (uint32_t)(p >> 32), *lo = (uint32_t)p;
 }
@@ -802,7 +821,7 @@ typedef long long MCSI_(any) __attribute__((vector_size(64)));
 #else
 #define MCSI_MUL_HALVES(a, b) (((a)&0xffffffffu) * ((b)&0xffffffffu))
 #endif
-MCSI_FN void MCSI_(mul_wide)(MCSI_U a, uint32_t k, MCSI_U *hi, MCSI_U *lo) {
+MCSI_CORE void MCSI_(mul_wide)(MCSI_U a, uint32_t k, MCSI_U *hi, MCSI_U *lo) {
     const MCSI_Q all = (MCSI_Q)a, zero = {0}, factor = zero + k;
     const MCSI_Q p = MCSI_MUL_HALVES(all, factor), q = MCSI_MUL_HALVES(all >> 32, factor);
     *hi = (MCSI_U)((p >> 32) | (q & ~(uint64_t)0xffffffffu)), *lo = (MCSI_U)((p & 0xffffffffu) | (q << 32));
@@ -810,7 +829,7 @@ MCSI_FN void MCSI_(mul_wide)(MCSI_U a, uint32_t k, MCSI_U *hi, MCSI_U *lo) {
 #undef MCSI_MUL_HALVES
 #endif
 /* The ten rounds on a block of four words. */
-MCSI_FN void MCSI_(philox_rounds)(uint64_t key, MCSI_U v[4]) {
+MCSI_CORE void MCSI_(philox_rounds)(uint64_t key, MCSI_U v[4]) {
     uint32_t k0 = (uint32_t)key, k1 = (uint32_t)(key >> 32);
     int round;
     for (round = 0; round < 10; round++, k0 += 0x9e3779b9u, k1 += 0xbb67ae85u) {
@@ -831,7 +850,7 @@ MCS_FN mcs_philox4 mcs_philox(uint64_t key, uint64_t counter_lo, uint64_t counte
 #endif
 #ifndef MCS_NO_BATCH
 /* A lane is a block: 4 W numbers, turned from lanes of words into blocks of words on the way to the array. */
-MCSI_FN void MCSI_(philox_blocks)(uint64_t key, uint64_t counter, float *out) {
+MCSI_CORE void MCSI_(philox_blocks)(uint64_t key, uint64_t counter, float *out) {
     MCSI_U v[4];
     float words[4][MCSI_W];
     int k, lane;
@@ -868,14 +887,14 @@ MCSI_BATCH(philox_fill_n, (uint64_t key, uint64_t counter, size_t n, float *out)
  * Karras 2011 and Burley 2020, "Practical hash-based Owen scrambling"; scrambling constants Vegdahl 2021; hash Wellons 2018; McKay,
  * Beckman, Conover 1979; Roberts 2018, "The unreasonable effectiveness of quasirandom sequences". */
 
-MCSI_FN MCSI_U MCSI_(mix)(MCSI_U x) {
+MCSI_CORE MCSI_U MCSI_(mix)(MCSI_U x) {
     x = (x ^ (x >> 17)) * 0xed5ad4bbu;
     x = (x ^ (x >> 11)) * 0xac4c1b51u;
     x = (x ^ (x >> 15)) * 0x31848babu;
     return x ^ (x >> 14);
 }
 MCSI_FN MCSI_U MCS_(hash)(MCSI_U a, MCSI_U b) { return MCSI_(mix)(a ^ MCSI_(mix)(b + 0x9e3779b9u)); }
-MCSI_FN MCSI_U MCSI_(reverse_bits)(MCSI_U x) {
+MCSI_CORE MCSI_U MCSI_(reverse_bits)(MCSI_U x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
     x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
     x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
@@ -883,7 +902,7 @@ MCSI_FN MCSI_U MCSI_(reverse_bits)(MCSI_U x) {
     return (x >> 16) | (x << 16);
 }
 /* Owen's scrambling of a number whose bits are reversed: every bit is flipped by a hash of those below it. */
-MCSI_FN MCSI_U MCSI_(scramble_reversed)(MCSI_U x, uint32_t seed) {
+MCSI_CORE MCSI_U MCSI_(scramble_reversed)(MCSI_U x, uint32_t seed) {
     x = x ^ (x * 0x3d20adeau);
     x = (x + seed) * ((seed >> 16) | 1u);
     x = x ^ (x * 0x05526c56u);
@@ -981,10 +1000,10 @@ MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed) 
  * or of its scale. For unbounded densities prefer mcs_u01_open. Source: inverse CDFs, e.g. Pharr, Jakob, Humphreys 2023, appendix
  * A; evenpower is slide 13 of the lecture for n = 2. */
 
-MCSI_FN MCSI_F MCSI_(u_of)(MCSI_I ok, MCSI_F u) {
+MCSI_CORE MCSI_F MCSI_(u_of)(MCSI_I ok, MCSI_F u) {
     return MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u, MCSI_(set)(0.0f)), MCSI_(set)(0.99999994f)), MCSI_(set)(0.0f));
 }
-MCSI_FN MCS_(sample1) MCSI_(sample1)(MCSI_I ok, MCSI_F x, MCSI_F pdf) {
+MCSI_CORE MCS_(sample1) MCSI_(sample1)(MCSI_I ok, MCSI_F x, MCSI_F pdf) {
     MCS_(sample1) s;
     s.x = MCSI_(sel)(ok, x, MCSI_(set)(0.0f));
     s.pdf = MCSI_(keep)(ok, pdf);
@@ -992,7 +1011,7 @@ MCSI_FN MCS_(sample1) MCSI_(sample1)(MCSI_I ok, MCSI_F x, MCSI_F pdf) {
 }
 
 /* linear: weights a, b >= 0 scaled to a + b = 1. */
-MCSI_FN MCSI_I MCSI_(linear_ends)(MCSI_F *a, MCSI_F *b) {
+MCSI_CORE MCSI_I MCSI_(linear_ends)(MCSI_F *a, MCSI_F *b) {
     MCSI_F top = MCSI_(max)(*a, *b), p, q;
     MCSI_I ok = (*a >= 0.0f) & (*b >= 0.0f) & (top > 0.0f) & (top <= FLT_MAX);
     MCSI_REQUIRE(ok);
@@ -1058,7 +1077,7 @@ MCSI_FN MCSI_F MCS_(exponential_invert)(MCSI_F rate, MCSI_F x) {
 }
 
 /* truncexp: rate m -> e^(-rate m) and its distance to 1; `flat` where the density is uniform to float precision. */
-MCSI_FN MCSI_I MCSI_(truncexp_ends)(MCSI_F rate, MCSI_F m, MCSI_F *e, MCSI_F *one_minus_e, MCSI_I *flat) {
+MCSI_CORE MCSI_I MCSI_(truncexp_ends)(MCSI_F rate, MCSI_F m, MCSI_F *e, MCSI_F *one_minus_e, MCSI_I *flat) {
     MCSI_I ok = (rate >= 0.0f) & (rate <= 1e18f) & MCSI_(scale_ok)(m);
     MCSI_F t = MCSI_(min)(MCSI_(max)(rate * m, MCSI_(set)(0.0f)), MCSI_(set)(80.0f));
     MCSI_REQUIRE(ok);
@@ -1131,14 +1150,14 @@ MCSI_FN MCSI_F MCS_(logistic_invert)(MCSI_F mean, MCSI_F s, MCSI_F x) {
     return MCSI_(u_of)(ok & (z == z), MCSI_(sel)(z < 0.0f, e, MCSI_(set)(1.0f)) / (1.0f + e));
 }
 
-MCSI_FN MCSI_I MCSI_(exponent_ok)(MCSI_F n) { return (n >= 0.0f) & (n <= 1e9f); }
+MCSI_CORE MCSI_I MCSI_(exponent_ok)(MCSI_F n) { return (n >= 0.0f) & (n <= 1e9f); }
 /* v^(1/(n+1)) and the density (n+1) x^n = (n+1) v / x there. */
-MCSI_FN MCSI_F MCSI_(root)(MCSI_F n, MCSI_F v, MCSI_F *density) {
+MCSI_CORE MCSI_F MCSI_(root)(MCSI_F n, MCSI_F v, MCSI_F *density) {
     MCSI_F over, x = MCSI_(pow_unit)(v, n, 1.0, 1, &over);
     *density = (n + 1.0f) * MCSI_(sel)(v > 0.0f, over, MCSI_(sel)(n > 0.0f, MCSI_(set)(0.0f), MCSI_(set)(1.0f)));
     return x;
 }
-MCSI_FN MCSI_F MCSI_(power)(MCSI_F n, double plus, MCSI_F x) {
+MCSI_CORE MCSI_F MCSI_(power)(MCSI_F n, double plus, MCSI_F x) {
     MCSI_F over;
     return MCSI_(pow_unit)(x, n, plus, 0, &over);
 }
@@ -1213,7 +1232,7 @@ MCSI_BATCH_1D_1(evenpower, e)
  *               Source: Shirley and Chiu 1997, "A low distortion map between disk and square".
  * Accuracy: coordinates within 2^-23 R, pdf 0.1 E. Both are continuous but for the polar seam. `_invert`: 1 atan2. */
 
-MCSI_FN MCS_(sample2) MCSI_(sample2)(MCSI_I ok, MCSI_F R, MCSI_F r, MCSI_F turns) {
+MCSI_CORE MCS_(sample2) MCSI_(sample2)(MCSI_I ok, MCSI_F R, MCSI_F r, MCSI_F turns) {
     MCS_(sample2) d;
     MCSI_F s, c;
     ok = ok & MCSI_(scale_ok)(R);
@@ -1224,12 +1243,12 @@ MCSI_FN MCS_(sample2) MCSI_(sample2)(MCSI_I ok, MCSI_F R, MCSI_F r, MCSI_F turns
     d.pdf = MCSI_(keep)(ok, MCSI_1_PI / R / R);
     return d;
 }
-MCSI_FN MCSI_F MCSI_(disk_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) {
+MCSI_CORE MCSI_F MCSI_(disk_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) {
     MCSI_F p = x / R, q = y / R;
     MCSI_REQUIRE(MCSI_(scale_ok)(R));
     return MCSI_(keep)(MCSI_(scale_ok)(R) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / R / R);
 }
-MCSI_FN MCS_(vec2) MCSI_(uv)(MCSI_I ok, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(vec2) MCSI_(uv)(MCSI_I ok, MCSI_F u1, MCSI_F u2) {
     MCSI_F top = MCSI_(set)(0.99999994f), zero = MCSI_(set)(0.0f);
     return MCSI_(vec2)(MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u1, zero), top), zero),
                        MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u2, zero), top), zero));
@@ -1279,7 +1298,7 @@ MCSI_FN MCS_(vec2) MCS_(concentric_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
  *               a narrow cone (mcs_cone_from_sin2 gives k from sin^2(theta_max), theta_max up to 90 degrees)
  * pdf 0 below the hemisphere, outside the cone and for bad input. */
 
-MCSI_FN MCS_(dir) MCSI_(around_z)(MCSI_I ok, MCSI_F sine, MCSI_F z, MCSI_F turns, MCSI_F pdf) {
+MCSI_CORE MCS_(dir) MCSI_(around_z)(MCSI_I ok, MCSI_F sine, MCSI_F z, MCSI_F turns, MCSI_F pdf) {
     MCS_(dir) d;
     MCSI_F s, c;
     MCSI_(sincos_turns)(turns, &s, &c);
@@ -1288,7 +1307,7 @@ MCSI_FN MCS_(dir) MCSI_(around_z)(MCSI_I ok, MCSI_F sine, MCSI_F z, MCSI_F turns
     return d;
 }
 /* 1 - cos(theta) and 1 + cos(theta) of a direction, each accurate where it is small. */
-MCSI_FN MCSI_F MCSI_(one_minus_z)(MCS_(vec3) w) {
+MCSI_CORE MCSI_F MCSI_(one_minus_z)(MCS_(vec3) w) {
     MCSI_F s = w.x * w.x + w.y * w.y;
     return MCSI_(sel)(w.z > 0.0f, s / (1.0f + MCSI_(abs)(w.z)), 1.0f - w.z);
 }
@@ -1346,7 +1365,7 @@ MCSI_FN MCSI_F MCS_(cone_from_sin2)(MCSI_F sin2) {
     MCSI_F s = MCSI_(min)(MCSI_(max)(sin2, MCSI_(set)(0.0f)), MCSI_(set)(1.0f));
     return s / (1.0f + MCSI_(sqrt)(1.0f - s));
 }
-MCSI_FN MCSI_I MCSI_(cone_ok)(MCSI_F k) { return (k >= 1e-30f) & (k <= 2.0f); }
+MCSI_CORE MCSI_I MCSI_(cone_ok)(MCSI_F k) { return (k >= 1e-30f) & (k <= 2.0f); }
 MCSI_FN MCS_(dir) MCS_(cone_sample)(MCSI_F k, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(cone_ok)(k);
     MCSI_F t;
@@ -1426,7 +1445,7 @@ MCSI_FN MCS_(frame) MCS_(frame_make)(MCS_(vec3) n) {
     return f;
 }
 /* Any finite v; components that are NaN or beyond 1e37 count as 0. */
-MCSI_FN MCSI_F MCSI_(finite)(MCSI_F x) { return MCSI_(sel)(MCSI_(abs)(x) <= 1e37f, x, MCSI_(set)(0.0f)); }
+MCSI_CORE MCSI_F MCSI_(finite)(MCSI_F x) { return MCSI_(sel)(MCSI_(abs)(x) <= 1e37f, x, MCSI_(set)(0.0f)); }
 MCSI_FN MCS_(vec3) MCS_(to_world)(const MCS_(frame) * f, MCS_(vec3) v) {
     v = MCSI_(vec3)(MCSI_(finite)(v.x), MCSI_(finite)(v.y), MCSI_(finite)(v.z));
     return MCSI_(vec3)(f->s.x * v.x + f->t.x * v.y + f->n.x * v.z, f->s.y * v.x + f->t.y * v.y + f->n.y * v.z,
@@ -1448,7 +1467,7 @@ MCSI_FN MCS_(vec3) MCS_(to_local)(const MCS_(frame) * f, MCS_(vec3) v) {
  * Densities of given directions below use H = wo + wi unnormalised: the sum is exact where it cancels (Sterbenz), and ratios of
  * its components need no normalisation. */
 
-MCSI_FN MCS_(vec3) MCSI_(sum)(MCS_(vec3) a, MCS_(vec3) b) { return MCSI_(vec3)(a.x + b.x, a.y + b.y, a.z + b.z); }
+MCSI_CORE MCS_(vec3) MCSI_(sum)(MCS_(vec3) a, MCS_(vec3) b) { return MCSI_(vec3)(a.x + b.x, a.y + b.y, a.z + b.z); }
 MCSI_FN MCS_(vec3) MCS_(reflect)(MCS_(vec3) wo, MCS_(vec3) h) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F d;
@@ -1483,12 +1502,12 @@ MCSI_FN MCSI_F MCS_(schlick)(MCSI_F f0, MCSI_F cos_d) {
 }
 
 /* A direction of almost unit length brought to it, by one Newton step of 1/sqrt. */
-MCSI_FN MCS_(vec3) MCSI_(to_unit)(MCS_(vec3) w) {
+MCSI_CORE MCS_(vec3) MCSI_(to_unit)(MCS_(vec3) w) {
     MCSI_F s = 1.5f - 0.5f * MCSI_(dot)(w, w);
     return MCSI_(vec3)(w.x * s, w.y * s, w.z * s);
 }
 /* What a BRDF sampler returns: samples below the surface are lost. */
-MCSI_FN MCS_(brdf) MCSI_(brdf)(MCSI_I ok, MCS_(vec3) wi, MCSI_F pdf, MCSI_F weight) {
+MCSI_CORE MCS_(brdf) MCSI_(brdf)(MCSI_I ok, MCS_(vec3) wi, MCSI_F pdf, MCSI_F weight) {
     MCS_(brdf) s;
     s.wi = wi;
     s.pdf = MCSI_(keep)(ok & (wi.z > 0.0f), pdf);
@@ -1496,7 +1515,7 @@ MCSI_FN MCS_(brdf) MCSI_(brdf)(MCSI_I ok, MCS_(vec3) wi, MCSI_F pdf, MCSI_F weig
     return s;
 }
 /* Mirrors wo at the half-vector p of any length; *d = p.wo and *p2 = |p|^2 come with it. */
-MCSI_FN MCS_(vec3) MCSI_(mirror)(MCS_(vec3) wo, MCS_(vec3) p, MCSI_F *d, MCSI_F *p2) {
+MCSI_CORE MCS_(vec3) MCSI_(mirror)(MCS_(vec3) wo, MCS_(vec3) p, MCSI_F *d, MCSI_F *p2) {
     MCSI_F s;
     *d = MCSI_(dot)(p, wo), *p2 = MCSI_(dot)(p, p), s = 2.0f * *d / *p2;
     return MCSI_(to_unit)(MCSI_(vec3)(s * p.x - wo.x, s * p.y - wo.y, s * p.z - wo.z));
@@ -1580,7 +1599,7 @@ MCSI_FN MCS_(phong) MCS_(phong_make)(MCSI_F n) {
     return m;
 }
 /* cos^n from tan^2. */
-MCSI_FN MCSI_F MCSI_(cos_power)(MCSI_F n, MCSI_F tan2) {
+MCSI_CORE MCSI_F MCSI_(cos_power)(MCSI_F n, MCSI_F tan2) {
     return MCSI_(exp_neg)(-0.5f * n * MCSI_(log1p)(MCSI_(min)(tan2, MCSI_(set)(1e37f))));
 }
 
@@ -1616,7 +1635,7 @@ MCSI_FN MCS_(brdf) MCS_(phong_sample)(const MCS_(phong) * m, MCS_(vec3) wo, MCSI
     return MCSI_(brdf)(ok, l.w, l.pdf, m->gain * l.w.z);
 }
 /* tan^2 of the angle between wi and R: |R x wi|^2 / (R.wi)^2 with R x wi = R x (wi - R), whose difference is exact nearby. */
-MCSI_FN MCSI_F MCSI_(phong_power)(const MCS_(phong) * m, MCS_(vec3) wo, MCS_(vec3) wi, MCSI_I *ok) {
+MCSI_CORE MCSI_F MCSI_(phong_power)(const MCS_(phong) * m, MCS_(vec3) wo, MCS_(vec3) wi, MCSI_I *ok) {
     MCS_(vec3) r, d, c;
     MCSI_F cosine;
     wo = MCSI_(above)(wo, ok), wi = MCSI_(above)(wi, ok);
@@ -1641,7 +1660,7 @@ MCSI_FN MCSI_F MCS_(phong_weight)(const MCS_(phong) * m, MCS_(vec3) wo, MCS_(vec
     return MCSI_(keep)(ok, m->gain * wi.z);
 }
 #ifndef MCS_NO_BATCH
-MCSI_FN MCS_(phong) MCSI_(phong_spread)(const mcs_phong *m) {
+MCSI_CORE MCS_(phong) MCSI_(phong_spread)(const mcs_phong *m) {
     MCS_(phong) all;
     all.n = MCSI_(set)(m->n), all.power = MCSI_(set)(m->power), all.lobe = MCSI_(set)(m->lobe);
     all.value = MCSI_(set)(m->value), all.gain = MCSI_(set)(m->gain);
@@ -1659,7 +1678,7 @@ MCSI_BATCH_VALUE(phong_eval, phong)
 typedef struct {
     MCSI_F ax, ay, inv_ax, inv_ay, norm;
 } MCSI_(slopes);
-MCSI_FN MCSI_(slopes) MCSI_(slopes_make)(MCSI_F ax, MCSI_F ay) {
+MCSI_CORE MCSI_(slopes) MCSI_(slopes_make)(MCSI_F ax, MCSI_F ay) {
     MCSI_(slopes) m;
     MCSI_I ok = (ax > 0.0f) & (ay > 0.0f);
     MCSI_REQUIRE(ok);
@@ -1669,7 +1688,7 @@ MCSI_FN MCSI_(slopes) MCSI_(slopes_make)(MCSI_F ax, MCSI_F ay) {
     return m;
 }
 #ifndef MCS_NO_BATCH
-MCSI_FN MCSI_(slopes) MCSI_(slopes_spread)(const mcsi_slopes *m) {
+MCSI_CORE MCSI_(slopes) MCSI_(slopes_spread)(const mcsi_slopes *m) {
     MCSI_(slopes) all;
     all.ax = MCSI_(set)(m->ax), all.ay = MCSI_(set)(m->ay), all.norm = MCSI_(set)(m->norm);
     all.inv_ax = MCSI_(set)(m->inv_ax), all.inv_ay = MCSI_(set)(m->inv_ay);
@@ -1677,13 +1696,13 @@ MCSI_FN MCSI_(slopes) MCSI_(slopes_spread)(const mcsi_slopes *m) {
 }
 #endif
 /* Slopes of radius r (in units of alpha) as the unnormalised half-vector (sx, sy, 1). */
-MCSI_FN MCS_(vec3) MCSI_(slope_vector)(const MCSI_(slopes) * m, MCSI_F r, MCSI_F turns) {
+MCSI_CORE MCS_(vec3) MCSI_(slope_vector)(const MCSI_(slopes) * m, MCSI_F r, MCSI_F turns) {
     MCSI_F s, c;
     MCSI_(sincos_turns)(turns, &s, &c);
     return MCSI_(vec3)(m->ax * (r * c), m->ay * (r * s), MCSI_(set)(1.0f));
 }
 /* The half-vector of slopes p with density g / cos^3 per solid angle. */
-MCSI_FN MCS_(dir) MCSI_(slope_dir)(MCSI_I ok, MCS_(vec3) p, MCSI_F g) {
+MCSI_CORE MCS_(dir) MCSI_(slope_dir)(MCSI_I ok, MCS_(vec3) p, MCSI_F g) {
     MCS_(dir) d;
     MCSI_F p2 = MCSI_(dot)(p, p), length = MCSI_(sqrt)(p2), c = 1.0f / length;
     d.w = MCSI_(vec3)(p.x * c, p.y * c, c);
@@ -1691,16 +1710,16 @@ MCSI_FN MCS_(dir) MCSI_(slope_dir)(MCSI_I ok, MCS_(vec3) p, MCSI_F g) {
     return d;
 }
 /* e = (sx/ax)^2 + (sy/ay)^2 of a direction's slopes. */
-MCSI_FN MCSI_F MCSI_(slope_square)(const MCSI_(slopes) * m, MCS_(vec3) h) {
+MCSI_CORE MCSI_F MCSI_(slope_square)(const MCSI_(slopes) * m, MCS_(vec3) h) {
     MCSI_F x = h.x * m->inv_ax / h.z, y = h.y * m->inv_ay / h.z;
     return x * x + y * y;
 }
 /* The BRDF sample that reflects wo at slopes p with density g / cos^3 of the half-vector; *d = p.wo. */
-MCSI_FN MCS_(brdf) MCSI_(slope_brdf)(MCSI_I ok, MCS_(vec3) wo, MCS_(vec3) p, MCSI_F g, MCSI_F *d, MCSI_F *p2) {
+MCSI_CORE MCS_(brdf) MCSI_(slope_brdf)(MCSI_I ok, MCS_(vec3) wo, MCS_(vec3) p, MCSI_F g, MCSI_F *d, MCSI_F *p2) {
     MCS_(vec3) wi = MCSI_(mirror)(wo, p, d, p2);
     return MCSI_(brdf)(ok & (*d > 0.0f), wi, g * (*p2 * *p2) / (4.0f * *d), MCSI_(set)(1.0f));
 }
-MCSI_FN MCS_(vec2) MCSI_(slope_invert)(const MCSI_(slopes) * m, MCSI_I ok, MCS_(vec3) h, MCSI_F u1) {
+MCSI_CORE MCS_(vec2) MCSI_(slope_invert)(const MCSI_(slopes) * m, MCSI_I ok, MCS_(vec3) h, MCSI_F u1) {
     return MCSI_(uv)(ok & (m->norm > 0.0f), u1, MCSI_(atan2_turns)(h.y * m->inv_ay, h.x * m->inv_ax));
 }
 
@@ -1729,24 +1748,24 @@ MCSI_FN MCS_(ward) MCS_(ward_make)(MCSI_F ax, MCSI_F ay, mcs_ward_model model) {
     return m;
 }
 /* Slopes of a Gaussian; *g is the density times cos^3. */
-MCSI_FN MCS_(vec3) MCSI_(gauss_slopes)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_F u2, MCSI_I *ok, MCSI_F *g) {
+MCSI_CORE MCS_(vec3) MCSI_(gauss_slopes)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_F u2, MCSI_I *ok, MCSI_F *g) {
     u1 = MCSI_(unit)(u1, ok), u2 = MCSI_(unit)(u2, ok);
     *g = m->norm * (1.0f - u1);
     return MCSI_(slope_vector)(m, MCSI_(sqrt)(-MCSI_(log1p)(-u1)), u2);
 }
-MCSI_FN MCS_(dir) MCSI_(gauss_h_sample)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(dir) MCSI_(gauss_h_sample)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F g;
     MCS_(vec3) p = MCSI_(gauss_slopes)(m, u1, u2, &ok, &g);
     return MCSI_(slope_dir)(ok, p, g);
 }
-MCSI_FN MCSI_F MCSI_(gauss_h_pdf)(const MCSI_(slopes) * m, MCS_(vec3) h) {
+MCSI_CORE MCSI_F MCSI_(gauss_h_pdf)(const MCSI_(slopes) * m, MCS_(vec3) h) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F q;
     h = MCSI_(above)(h, &ok), q = MCSI_(dot)(h, h) / (h.z * h.z);
     return MCSI_(keep)(ok, m->norm * MCSI_(exp_neg)(-MCSI_(slope_square)(m, h)) * (q * MCSI_(sqrt)(q)));
 }
-MCSI_FN MCS_(vec2) MCSI_(gauss_h_invert)(const MCSI_(slopes) * m, MCS_(vec3) h) {
+MCSI_CORE MCS_(vec2) MCSI_(gauss_h_invert)(const MCSI_(slopes) * m, MCS_(vec3) h) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F d;
     h = MCSI_(above)(h, &ok);
@@ -1754,7 +1773,7 @@ MCSI_FN MCS_(vec2) MCSI_(gauss_h_invert)(const MCSI_(slopes) * m, MCS_(vec3) h) 
     return MCSI_(slope_invert)(m, ok, h, -d);
 }
 /* Density of wi = p_h/(4 wo.h) = norm exp(-e) |H|^2/(2 H.z^3). */
-MCSI_FN MCSI_F MCSI_(gauss_pdf)(const MCSI_(slopes) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
+MCSI_CORE MCSI_F MCSI_(gauss_pdf)(const MCSI_(slopes) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
     MCSI_I ok = MCSI_(always)();
     MCS_(vec3) h;
     wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
@@ -1802,7 +1821,7 @@ MCSI_FN MCSI_F MCS_(ward_weight)(const MCS_(ward) * m, MCS_(vec3) wo, MCS_(vec3)
     return MCSI_(keep)(ok, c);
 }
 #ifndef MCS_NO_BATCH
-MCSI_FN MCS_(ward) MCSI_(ward_spread)(const mcs_ward *m) {
+MCSI_CORE MCS_(ward) MCSI_(ward_spread)(const mcs_ward *m) {
     MCS_(ward) all;
     all.s = MCSI_(slopes_spread)(&m->s);
     all.model = m->model;
@@ -1829,7 +1848,7 @@ MCSI_FN MCS_(beckmann) MCS_(beckmann_make)(MCSI_F ax, MCSI_F ay) {
     return m;
 }
 /* z L(w): L = exp(-a^2)/(2 a sqrt pi) - erfc(a)/2 with a = z/t, t = |(ax x, ay y)|; times z it stays finite at the horizon. */
-MCSI_FN MCSI_F MCSI_(beckmann_shadow)(const MCSI_(slopes) * m, MCS_(vec3) w) {
+MCSI_CORE MCSI_F MCSI_(beckmann_shadow)(const MCSI_(slopes) * m, MCS_(vec3) w) {
     MCSI_F x = m->ax * w.x, y = m->ay * w.y, t = MCSI_(sqrt)(x * x + y * y);
     MCSI_F a = w.z / MCSI_(max)(t, MCSI_(set)(FLT_MIN));
     MCSI_F l = t * 0.282094792f * MCSI_(exp_neg)(-a * a) - w.z * MCSI_(normal_tail)(a * 1.41421356f);
@@ -1874,7 +1893,7 @@ MCSI_FN MCSI_F MCS_(beckmann_weight)(const MCS_(beckmann) * m, MCS_(vec3) wo, MC
     return MCSI_(keep)(ok, wi.z * MCSI_(dot)(h, h) / (2.0f * h.z * (wo.z * wi.z + wi.z * lo + wo.z * li)));
 }
 #ifndef MCS_NO_BATCH
-MCSI_FN MCS_(beckmann) MCSI_(beckmann_spread)(const mcs_beckmann *m) {
+MCSI_CORE MCS_(beckmann) MCSI_(beckmann_spread)(const mcs_beckmann *m) {
     MCS_(beckmann) all;
     all.s = MCSI_(slopes_spread)(&m->s);
     return all;
@@ -1911,12 +1930,12 @@ MCSI_FN MCS_(ggx) MCS_(ggx_make)(MCSI_F ax, MCSI_F ay) {
     return m;
 }
 MCSI_FN MCSI_I MCS_(is_mirror)(MCSI_F ax, MCSI_F ay) { return (ax < 1e-7f) & (ay < 1e-7f); }
-MCSI_FN MCSI_F MCSI_(ggx_d)(const MCSI_(slopes) * m, MCS_(vec3) h) {
+MCSI_CORE MCSI_F MCSI_(ggx_d)(const MCSI_(slopes) * m, MCS_(vec3) h) {
     MCSI_F x = h.x * m->inv_ax, y = h.y * m->inv_ay, q = MCSI_(dot)(h, h) / (x * x + y * y + h.z * h.z);
     return m->norm * (q * q);
 }
 /* t = |(ax x, ay y, z)|. */
-MCSI_FN MCSI_F MCSI_(ggx_t)(const MCSI_(slopes) * m, MCS_(vec3) w) {
+MCSI_CORE MCSI_F MCSI_(ggx_t)(const MCSI_(slopes) * m, MCS_(vec3) w) {
     MCSI_F x = m->ax * w.x, y = m->ay * w.y;
     return MCSI_(sqrt)(x * x + y * y + w.z * w.z);
 }
@@ -1936,7 +1955,7 @@ MCSI_FN MCSI_F MCS_(ggx_g2)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
     return MCSI_(keep)(ok, 2.0f * wo.z * wi.z / (wo.z * MCSI_(ggx_t)(&m->s, wi) + wi.z * MCSI_(ggx_t)(&m->s, wo)));
 }
 
-MCSI_FN MCS_(vec3) MCSI_(ggx_slopes)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_F u2, MCSI_I *ok, MCSI_F *g) {
+MCSI_CORE MCS_(vec3) MCSI_(ggx_slopes)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_F u2, MCSI_I *ok, MCSI_F *g) {
     MCSI_F v;
     u1 = MCSI_(unit)(u1, ok), u2 = MCSI_(unit)(u2, ok), v = 1.0f - u1;
     *g = m->norm * (v * v);
@@ -1997,7 +2016,7 @@ typedef struct {
     MCSI_F i_sin, i_z, one_minus_iz, cap, lift; /* i's sine and cosine; 1 - i.z; 1 + k i.z, the height of the cap; (1 - k) i.z */
     MCSI_F denominator;                         /* k wo.z + t */
 } MCSI_(visible);
-MCSI_FN MCSI_(visible) MCSI_(visible_make)(const MCSI_(slopes) * m, MCS_(vec3) wo, int bounded) {
+MCSI_CORE MCSI_(visible) MCSI_(visible_make)(const MCSI_(slopes) * m, MCS_(vec3) wo, int bounded) {
     MCSI_(visible) v;
     MCSI_F x = m->ax * wo.x * 1.09951163e12f, y = m->ay * wo.y * 1.09951163e12f,
            r = MCSI_(sqrt)(x * x + y * y); /* 2^40: no underflow */
@@ -2013,24 +2032,23 @@ MCSI_FN MCSI_(visible) MCSI_(visible_make)(const MCSI_(slopes) * m, MCS_(vec3) w
     v.cap = 1.0f + (1.0f - less) * v.i_z, v.lift = less * v.i_z, v.denominator = (1.0f - less) * wo.z + v.t;
     return v;
 }
-/* The unnormalised half-vector p, with |p|^2 and, in the stretched frame, *n2 = |c + i|^2. The azimuth is measured from i's, and
- * half of it enters, so that c + i keeps its relative accuracy where c nearly cancels i: the mirror at grazing incidence. */
-MCSI_FN MCS_(vec3)
+/* The unnormalised half-vector p, with |p|^2 and, in the stretched frame, *n2 = |c + i|^2. The azimuth is measured from i's; where c
+ * nearly cancels i, the mirror at grazing incidence, 1 + cos(phi) and i_sin - s enter, so that c + i keeps its relative accuracy. */
+MCSI_CORE MCS_(vec3)
     MCSI_(visible_half)(const MCSI_(slopes) * m, const MCSI_(visible) * v, MCSI_F u1, MCSI_F u2, MCSI_F *p2, MCSI_F *n2) {
     MCS_(vec3) p;
-    MCSI_F sh, ch, q = u2 * v->cap, hz = v->cap * (1.0f - u2) + v->lift, along, across;
-    MCSI_F s = MCSI_(sqrt)(q * (v->one_minus_iz + hz)); /* sin^2 = (1 - c.z) (1 + c.z) */
-    MCSI_(sincos_turns)(0.5f * u1, &sh, &ch);
-    along =
-        2.0f * s * ch * ch + (v->one_minus_iz - q) * hz / MCSI_(max)(v->i_sin + s, MCSI_(set)(FLT_MIN)); /* s cos(phi) + i_sin */
-    along = MCSI_(sel)(v->i_sin + s > 0.0f, along, MCSI_(set)(0.0f));
-    across = 2.0f * s * sh * ch;
+    MCSI_I behind;
+    MCSI_F sine, cosine, one_plus, q = u2 * v->cap, hz = v->cap * (1.0f - u2) + v->lift;
+    MCSI_F s = MCSI_(sqrt)(q * (v->one_minus_iz + hz)), along, across;                       /* sin^2 = (1 - c.z) (1 + c.z) */
+    MCSI_F gap = (v->one_minus_iz - q) * hz / MCSI_(max)(v->i_sin + s, MCSI_(set)(FLT_MIN)); /* i_sin - s */
+    MCSI_(sincos_behind)(u1, &sine, &cosine, &behind, &one_plus);
+    along = MCSI_(sel)(behind, s * one_plus + gap, s * cosine + v->i_sin), across = s * sine;
     *n2 = along * along + across * across + hz * hz;
     p = MCSI_(vec3)(m->ax * (along * v->x_dir - across * v->y_dir), m->ay * (along * v->y_dir + across * v->x_dir), hz);
     *p2 = MCSI_(dot)(p, p);
     return p;
 }
-MCSI_FN MCS_(brdf) MCSI_(visible_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded) {
+MCSI_CORE MCS_(brdf) MCSI_(visible_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded) {
     MCSI_I ok = MCSI_(always)();
     MCSI_(visible) v;
     MCS_(vec3) p, wi;
@@ -2043,19 +2061,19 @@ MCSI_FN MCS_(brdf) MCSI_(visible_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS
     return MCSI_(brdf)(ok, wi, m->s.norm / (2.0f * v.denominator) * (q * q),
                        wi.z * v.denominator / (v.t * wi.z + MCSI_(ggx_t)(&m->s, wi) * wo.z));
 }
-MCSI_FN MCSI_F MCSI_(visible_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi, int bounded) {
+MCSI_CORE MCSI_F MCSI_(visible_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi, int bounded) {
     MCSI_I ok = MCSI_(always)();
     MCSI_(visible) v;
     wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), v = MCSI_(visible_make)(&m->s, wo, bounded);
     return MCSI_(keep)(ok, MCSI_(ggx_d)(&m->s, MCSI_(sum)(wo, wi)) / (2.0f * v.denominator));
 }
-MCSI_FN MCSI_F MCSI_(visible_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi, int bounded) {
+MCSI_CORE MCSI_F MCSI_(visible_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi, int bounded) {
     MCSI_I ok = m->s.norm > 0.0f;
     MCSI_(visible) v;
     wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), v = MCSI_(visible_make)(&m->s, wo, bounded);
     return MCSI_(keep)(ok, wi.z * v.denominator / (v.t * wi.z + MCSI_(ggx_t)(&m->s, wi) * wo.z));
 }
-MCSI_FN MCS_(dir) MCSI_(visible_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded) {
+MCSI_CORE MCS_(dir) MCSI_(visible_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded) {
     MCSI_I ok = MCSI_(always)();
     MCSI_(visible) v;
     MCS_(dir) d;
@@ -2068,7 +2086,7 @@ MCSI_FN MCS_(dir) MCSI_(visible_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MC
     d.pdf = MCSI_(keep)(ok, m->s.norm / v.denominator * (q * q) * (v.t * n2 * c));
     return d;
 }
-MCSI_FN MCSI_F MCSI_(visible_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h, int bounded) {
+MCSI_CORE MCSI_F MCSI_(visible_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h, int bounded) {
     MCSI_I ok = MCSI_(always)();
     MCSI_(visible) v;
     MCSI_F x, y, d, q;
@@ -2077,7 +2095,7 @@ MCSI_FN MCSI_F MCSI_(visible_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec
     ok = ok & (2.0f * d * h.z >= 0.999999f * q * (v.t * v.lift)); /* c.z >= -k i.z */
     return MCSI_(keep)(ok, MCSI_(ggx_d)(&m->s, h) * 2.0f * d / v.denominator);
 }
-MCSI_FN MCS_(vec2) MCSI_(visible_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h, int bounded) {
+MCSI_CORE MCS_(vec2) MCSI_(visible_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h, int bounded) {
     MCSI_I ok = m->s.norm > 0.0f;
     MCSI_(visible) v;
     MCS_(vec3) c;
@@ -2121,7 +2139,7 @@ MCSI_FN MCSI_F MCS_(ggx_bounded_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_
     return MCSI_(visible_weight)(m, wo, wi, 1);
 }
 #ifndef MCS_NO_BATCH
-MCSI_FN MCS_(ggx) MCSI_(ggx_spread)(const mcs_ggx *m) {
+MCSI_CORE MCS_(ggx) MCSI_(ggx_spread)(const mcs_ggx *m) {
     MCS_(ggx) all;
     all.s = MCSI_(slopes_spread)(&m->s);
     return all;
@@ -2161,11 +2179,11 @@ MCSI_FN MCS_(ashikhmin) MCS_(ashikhmin_make)(MCSI_F nu, MCSI_F nv) {
     m.norm = MCSI_(sel)(ok, MCSI_(sqrt)(m.nu + 1.0f) * MCSI_(sqrt)(m.nv + 1.0f) * MCSI_1_2PI, MCSI_(set)(0.0f));
     return m;
 }
-MCSI_FN MCSI_F MCSI_(ashikhmin_exponent)(const MCS_(ashikhmin) * m, MCS_(vec3) h) {
+MCSI_CORE MCSI_F MCSI_(ashikhmin_exponent)(const MCS_(ashikhmin) * m, MCS_(vec3) h) {
     MCSI_F x2 = h.x * h.x, y2 = h.y * h.y;
     return (m->nu * x2 + m->nv * y2) / MCSI_(max)(x2 + y2, MCSI_(set)(FLT_MIN));
 }
-MCSI_FN MCSI_F MCSI_(tan2)(MCS_(vec3) h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
+MCSI_CORE MCSI_F MCSI_(tan2)(MCS_(vec3) h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
 
 MCSI_FN MCS_(dir) MCS_(ashikhmin_h_sample)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
@@ -2220,7 +2238,7 @@ MCSI_FN MCSI_F MCS_(ashikhmin_weight)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, 
     return MCSI_(keep)(ok, wi.z / MCSI_(max)(wo.z, wi.z));
 }
 #ifndef MCS_NO_BATCH
-MCSI_FN MCS_(ashikhmin) MCSI_(ashikhmin_spread)(const mcs_ashikhmin *m) {
+MCSI_CORE MCS_(ashikhmin) MCSI_(ashikhmin_spread)(const mcs_ashikhmin *m) {
     MCS_(ashikhmin) all;
     all.nu = MCSI_(set)(m->nu), all.nv = MCSI_(set)(m->nv), all.norm = MCSI_(set)(m->norm);
     all.width_u = MCSI_(set)(m->width_u), all.width_v = MCSI_(set)(m->width_v);
@@ -2240,7 +2258,7 @@ MCSI_BATCH_VALUE(ashikhmin_eval, ashikhmin)
  * Weights of a sample drawn from f, in [0,1]; multiply the densities by the sample counts when those differ. From g/f, so that
  * 1e30, 1e-30 and infinity are fine; 0 where pf is 0, negative or NaN; the two weights of a sample add up to 1. 1-2 div. */
 
-MCSI_FN MCSI_F MCSI_(mis_ratio)(MCSI_F pf, MCSI_F pg, MCSI_I *ok) {
+MCSI_CORE MCSI_F MCSI_(mis_ratio)(MCSI_F pf, MCSI_F pg, MCSI_I *ok) {
     *ok = (pf > 0.0f) & (pg >= 0.0f);
     return MCSI_(sel)(pf == pg, MCSI_(set)(1.0f), pg / MCSI_(sel)(*ok, pf, MCSI_(set)(1.0f)));
 }
@@ -2851,6 +2869,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #endif /* MCSI_W == 1 */
 
 #undef MCSI_FN
+#undef MCSI_CORE
 #undef MCSI_F
 #undef MCSI_I
 #undef MCSI_U

@@ -115,9 +115,10 @@ static inline void bench_start(int argc, char **argv, const char *name) {
     bench_cpu(cpu, sizeof cpu);
 #if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__))
     __builtin_cpu_init();
-    units = __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") ? ", AVX-512"
-            : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")                                              ? ", AVX2"
-                                                                                                                           : ", SSE2";
+    units = __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")
+                ? ", AVX-512"
+            : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? ", AVX2"
+                                                                              : ", SSE2";
 #endif
     snprintf(bench.title, sizeof bench.title, "%s; %s; %s%s%s", BENCH_COMPILER, BENCH_FLAGS, cpu, units,
              bench.quick ? "; quick run" : "");
@@ -131,7 +132,8 @@ static inline const char *bench_path(const char *file) {
     return path;
 }
 
-/* A CSV file whose first line says, behind a '#', what ran where; its second line names the columns. Exits when it cannot be made. */
+/* A CSV file whose first line says, behind a '#', what ran where; its second line names the columns. Exits when it cannot be made.
+ */
 static inline FILE *bench_csv(const char *file, const char *columns) {
     FILE *f = fopen(bench_path(file), "w");
     if (!f) {
@@ -154,7 +156,8 @@ static inline void bench_close(FILE *f, const char *file) {
 #ifdef __GNUC__
 __attribute__((format(printf, 1, 2)))
 #endif
-static inline void bench_progress(const char *format, ...) { /* an empty text wipes the line */
+static inline void
+bench_progress(const char *format, ...) { /* an empty text wipes the line */
     va_list args;
     if (!isatty(STDERR_FILENO)) return;
     va_start(args, format);

@@ -1,6 +1,6 @@
-/* One array loop per sampler of the registry over the functions of one width; material and parameters are prepared outside of the loop.
- * No include guard: included once per BENCH_W = 1, 4, 8 or 16, for bench1_<row> and so on, of the type bench_form, and the array
- * bench1_forms in the order of the registry. n is a multiple of BENCH_W; a weight is left to the compiler to leave out. */
+/* One array loop per sampler of the registry over the functions of one width; material and parameters are prepared outside of the
+ * loop. No include guard: included once per BENCH_W = 1, 4, 8 or 16, for bench1_<row> and so on, of the type bench_form, and the
+ * array bench1_forms in the order of the registry. n is a multiple of BENCH_W; a weight is left to the compiler to leave out. */
 #define FORM_CAT_(a, b, c) a##b##c
 #define FORM_CAT(a, b, c) FORM_CAT_(a, b, c)
 #if BENCH_W == 1
@@ -39,19 +39,19 @@ static inline F_ B_(set)(float x) {
 #define FORM_MAKE_ggx const M_(ggx) m = M_(ggx_make)(a, b)
 #define FORM_MAKE_ashikhmin const M_(ashikhmin) m = M_(ashikhmin_make)(a, b)
 
-#define FORM(row, prepare, type, call, keep)                                                                        \
+#define FORM(row, prepare, type, call, keep)                                                                       \
     static void B_(row)(const float *p, size_t n, const float *u1, const float *u2, float *const out[BENCH_OUT]) { \
-        const F_ a = B_(set)(p[0]), b = B_(set)(p[1]);                                                              \
-        const M_(vec3) wo = {B_(set)(p[3]), B_(set)(p[4]), B_(set)(p[5])};                                          \
-        float *const x = out[0], *const y = out[1], *const z = out[2], *const pdf = out[3];                         \
-        size_t i;                                                                                                   \
-        prepare;                                                                                                    \
-        (void)a, (void)b, (void)wo, (void)y, (void)z, (void)u2;                                                     \
-        for (i = 0; i < n; i += BENCH_W) {                                                                          \
-            const M_(type) s = call;                                                                                \
-            keep;                                                                                                   \
-            B_(store)(pdf + i, s.pdf);                                                                              \
-        }                                                                                                           \
+        const F_ a = B_(set)(p[0]), b = B_(set)(p[1]);                                                             \
+        const M_(vec3) wo = {B_(set)(p[3]), B_(set)(p[4]), B_(set)(p[5])};                                         \
+        float *const x = out[0], *const y = out[1], *const z = out[2], *const pdf = out[3];                        \
+        size_t i;                                                                                                  \
+        prepare;                                                                                                   \
+        (void)a, (void)b, (void)wo, (void)y, (void)z, (void)u2;                                                    \
+        for (i = 0; i < n; i += BENCH_W) {                                                                         \
+            const M_(type) s = call;                                                                               \
+            keep;                                                                                                  \
+            B_(store)(pdf + i, s.pdf);                                                                             \
+        }                                                                                                          \
     }
 #define FORM_U B_(load)(u1 + i), B_(load)(u2 + i)
 #define FORM_XYZ(v) B_(store)(x + i, v.x), B_(store)(y + i, v.y), B_(store)(z + i, v.z)

@@ -3,25 +3,29 @@
  *     svg_plot p;
  *     svg_begin(&p, "file.svg", "title", "time, ns", "error, ulp", 1, 1, xmin, xmax, ymin, ymax);   the flags: log axis
  *     svg_series(&p, "name", n, x, y, SVG_LINE);      the first call gets the first marker, dash pattern and colour, and so on
- *     svg_label(&p, x, y, "text");                    a remark in the plot, to the right of the point
+ *     svg_label(&p, x, y, "text");                    beside a point, or not at all where other labels are
  *     svg_note(&p, "text");                           a line below the legend
  *     if (svg_end(&p)) fail;
  *
- * Series differ in marker shape and dash pattern, so that no colour is needed to tell them apart (colours: Okabe and Ito 2008, which
- * the colour-blind can tell apart too). Points that an axis cannot show (not finite, not positive on a log axis, outside of the
- * limits) are left out; lines are cut at the frame. */
+ * Series differ in marker shape and dash pattern, so that no colour is needed to tell them apart (colours: Okabe and Ito 2008,
+ * which the colour-blind can tell apart too). Points that an axis cannot show (not finite, not positive on a log axis, outside of
+ * the limits) are left out; lines are cut at the frame. */
 #ifndef BENCH_SVG_H
 #define BENCH_SVG_H
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
-enum { SVG_POINTS, SVG_LINE, SVG_LINE_ONLY };            /* markers; markers joined by a line; a line without markers */
-enum { SVG_W = 1000, SVG_H = 600, SVG_L = 84, SVG_R = 770, SVG_T = 50, SVG_B = 530, SVG_SHAPES = 8 }; /* sheet and frame, pixels */
+enum { SVG_POINTS, SVG_LINE, SVG_LINE_ONLY }; /* markers; markers joined by a line; a line without markers */
+enum { SVG_W = 1000, SVG_H = 600, SVG_L = 84, SVG_R = 770, SVG_T = 50, SVG_B = 530 }; /* sheet and frame in pixels */
+enum { SVG_SHAPES = 8, SVG_LABELS = 64 };
 
 typedef struct {
     FILE *out;
     int log[2], series, row; /* axis 0: x, 1: y; rows of the legend used */
     double min[2], max[2];
+    int labels;
+    double label[SVG_LABELS][3]; /* left, right, baseline of what is written */
 } svg_plot;
 
 /* Widens [*lo, *hi] (empty while lo > hi) to hold the values that a log or linear axis can show. */
@@ -54,17 +58,19 @@ static inline double svg_at(const svg_plot *p, int axis, double v) {
 
 static inline void svg_tick(svg_plot *p, int axis, double v, int labelled) {
     double at = svg_at(p, axis, v);
-    int e = (int)lround(log10(fabs(v) > 0 ? fabs(v) : 1));
+    const int e = (int)floor(log10(fabs(v) > 0 ? fabs(v) : 1) + 1e-9);
     if (!(v >= p->min[axis] * (1 - 1e-9) && v <= p->max[axis] * (1 + 1e-9)) && v != 0) return;
     fprintf(p->out, "<path d=\"M%.1f %.1f%c%.1f\" stroke=\"%s\"/>\n", axis ? (double)SVG_L : at, axis ? at : (double)SVG_B,
             axis ? 'H' : 'V', (double)(axis ? SVG_R : SVG_T), labelled ? "#c8c8c8" : "#ececec");
     if (!labelled) return;
     fprintf(p->out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", axis ? SVG_L - 8.0 : at, axis ? at + 5 : SVG_B + 22.0,
             axis ? "end" : "middle");
-    if (p->log[axis] && (e < -3 || e > 4) && fabs(v / pow(10, e) - 1) < 1e-9)
+    if (p->log[axis] && (e < -3 || e > 4)) {
+        if (v > 1.5 * pow(10, e)) fprintf(p->out, "%.0f&#183;", v / pow(10, e));
         fprintf(p->out, "10<tspan dy=\"-6\" font-size=\"11\">%d</tspan></text>\n", e);
-    else
+    } else {
         fprintf(p->out, "%g</text>\n", v);
+    }
 }
 
 static inline void svg_axis(svg_plot *p, int axis) {
@@ -89,12 +95,12 @@ static inline void svg_axis(svg_plot *p, int axis) {
 static inline void svg_begin(svg_plot *p, const char *file, const char *title, const char *xlabel, const char *ylabel, int xlog,
                              int ylog, double xmin, double xmax, double ymin, double ymax) {
     p->out = fopen(file, "w");
-    p->series = p->row = 0;
+    p->series = p->row = p->labels = 0;
     p->log[0] = xlog, p->log[1] = ylog;
     p->min[0] = xmin, p->max[0] = xmax, p->min[1] = ymin, p->max[1] = ymax;
     if (!p->out) return;
-    fprintf(p->out, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\"", SVG_W, SVG_H, SVG_W,
-            SVG_H);
+    fprintf(p->out, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\"", SVG_W, SVG_H,
+            SVG_W, SVG_H);
     fprintf(p->out, " font-family=\"Helvetica, Arial, sans-serif\" font-size=\"15\" fill=\"none\">\n<title>");
     svg_text(p, title);
     fprintf(p->out, "</title>\n<rect width=\"%d\" height=\"%d\" fill=\"white\"/>\n", SVG_W, SVG_H);
@@ -114,9 +120,14 @@ static inline void svg_begin(svg_plot *p, const char *file, const char *title, c
 }
 
 static inline void svg_mark(svg_plot *p, int series, double x, double y) {
-    static const char *const path[SVG_SHAPES] = {
-        "m-5 0a5 5 0 1 0 10 0a5 5 0 1 0 -10 0z", "m-4.5 -4.5h9v9h-9z", "m0 -6l5.5 10h-11z", "m0 -6.5l6 6.5l-6 6.5l-6 -6.5z",
-        "m0 6l5.5 -10h-11z", "m-5 -5l10 10m0 -10l-10 10", "m0 -6v12m-6 -6h12", "m-5 -3l10 6m0 -6l-10 6m5 -9v12"};
+    static const char *const path[SVG_SHAPES] = {"m-5 0a5 5 0 1 0 10 0a5 5 0 1 0 -10 0z",
+                                                 "m-4.5 -4.5h9v9h-9z",
+                                                 "m0 -6l5.5 10h-11z",
+                                                 "m0 -6.5l6 6.5l-6 6.5l-6 -6.5z",
+                                                 "m0 6l5.5 -10h-11z",
+                                                 "m-5 -5l10 10m0 -10l-10 10",
+                                                 "m0 -6v12m-6 -6h12",
+                                                 "m-5 -3l10 6m0 -6l-10 6m5 -9v12"};
     fprintf(p->out, "<path d=\"M%.1f %.1f%s\"/>\n", x, y, path[series % SVG_SHAPES]);
 }
 
@@ -162,10 +173,27 @@ static inline void svg_series(svg_plot *p, const char *name, int n, const double
 }
 
 static inline void svg_label(svg_plot *p, double x, double y, const char *s) {
-    if (!p->out) return;
-    fprintf(p->out, "<text fill=\"#303030\" font-size=\"12\" x=\"%.1f\" y=\"%.1f\">", svg_at(p, 0, x) + 9, svg_at(p, 1, y) + 4);
-    svg_text(p, s);
-    fprintf(p->out, "</text>\n");
+    /* tried in this order; from the point, negative: the text ends there */
+    static const int place[7][2] = {{9, 4}, {9, 16}, {9, -8}, {-9, 4}, {-9, 16}, {-9, -8}, {9, 28}};
+    const double width = 6.7 * (double)strlen(s); /* of the widest of the fonts, at 12 pixels */
+    int i, k;
+    if (!p->out || p->labels == SVG_LABELS) return;
+    for (i = 0; i < 7; i++) {
+        const double left = svg_at(p, 0, x) + place[i][0] - (place[i][0] < 0 ? width : 0), base = svg_at(p, 1, y) + place[i][1];
+        if (left < SVG_L || left + width > SVG_R || base > SVG_B || base < SVG_T + 12) continue;
+        for (k = 0; k < p->labels; k++)
+            if (left < p->label[k][1] && left + width > p->label[k][0] && fabs(base - p->label[k][2]) < 12) break;
+        if (k < p->labels) continue;
+        p->label[k][0] = left, p->label[k][1] = left + width, p->label[k][2] = base;
+        p->labels++;
+        fprintf(p->out,
+                "<text fill=\"#303030\" stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\" font-size=\"12\" "
+                "text-anchor=\"%s\" x=\"%.1f\" y=\"%.1f\">",
+                place[i][0] < 0 ? "end" : "start", place[i][0] < 0 ? left + width : left, base);
+        svg_text(p, s);
+        fprintf(p->out, "</text>\n");
+        return;
+    }
 }
 
 static inline void svg_note(svg_plot *p, const char *s) {

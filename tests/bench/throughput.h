@@ -3,7 +3,11 @@
 #define BENCH_THROUGHPUT_H
 #include <stddef.h>
 
-enum { BENCH_OUT = 5, BENCH_N = 4096, BENCH_KERNELS = 5 }; /* outputs: x, y, z, pdf, weight; samples of a pass; vector-maths kernels */
+enum {
+    BENCH_OUT = 5,
+    BENCH_N = 4096,
+    BENCH_KERNELS = 5
+}; /* outputs: x, y, z, pdf, weight; samples of a pass; vector-maths kernels */
 
 /* p: three parameters, then wo, as in tests/registry.h */
 typedef void bench_form(const float *p, size_t n, const float *u1, const float *u2, float *const out[BENCH_OUT]);

@@ -5,14 +5,14 @@
 #include "throughput.h"
 
 #if BENCH_W == 8
-#define LOOP(name, statement)                                                             \
-    static void name(size_t n, const float *in, float *out, float *out2) {                \
-        size_t i;                                                                         \
-        (void)out2;                                                                       \
-        for (i = 0; i < n; i += 8) {                                                      \
-            const V x = LOAD(in + i);                                                     \
-            statement;                                                                    \
-        }                                                                                 \
+#define LOOP(name, statement)                                              \
+    static void name(size_t n, const float *in, float *out, float *out2) { \
+        size_t i;                                                          \
+        (void)out2;                                                        \
+        for (i = 0; i < n; i += 8) {                                       \
+            const V x = LOAD(in + i);                                      \
+            statement;                                                     \
+        }                                                                  \
     }
 
 typedef mcs8_f unaligned __attribute__((aligned(4), may_alias)); /* see forms.h */

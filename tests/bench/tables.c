@@ -1,0 +1,418 @@
+/* Building and sampling tables: piecewise constant, piecewise linear and alias on a line, environment maps on the sphere (RGB
+ * images of a synthetic sky, with and without a sun), against the textbook's float function and cumulative distribution with binary
+ * search (Pharr, Jakob, Humphreys 2023, A.4, A.5; images weighted by the sine at the row's centre, 12.5). Seconds of a build are
+ * beside those of a plain memcpy of what it is built from; samples give a direction with its density, every u is new; densities are
+ * asked for directions uniform over the sphere.
+ *
+ * Writes tables.csv and tables.svg (ns per sample against the number of texels) and prints the table. */
+#include "bench.h"
+#include "mcsample.h"
+#include "svg.h"
+#include <math.h>
+#include <stdint.h>
+
+#define PI 3.14159265f
+
+/* ---- the textbook ---- */
+
+typedef struct {
+    float *func, *cdf, integral; /* n values, n + 1 sums */
+    uint32_t n;
+} text_cdf;
+
+static void text_cdf_build(text_cdf *t) { /* from func */
+    uint32_t i;
+    t->cdf[0] = 0;
+    for (i = 1; i <= t->n; i++) t->cdf[i] = t->cdf[i - 1] + t->func[i - 1] / (float)t->n;
+    t->integral = t->cdf[t->n];
+    for (i = 1; i <= t->n; i++) t->cdf[i] = t->integral > 0 ? t->cdf[i] / t->integral : (float)i / (float)t->n;
+}
+static float text_cdf_sample(const text_cdf *t, float u, float *pdf, uint32_t *cell) {
+    uint32_t lo = 0, size = t->n;
+    float width;
+    while (size > 1) { /* the last cell that begins at or below u */
+        const uint32_t half = size / 2;
+        if (t->cdf[lo + half] <= u) lo += half, size -= half;
+        else size = half;
+    }
+    width = t->cdf[lo + 1] - t->cdf[lo];
+    *pdf = t->integral > 0 ? t->func[lo] / t->integral : 1;
+    *cell = lo;
+    return ((float)lo + (width > 0 ? (u - t->cdf[lo]) / width : 0)) / (float)t->n;
+}
+
+static struct {
+    text_cdf *rows, marginal;
+    float *floats; /* all of their memory */
+    size_t bytes;
+} text_env;
+
+static const float *luminance_of(const float *rgb, float *y) {
+    *y = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+    return rgb + 3;
+}
+static int text_env_make(uint32_t w, uint32_t h) { /* 0 without memory */
+    const size_t floats = (size_t)h * (2 * (size_t)w + 1) + 2 * (size_t)h + 1;
+    float *at = malloc(floats * sizeof *at);
+    uint32_t y;
+    text_env.floats = at;
+    text_env.rows = malloc(h * sizeof *text_env.rows);
+    text_env.bytes = floats * sizeof *at + h * sizeof *text_env.rows;
+    if (!at || !text_env.rows) return 0;
+    for (y = 0; y < h; y++) {
+        text_env.rows[y].n = w, text_env.rows[y].func = at, text_env.rows[y].cdf = at + w;
+        at += 2 * (size_t)w + 1;
+    }
+    text_env.marginal.n = h, text_env.marginal.func = at, text_env.marginal.cdf = at + h;
+    return 1;
+}
+static void text_env_build(const float *rgb, uint32_t w, uint32_t h) {
+    uint32_t x, y;
+    for (y = 0; y < h; y++) {
+        const float sine = sinf(PI * ((float)y + 0.5f) / (float)h);
+        for (x = 0; x < w; x++) {
+            rgb = luminance_of(rgb, &text_env.rows[y].func[x]);
+            text_env.rows[y].func[x] *= sine;
+        }
+        text_cdf_build(&text_env.rows[y]);
+        text_env.marginal.func[y] = text_env.rows[y].integral;
+    }
+    text_cdf_build(&text_env.marginal);
+}
+static mcs_dir text_env_sample(float u1, float u2) {
+    float pdf_x, pdf_y, x, y, theta, phi;
+    uint32_t row, column;
+    mcs_dir d;
+    y = text_cdf_sample(&text_env.marginal, u2, &pdf_y, &row);
+    x = text_cdf_sample(&text_env.rows[row], u1, &pdf_x, &column);
+    theta = PI * y, phi = 2 * PI * x;
+    d.w.x = sinf(theta) * cosf(phi), d.w.y = sinf(theta) * sinf(phi), d.w.z = cosf(theta);
+    d.pdf = pdf_x * pdf_y / (2 * PI * PI * sinf(theta));
+    return d;
+}
+static float text_env_pdf(float x, float y, float z) {
+    const float theta = acosf(z), phi = atan2f(y, x);
+    const uint32_t w = text_env.rows[0].n, h = text_env.marginal.n;
+    uint32_t row = (uint32_t)(theta / PI * (float)h), column = (uint32_t)((phi < 0 ? phi + 2 * PI : phi) / (2 * PI) * (float)w);
+    row = row < h ? row : h - 1, column = column < w ? column : w - 1;
+    return text_env.rows[row].func[column] / text_env.marginal.integral / (2 * PI * PI * sinf(theta));
+}
+
+/* ---- what is measured: jobs that take turns ---- */
+
+enum { DRAWS = 1 << 14, POOL = 1 << 19, ROUNDS_MAX = 15, JOBS_MAX = 8, ROWS_MAX = 128 };
+
+typedef struct {
+    const char *table, *form, *source;
+    uint32_t w, h;
+    double bytes, copies, built; /* bytes per cell or texel; multiples of memcpy; seconds, median */
+    double faster;               /* than text at sampling; copies and faster are medians of ratios within a round */
+    bench_spread sample, pdf;    /* ns, pdf.median 0: does not apply */
+} table_row;
+static table_row table_rows[ROWS_MAX];
+static int row_count, rounds;
+
+static float pool[2][POOL], directions[3][POOL], out[4][DRAWS]; /* random numbers; uniform directions; x, y, z, pdf */
+static size_t pool_at;
+
+static struct {
+    float *image, *copy; /* w x h RGB, or n + 1 values of a line */
+    uint32_t w, h;
+    text_cdf line;
+    void *pwc, *pwl, *alias, *env;
+} now;
+
+typedef void build_job(void);
+typedef void draw_job(size_t at); /* uses DRAWS entries of the pools from `at` on */
+
+static void keep1(size_t i, float x, float pdf) { out[0][i] = x, out[3][i] = pdf; }
+static void keep3(size_t i, mcs_vec3 w, float pdf) { out[0][i] = w.x, out[1][i] = w.y, out[2][i] = w.z, out[3][i] = pdf; }
+
+static size_t source_bytes(void) { return (now.h ? 3 * (size_t)now.w * now.h : now.w) * sizeof(float); }
+static void build_copy(void) { memcpy(now.copy, now.image, source_bytes()); }
+static void build_line_text(void) {
+    memcpy(now.line.func, now.image, now.w * sizeof(float));
+    text_cdf_build(&now.line);
+}
+static void build_pwc(void) { (void)mcs_pwc_build(now.pwc, mcs_pwc_bytes(now.w), now.image, now.w); }
+static void build_pwl(void) { (void)mcs_pwl_build(now.pwl, mcs_pwl_bytes(now.w), now.image, now.w); }
+static void build_alias(void) { (void)mcs_alias_build(now.alias, mcs_alias_bytes(now.w), now.image, now.w); }
+static void build_env_text(void) { text_env_build(now.image, now.w, now.h); }
+static void build_env(void) { (void)mcs_env_build(now.env, mcs_env_bytes(now.w, now.h), now.image, now.w, now.h, 3, 0); }
+
+#define DRAW(name, ...)                                                 \
+    static void draw_##name(size_t at) {                                \
+        const float *const u1 = pool[0] + at, *const u2 = pool[1] + at; \
+        size_t i;                                                       \
+        (void)u2;                                                       \
+        for (i = 0; i < DRAWS; i++) __VA_ARGS__                         \
+    }
+DRAW(line_text, {
+    float pdf;
+    uint32_t cell;
+    const float x = text_cdf_sample(&now.line, u1[i], &pdf, &cell);
+    keep1(i, x, pdf);
+})
+DRAW(pwc, {
+    const mcs_cell c = mcs_pwc_sample(now.pwc, u1[i]);
+    keep1(i, c.x, c.pdf);
+})
+DRAW(pwl, {
+    const mcs_cell c = mcs_pwl_sample(now.pwl, u1[i]);
+    keep1(i, c.x, c.pdf);
+})
+DRAW(alias, {
+    const mcs_pick c = mcs_alias_sample(now.alias, u1[i]);
+    keep1(i, (float)c.i + c.u, c.pmf);
+})
+DRAW(env_text, {
+    const mcs_dir d = text_env_sample(u1[i], u2[i]);
+    keep3(i, d.w, d.pdf);
+})
+DRAW(env, {
+    const mcs_texel t = mcs_env_sample(now.env, u1[i], u2[i]);
+    keep3(i, t.w, t.pdf);
+})
+static void density_text(size_t at) {
+    size_t i;
+    for (i = at; i < at + DRAWS; i++) out[3][i - at] = text_env_pdf(directions[0][i], directions[1][i], directions[2][i]);
+}
+static void density_env(size_t at) {
+    size_t i;
+    for (i = at; i < at + DRAWS; i++) {
+        const mcs_vec3 w = {directions[0][i], directions[1][i], directions[2][i]};
+        out[3][i - at] = mcs_env_pdf(now.env, w);
+    }
+}
+static void density_env_n(size_t at) {
+    mcs_env_pdf_n(now.env, DRAWS, directions[0] + at, directions[1] + at, directions[2] + at, out[3]);
+}
+static void draw_pwc_n(size_t at) { mcs_pwc_sample_n(now.pwc, DRAWS, pool[0] + at, out[0], out[3]); }
+static void draw_pwl_n(size_t at) { mcs_pwl_sample_n(now.pwl, DRAWS, pool[0] + at, out[0], out[3]); }
+static void draw_env_n(size_t at) { mcs_env_sample_n(now.env, DRAWS, pool[0] + at, pool[1] + at, out[0], out[1], out[2], out[3]); }
+
+typedef struct {
+    const char *table, *form;
+    build_job *build;
+    draw_job *draw, *density;
+    double bytes; /* of the table */
+} job;
+
+static double time_draws(draw_job *f) { /* ns per sample */
+    const double began = bench_seconds();
+    double took;
+    int i;
+    f(pool_at);
+    took = (bench_seconds() - began) * 1e9 / DRAWS;
+    pool_at = (pool_at + DRAWS) % POOL;
+    for (i = 0; i < 4; i++) bench_consume(DRAWS, out[i]);
+    return took;
+}
+
+/* The first job is the copy, the second the textbook. Builds repeat until they take a millisecond; the tables stand when the
+ * samples are drawn. */
+static void measure(const job *jobs, int n, const char *source, double cells) {
+    static double built[JOBS_MAX][ROUNDS_MAX], drawn[JOBS_MAX][ROUNDS_MAX], density[JOBS_MAX][ROUNDS_MAX];
+    double ratio[ROUNDS_MAX];
+    int repeat[JOBS_MAX] = {0}, k, r, i;
+    for (r = -1; r < rounds; r++) {
+        bench_progress("tables: %u x %u, %s, round %d of %d", now.w, now.h ? now.h : 1, source, r + 1, rounds);
+        for (k = 0; k < n; k++) {
+            double took = bench_seconds();
+            if (!jobs[k].build) continue;
+            if (r < 0) repeat[k] = 1;
+            for (i = 0; i < repeat[k]; i++) jobs[k].build();
+            took = (bench_seconds() - took) / repeat[k];
+            if (r < 0) repeat[k] = 1 + (int)(1e-3 / took);
+            else built[k][r] = took;
+        }
+        for (k = 1; k < n; k++) {
+            const double drew = time_draws(jobs[k].draw);
+            const double knew = jobs[k].density ? time_draws(jobs[k].density) : 0;
+            if (r >= 0) drawn[k][r] = drew, density[k][r] = knew;
+        }
+    }
+    for (k = 0; k < n; k++) {
+        table_row *const row = &table_rows[row_count++];
+        row->table = jobs[k].table, row->form = jobs[k].form, row->source = source;
+        row->w = now.w, row->h = now.h;
+        row->bytes = jobs[k].bytes / cells;
+        row->copies = row->built = row->faster = 0;
+        memset(&row->sample, 0, sizeof row->sample);
+        memset(&row->pdf, 0, sizeof row->pdf);
+        if (jobs[k].build) {
+            for (r = 0; r < rounds; r++) ratio[r] = built[k][r] / built[0][r];
+            row->copies = bench_spread_of(ratio, rounds).median;
+        }
+        if (jobs[k].draw) {
+            for (r = 0; r < rounds; r++) ratio[r] = drawn[1][r] / drawn[k][r];
+            row->faster = bench_spread_of(ratio, rounds).median;
+        }
+    }
+    for (k = 0; k < n; k++) { /* after all ratios were taken, as it sorts */
+        table_row *const row = &table_rows[row_count - n + k];
+        if (jobs[k].build) row->built = bench_spread_of(built[k], rounds).median;
+        if (jobs[k].draw) row->sample = bench_spread_of(drawn[k], rounds);
+        if (jobs[k].density) row->pdf = bench_spread_of(density[k], rounds);
+    }
+}
+
+/* ---- sources ---- */
+
+static uint32_t scramble(uint32_t x) {
+    x = (x ^ (x >> 16)) * 0x7feb352du;
+    x = (x ^ (x >> 15)) * 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+/* A blue gradient with a bright horizon, clouds (random steps of a 64th of the height, 1 to 4), dark ground, and a sun: a disc of
+ * radius 0.265 degrees and 1e5 times the sky, spread over a texel where it is smaller than that. */
+static void make_sky(int sun) {
+    const double pi = 3.14159265358979323846, texel = pi / now.h, real = 0.265 * pi / 180, radius = fmax(real, 0.6 * texel);
+    const double sx = 0.6, sy = 0.48, sz = 0.64, sun_radiance = 1e5 * (real / radius) * (real / radius);
+    double *const along = malloc(2 * (size_t)now.w * sizeof *along);
+    uint32_t x, y;
+    if (!along) return;
+    for (x = 0; x < now.w; x++) along[2 * x] = cos(2 * pi * (x + 0.5) / now.w), along[2 * x + 1] = sin(2 * pi * (x + 0.5) / now.w);
+    for (y = 0; y < now.h; y++) {
+        const double theta = pi * (y + 0.5) / now.h, z = cos(theta), s = sin(theta);
+        const double glow = z > 0 ? 0.3 + 0.7 * exp(-4 * z) : 0.05;
+        float *p = now.image + 3 * (size_t)y * now.w;
+        for (x = 0; x < now.w; x++, p += 3) {
+            const uint32_t cloud = scramble((uint32_t)((uint64_t)x * 128 / now.w) * 64 + (uint32_t)((uint64_t)y * 64 / now.h)) & 3;
+            const double l = z > 0 ? glow * (1 + cloud) : glow;
+            p[0] = (float)(0.7 * l), p[1] = (float)(0.85 * l), p[2] = (float)l;
+            if (sun && sx * s * along[2 * x] + sy * s * along[2 * x + 1] + sz * z > cos(radius))
+                p[0] = p[1] = p[2] = (float)sun_radiance;
+        }
+    }
+    free(along);
+}
+
+static int no_memory(void) { return printf("SKIPPED: %u x %u: not enough memory\n", now.w, now.h ? now.h : 1), 0; }
+
+static void measure_line(uint32_t n) {
+    const double cell = sizeof(float);
+    const job jobs[] = {{"copy", "memcpy", build_copy, NULL, NULL, 0},
+                        {"pwc", "text", build_line_text, draw_line_text, NULL, (2 * (double)n + 1) * cell},
+                        {"pwc", "scalar", build_pwc, draw_pwc, NULL, (double)mcs_pwc_bytes(n)},
+                        {"pwc", "n", NULL, draw_pwc_n, NULL, (double)mcs_pwc_bytes(n)},
+                        {"pwl", "scalar", build_pwl, draw_pwl, NULL, (double)mcs_pwl_bytes(n)},
+                        {"pwl", "n", NULL, draw_pwl_n, NULL, (double)mcs_pwl_bytes(n)},
+                        {"alias", "scalar", build_alias, draw_alias, NULL, (double)mcs_alias_bytes(n)}};
+    uint32_t i;
+    now.w = n, now.h = 0;
+    now.image = malloc(((size_t)n + 1) * sizeof(float)), now.copy = malloc(((size_t)n + 1) * sizeof(float));
+    now.line.n = n, now.line.func = malloc(n * sizeof(float)), now.line.cdf = malloc(((size_t)n + 1) * sizeof(float));
+    now.pwc = malloc(mcs_pwc_bytes(n)), now.pwl = malloc(mcs_pwl_bytes(n)), now.alias = malloc(mcs_alias_bytes(n));
+    if (now.image && now.copy && now.line.func && now.line.cdf && now.pwc && now.pwl && now.alias) {
+        for (i = 0; i <= n; i++) now.image[i] = (float)(1 + (scramble(i) >> 24)) * (1 + sinf(20 * (float)i / (float)n));
+        memset(now.copy, 1, ((size_t)n + 1) * sizeof(float));
+        measure(jobs, sizeof jobs / sizeof jobs[0], "line", n);
+    } else no_memory();
+    free(now.image), free(now.copy), free(now.line.func), free(now.line.cdf), free(now.pwc), free(now.pwl), free(now.alias);
+}
+
+static void measure_env(uint32_t w, int sun) {
+    const uint32_t h = w / 2;
+    const double bytes = (double)mcs_env_bytes(w, h);
+    job jobs[] = {{"copy", "memcpy", build_copy, NULL, NULL, 0},
+                  {"env", "text", build_env_text, draw_env_text, density_text, 0},
+                  {"env", "scalar", build_env, draw_env, density_env, bytes},
+                  {"env", "n", NULL, draw_env_n, density_env_n, bytes}};
+    now.w = w, now.h = h;
+    now.image = malloc(source_bytes()), now.copy = malloc(source_bytes()), now.env = malloc(mcs_env_bytes(w, h));
+    if (now.image && now.copy && now.env && text_env_make(w, h)) {
+        jobs[1].bytes = (double)text_env.bytes;
+        make_sky(sun);
+        memset(now.copy, 1, source_bytes()); /* its pages exist before the clock runs */
+        measure(jobs, sizeof jobs / sizeof jobs[0], sun ? "sky with sun" : "sky", (double)w * h);
+    } else no_memory();
+    free(now.image), free(now.copy), free(now.env), free(text_env.floats), free(text_env.rows);
+    text_env.floats = NULL, text_env.rows = NULL;
+}
+
+/* ---- output ---- */
+
+static void write_results(void) {
+    static const char *const forms[] = {"text", "scalar", "n"};
+    FILE *f = bench_csv("tables.csv",
+                        "table,form,source,width,height,build_s,build_times_memcpy,bytes_per_cell,ns_sample_median,ns_sample_min,"
+                        "ns_sample_max,ns_pdf_median,ns_pdf_min,ns_pdf_max,times_faster_than_text");
+    svg_plot p;
+    int i, k, m;
+    double lo = 1, hi = 0, wide = 0;
+    for (i = 0; i < row_count; i++) {
+        const table_row *const r = &table_rows[i];
+        fprintf(f, "%s,%s,%s,%u,%u,", r->table, r->form, r->source, r->w, r->h ? r->h : 1);
+        if (r->built > 0) fprintf(f, "%.4g,%.4g,", r->built, r->copies);
+        else fprintf(f, ",,");
+        fprintf(f, "%.4g,", r->bytes);
+        if (r->sample.median > 0) fprintf(f, "%.4g,%.4g,%.4g,", r->sample.median, r->sample.min, r->sample.max);
+        else fprintf(f, ",,,");
+        if (r->pdf.median > 0) fprintf(f, "%.4g,%.4g,%.4g,", r->pdf.median, r->pdf.min, r->pdf.max);
+        else fprintf(f, ",,,");
+        if (r->sample.median > 0) fprintf(f, "%.4g", r->faster);
+        fprintf(f, "\n");
+        if (r->h) svg_range(1, &r->sample.median, 1, &lo, &hi), wide = fmax(wide, (double)r->w * r->h);
+    }
+    bench_close(f, "tables.csv");
+    svg_begin(&p, bench_path("tables.svg"), "Sampling an environment map", "texels", "time per direction with pdf, ns (median)", 1,
+              1, 2e4, wide * 1.6, lo / 1.5, hi * 1.5);
+    for (m = 0; m < 2; m++) {
+        for (k = 0; k < 3; k++) {
+            double x[ROWS_MAX], y[ROWS_MAX];
+            char name[64];
+            int n = 0;
+            for (i = 0; i < row_count; i++) {
+                const table_row *const r = &table_rows[i];
+                if (!r->h || strcmp(r->form, forms[k]) || (strcmp(r->source, "sky") != 0) != m) continue;
+                x[n] = (double)r->w * r->h, y[n++] = r->sample.median;
+            }
+            snprintf(name, sizeof name, "%s, %s", forms[k], m ? "sky with sun" : "sky");
+            svg_series(&p, name, n, x, y, SVG_LINE);
+        }
+    }
+    if (svg_end(&p)) {
+        fprintf(stderr, "cannot write %s\n", bench_path("tables.svg"));
+        exit(2);
+    }
+    printf("\n%-6s %-7s %-13s %13s %10s %9s %9s %10s %9s %9s %9s %9s\n", "table", "form", "source", "size", "build ms", "x memcpy",
+           "B/cell", "ns/sample", "min", "max", "ns/pdf", "x text");
+    for (i = 0; i < row_count; i++) {
+        const table_row *const r = &table_rows[i];
+        char size[32];
+        if (r->h) snprintf(size, sizeof size, "%ux%u", r->w, r->h);
+        else snprintf(size, sizeof size, "%u", r->w);
+        printf("%-6s %-7s %-13s %13s", r->table, r->form, r->source, size);
+        if (r->built > 0) printf(" %10.3g %9.3g", 1e3 * r->built, r->copies);
+        else printf(" %10s %9s", "-", "-");
+        if (r->sample.median > 0) {
+            printf(" %9.3g %10.3g %9.3g %9.3g", r->bytes, r->sample.median, r->sample.min, r->sample.max);
+            if (r->pdf.median > 0) printf(" %9.3g", r->pdf.median);
+            else printf(" %9s", "-");
+            printf(" %8.2fx", r->faster);
+        }
+        putchar('\n');
+    }
+    printf("wrote %s/tables.csv, tables.svg\n", bench.out);
+}
+
+int main(int argc, char **argv) {
+    static const uint32_t lines[] = {256, 4096, 65536, 1048576}, maps[] = {256, 1024, 2048, 4096, 8192};
+    mcs_pcg32 rng = mcs_pcg32_make(1, 2);
+    size_t i;
+    bench_start(argc, argv, "tables");
+    rounds = bench.quick ? 7 : 15;
+    mcs_pcg32_fill_n(&rng, POOL, pool[0]);
+    mcs_pcg32_fill_n(&rng, POOL, pool[1]);
+    mcs_sphere_sample_n(POOL, pool[0], pool[1], directions[0], directions[1], directions[2], NULL);
+    for (i = 0; i < sizeof lines / sizeof lines[0]; i++) measure_line(lines[i]);
+    for (i = 0; i < (bench.quick ? 3 : sizeof maps / sizeof maps[0]); i++) {
+        measure_env(maps[i], 0);
+        measure_env(maps[i], 1);
+    }
+    bench_progress("%s", "");
+    write_results();
+    return 0;
+}
