@@ -45,12 +45,6 @@ demo: $(RENDER) ## render the default scene with every strategy into build/demo,
 	@mkdir -p $(BUILD)/demo
 	$(RENDER) --strategy all --out $(BUILD)/demo/spheres
 
-time: $(BUILD)/tests/timing ## ns per sample, scalar against 8 wide (no gate)
-	$(BUILD)/tests/timing
-	+@if $(CC) -mavx2 -mfma -E -x c /dev/null >/dev/null 2>&1; then \
-		$(MAKE) --no-print-directory $(BUILD)/tests/timing-avx2 && $(BUILD)/tests/timing-avx2; \
-	else echo 'SKIPPED: $(CC) has no -mavx2'; fi
-
 hygiene: ## warnings in every language standard, index, macros, symbols, what including the header costs
 	@BUILD='$(BUILD)' JOBS='$(JOBS)' sh tests/hygiene.sh
 
@@ -86,10 +80,6 @@ $(BUILD)/%: %.c mcsample.h $(wildcard tests/*.h) $(BUILD)/flags
 $(RENDER): examples/render.c mcsample.h $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(FLAGS) $(OPENMP) $< -o $@ $(LIBS)
-
-$(BUILD)/tests/timing-avx2: tests/timing.c mcsample.h $(BUILD)/flags
-	@mkdir -p $(@D)
-	$(CC) $(FLAGS) -mavx2 -mfma $< -o $@ $(LIBS)
 
 # The tests demand the same bits from every width; the header promises them where a*b+c is not contracted.
 $(TEST_BINS): EXACT = -ffp-contract=off
@@ -136,4 +126,4 @@ $(BENCH)/%: tests/bench/%.c $(BENCH_HEADERS)
 	$(CC) $(BENCH_FLAGS) $< -o $@ $(LIBS)
 
 FORCE:
-.PHONY: test examples demo time hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries
+.PHONY: test examples demo hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries

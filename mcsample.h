@@ -111,10 +111,14 @@
  * MCS_NO_1D       leaves out the one-dimensional densities                           (default: off)
  * MCS_NO_LOBES    leaves out Phong, Ward, Beckmann, GGX, Ashikhmin-Shirley           (default: off)
  * MCS_NO_TABLES   leaves out tables and the environment map                          (default: off)
- * The switches only save compile time: functions that are not used leave no code in any case. */
+ * MCS_MAX_LANES   4, 8 or 16: the widest unit that `_n` forms pick at run time on x86, SSE2, AVX2 or AVX-512   (default: 16)
+ * The MCS_NO_ switches only save compile time: functions that are not used leave no code in any case. */
 
 #ifndef MCS_ASSERT
 #define MCS_ASSERT(condition) ((void)0) /* called with the range conditions on parameters; define as assert to be told */
+#endif
+#ifndef MCS_MAX_LANES
+#define MCS_MAX_LANES 16
 #endif
 #ifndef MCS_SELF
 #define MCS_SELF "mcsample.h" /* how the header finds itself; only for a renamed copy */
@@ -200,10 +204,10 @@ typedef double mcsi16_d __attribute__((vector_size(128), aligned(16)));
 #define MCSI_TARGET_AVX2 "avx2,fma"
 #define MCSI_TARGET_AVX512 "avx512f,avx512dq,avx512bw,avx512vl"
 #if defined(MCSI_X86) && !defined(MCS_NO_WIDE) && !defined(MCS_NO_BATCH)
-#if !defined(__AVX2__)
+#if !defined(__AVX2__) && MCS_MAX_LANES >= 8
 #define MCSI_PICK_AVX2
 #endif
-#if !defined(__AVX512F__)
+#if !defined(__AVX512F__) && MCS_MAX_LANES >= 16
 #define MCSI_PICK_AVX512
 #endif
 #endif

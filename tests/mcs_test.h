@@ -105,6 +105,15 @@ static void mcst_fail(const char *file, int line, const char *what, const char *
     putchar('\n');
 }
 
+/* 1 where this build contracts a*b + c: with c the rounded product, only a fused operation finds what the rounding took away. */
+static inline int mcst_contracts(void) {
+    volatile float v[3] = {1 + 0x1p-12f, 1 + 0x1p-12f, 0};
+    float a, b, c;
+    v[2] = -(v[0] * v[1]);
+    a = v[0], b = v[1], c = v[2];
+    return a * b + c != 0;
+}
+
 #define CHECK(cond, ...) ((void)(mcst.checks++, (cond) ? 0 : (mcst_fail(__FILE__, __LINE__, #cond, __VA_ARGS__), 0)))
 
 static int mcst_finish(void) {

@@ -6,31 +6,22 @@
 #define MCST_WIDE
 #include "registry.h"
 
-/* 1 where a*b + c is contracted: with c the rounded product, only a fused operation finds what the rounding took away. */
-static int contracts_plain(volatile const float *v) {
-    const float a = v[0], b = v[1], c = v[2];
-    return a * b + c != 0;
-}
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+static int lanes_contract, arrays_contract; /* the wide forms; the array forms, which choose their instructions at run time */
+
+#if defined(__x86_64__) && defined(__GNUC__)
 __attribute__((target("avx2,fma"))) static int contracts_fma(volatile const float *v) {
     const float a = v[0], b = v[1], c = v[2];
     return a * b + c != 0;
 }
-#else
-static int contracts_fma(volatile const float *v) { return contracts_plain(v); }
 #endif
-
-static int lanes_contract, arrays_contract; /* the wide forms; the array forms, which choose their instructions at run time */
-
 static void find_contraction(void) {
-    volatile float v[3] = {1 + 0x1p-12f, 1 + 0x1p-12f, 0};
-    v[2] = -(v[0] * v[1]);
-    lanes_contract = contracts_plain(v);
-    arrays_contract = lanes_contract;
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-    if (__builtin_cpu_supports("fma")) arrays_contract = contracts_fma(v);
-#else
-    arrays_contract = contracts_fma(v);
+    lanes_contract = arrays_contract = mcst_contracts();
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("fma")) {
+        volatile float v[3] = {1 + 0x1p-12f, 1 + 0x1p-12f, 0};
+        v[2] = -(v[0] * v[1]);
+        arrays_contract = contracts_fma(v);
+    }
 #endif
     printf("a*b + c is contracted in: %s\n", lanes_contract ? "everything" : arrays_contract ? "the array forms" : "nothing");
 }
