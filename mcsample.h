@@ -2172,14 +2172,17 @@ MCSI_BATCH_VALUE(ggx_bounded_pdf, ggx)
  * source             Ashikhmin and Shirley 2000, "An anisotropic Phong BRDF model", equations 4, 6, 8, 10 */
 
 typedef struct {
-    MCSI_F nu, nv, width_u, width_v, norm;
-} MCS_(ashikhmin); /* widths 1/sqrt(n+1) */
+    MCSI_F nu, nv, width_u, width_v, least, more, norm; /* widths 1/sqrt(n+1); the smaller 1/(n+1), and what the other has more */
+} MCS_(ashikhmin);
 MCSI_FN MCS_(ashikhmin) MCS_(ashikhmin_make)(MCSI_F nu, MCSI_F nv) {
     MCS_(ashikhmin) m;
+    MCSI_F u, v;
     MCSI_I ok = (nu >= 0.0f) & (nv >= 0.0f);
     MCSI_REQUIRE(ok);
     m.nu = MCSI_(within)(ok, nu, 0.0f, 1e9f), m.nv = MCSI_(within)(ok, nv, 0.0f, 1e9f);
-    m.width_u = MCSI_(sqrt)(1.0f / (m.nu + 1.0f)), m.width_v = MCSI_(sqrt)(1.0f / (m.nv + 1.0f));
+    u = 1.0f / (m.nu + 1.0f), v = 1.0f / (m.nv + 1.0f);
+    m.width_u = MCSI_(sqrt)(u), m.width_v = MCSI_(sqrt)(v);
+    m.least = MCSI_(min)(u, v), m.more = MCSI_(max)(u, v) - m.least;
     m.norm = MCSI_(sel)(ok, MCSI_(sqrt)(m.nu + 1.0f) * MCSI_(sqrt)(m.nv + 1.0f) * MCSI_1_2PI, MCSI_(set)(0.0f));
     return m;
 }
@@ -2195,7 +2198,8 @@ MCSI_FN MCS_(dir) MCS_(ashikhmin_h_sample)(const MCS_(ashikhmin) * m, MCSI_F u1,
     MCSI_F s, c, x, y, n, cosine, d, r;
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
     MCSI_(sincos_turns)(u2, &s, &c);
-    x = c * m->width_u, y = s * m->width_v, n = x * x + y * y; /* n = 1/(s+1) */
+    x = c * m->width_u, y = s * m->width_v;
+    n = MCSI_(sel)(m->nu < m->nv, c, s), n = m->least + m->more * (n * n); /* x^2 + y^2 = 1/(s+1), exact when isotropic */
     cosine = MCSI_(exp_both)(n * MCSI_(log1p)(-u1), &d);
     r = MCSI_(sqrt)(-d * (2.0f + d) / n);
     h.w = MCSI_(vec3)(r * x, r * y, cosine);
@@ -2246,6 +2250,7 @@ MCSI_CORE MCS_(ashikhmin) MCSI_(ashikhmin_spread)(const mcs_ashikhmin *m) {
     MCS_(ashikhmin) all;
     all.nu = MCSI_(set)(m->nu), all.nv = MCSI_(set)(m->nv), all.norm = MCSI_(set)(m->norm);
     all.width_u = MCSI_(set)(m->width_u), all.width_v = MCSI_(set)(m->width_v);
+    all.least = MCSI_(set)(m->least), all.more = MCSI_(set)(m->more);
     return all;
 }
 #endif
