@@ -135,7 +135,8 @@
 
 /* ---- platform: the only place that knows compilers and instruction sets ------------------------------------------------------ */
 
-#if !defined(MCS_NO_WIDE) && (!defined(__GNUC__) || defined(__TINYC__) || defined(__CUDACC__))
+/* No vector types, or none that mix with floats: where float expressions are evaluated as double (s390x and x87 under -std=c99). */
+#if !defined(MCS_NO_WIDE) && (!defined(__GNUC__) || defined(__TINYC__) || defined(__CUDACC__) || FLT_EVAL_METHOD > 0)
 #define MCS_NO_WIDE
 #endif
 
