@@ -141,7 +141,7 @@
 #endif
 
 #if defined(__GNUC__)
-/* about vectors passed to functions, often reported at the end of the user's file: here all of them are inlined */
+/* About vectors passed to functions; here all of them are inlined. gcc reports it at the end of the file, so it stays off. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
@@ -262,7 +262,7 @@ MCS_FN
     b->rest = rest, b->i = 0, b->n = lanes;
     return 1;
 }
-/* Two loops, so that the inner one has a plain head: gcc then takes divisions and roots that are constant in the batch out of it. */
+/* Two loops, so that the inner one has a plain head: gcc then takes divisions and roots that are constant out of it. */
 #define MCSI_EACH(b)                                                       \
     for ((b).more = 1; (b).more; (b).more = mcsi_batch_rest(&(b), MCSI_W)) \
         for (; (b).i + MCSI_W <= (b).n; (b).i += MCSI_W)
@@ -403,8 +403,8 @@ typedef double mcsi_d;
  * F, I, U stand for the float, int32 and uint32 lanes of the pass. Masks are lanes of I: 0 or 1 in the scalar pass, 0 or -1 in the
  * others, so `&` and `|` join them and nothing else may be done with them. */
 
-/* MCSI_FN before public functions of every width, MCSI_CORE before their parts, which compilers would leave as calls that return structs
- * through memory. */
+/* MCSI_FN before public functions of every width, MCSI_CORE before their parts, which compilers would leave as calls that return
+ * structs through memory. */
 #if MCSI_W == 1
 #define MCSI_FN MCS_FN
 #if defined(__GNUC__) && !defined(__CUDACC__)
@@ -566,11 +566,12 @@ MCSI_CORE MCSI_I MCSI_(scale_ok)(MCSI_F scale) { return (scale >= 1e-18f) & (sca
 MCSI_CORE MCSI_I MCSI_(always)(void) { return MCSI_(set)(0.0f) == MCSI_(set)(0.0f); }
 
 /* ---- vector maths: own polynomials, the same in every width ------------------------------------------------------------------
- * Minimax fits with float coefficients, summed in pairs (Estrin), as a scalar caller waits for the longest chain of operations. Errors in ulp, over every float of the range (tests/test_math.c). */
+ * Minimax fits with float coefficients, summed in pairs (Estrin), as a scalar caller waits for the longest chain of operations.
+ * Errors in ulp are the largest found in dense sweeps of the whole range (tests/test_math.c). */
 
 /* clang-format off */
-/* (sin, cos)(2 pi t), t in [-1/8, 1]. The reduction to an eighth of a turn is exact. 1.4 ulp. *behind is set within an eighth of half a
- * turn, where *one_plus is 1 + cos without its cancellation. */
+/* (sin, cos)(2 pi t), t in [-1/8, 1]. The reduction to an eighth of a turn is exact. 1.4 ulp. *behind is set within an eighth of a
+ * turn from half a turn, where *one_plus is 1 + cos without its cancellation. */
 MCSI_CORE void MCSI_(sincos_behind)(MCSI_F t, MCSI_F *sine, MCSI_F *cosine, MCSI_I *behind, MCSI_F *one_plus) {
     MCSI_I k = MCSI_(trunc)(4.0f * t + 0.5f), swap = -(k & 1);
     MCSI_F r = t - 0.25f * MCSI_(to_float)(k), z = r * r, zz = z * z;
@@ -622,7 +623,8 @@ MCSI_CORE MCSI_F MCSI_(exp_reduced)(MCSI_F x, MCSI_I *k) {
     e = MCSI_(to_float)(*k);
     r = (x - e * 0.693145752f) - e * 1.42860677e-06f;
     rr = r * r;
-    return r + rr * ((0.5f + r * 0.166666657f) + rr * ((0.0416664928f + r * 0.00833354425f) + rr * (0.00139323424f + r * 0.00019763397f)));
+    return r + rr * ((0.5f + r * 0.166666657f) +
+                     rr * ((0.0416664928f + r * 0.00833354425f) + rr * (0.00139323424f + r * 0.00019763397f)));
 }
 /* e^min(x, 0), subnormal results included; NaN gives 0. 1 ulp. */
 MCSI_CORE MCSI_F MCSI_(exp_neg)(MCSI_F x) {
@@ -2037,8 +2039,8 @@ MCSI_CORE MCSI_(visible) MCSI_(visible_make)(const MCSI_(slopes) * m, MCS_(vec3)
     v.cap = 1.0f + (1.0f - less) * v.i_z, v.lift = less * v.i_z, v.denominator = (1.0f - less) * wo.z + v.t;
     return v;
 }
-/* The unnormalised half-vector p, with |p|^2 and, in the stretched frame, *n2 = |c + i|^2. The azimuth is measured from i's; where c
- * nearly cancels i, the mirror at grazing incidence, 1 + cos(phi) and i_sin - s enter, so that c + i keeps its relative accuracy. */
+/* The unnormalised half-vector p, with |p|^2 and, in the stretched frame, *n2 = |c + i|^2. The azimuth is measured from i's; where
+ * c nearly cancels i, the mirror at grazing incidence, 1 + cos(phi) and i_sin - s enter, so c + i stays accurate. */
 MCSI_CORE MCS_(vec3)
     MCSI_(visible_half)(const MCSI_(slopes) * m, const MCSI_(visible) * v, MCSI_F u1, MCSI_F u2, MCSI_F *p2, MCSI_F *n2) {
     MCS_(vec3) p;

@@ -210,8 +210,8 @@ static void check_sample(const map *m, const mcs_env *e, float u1, float u2) {
     CHECK(mcs_env_pdf(e, s.w) == s.pdf, "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2, (double)mcs_env_pdf(e, s.w),
           (double)s.pdf);
     at = mcs_env_texel(e, s.w);
-    CHECK(at.pdf == s.pdf && at.col == s.col && at.row == s.row, "u = %a, %a: texel (%u, %u), returned (%u, %u)", (double)u1, (double)u2,
-          at.col, at.row, s.col, s.row);
+    CHECK(at.pdf == s.pdf && at.col == s.col && at.row == s.row, "u = %a, %a: texel (%u, %u), returned (%u, %u)", (double)u1,
+          (double)u2, at.col, at.row, s.col, s.row);
     texel_of(m, s.w, &c, &r);
     off = fabs(c - s.col - 0.5);
     if (off > m->w / 2.0) off = m->w - off;
@@ -560,8 +560,8 @@ static void test_bad_sampler_input(void) {
             CHECK(pdf == 0, "w = (%g, %g, %g): pdf %g", (double)w.x, (double)w.y, (double)w.z, (double)pdf);
             CHECK(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1, "w = (%g, %g, %g): invert", (double)w.x, (double)w.y, (double)w.z);
             at = mcs_env_texel(a.e, w);
-            CHECK(at.pdf == 0 && at.col < m->w && at.row < m->h && at.w.z == 1, "w = (%g, %g, %g): texel (%u, %u)", (double)w.x, (double)w.y,
-                  (double)w.z, at.col, at.row);
+            CHECK(at.pdf == 0 && at.col < m->w && at.row < m->h && at.w.z == 1, "w = (%g, %g, %g): texel (%u, %u)", (double)w.x,
+                  (double)w.y, (double)w.z, at.col, at.row);
         }
     arena_free(&a);
 }
@@ -577,8 +577,8 @@ static void test_axes(void) {
         const mcs_texel at = mcs_env_texel(a.e, w);
         const float pdf = mcs_env_pdf(a.e, w);
         if (w.x == 0 && w.y == 0 && w.z == 0) continue;
-        CHECK(at.col < m->w && at.row < m->h && pdf > 0 && pdf <= FLT_MAX, "(%g, %g, %g): (%u, %u), pdf %g", (double)w.x, (double)w.y,
-              (double)w.z, at.col, at.row, (double)pdf);
+        CHECK(at.col < m->w && at.row < m->h && pdf > 0 && pdf <= FLT_MAX, "(%g, %g, %g): (%u, %u), pdf %g", (double)w.x,
+              (double)w.y, (double)w.z, at.col, at.row, (double)pdf);
         if (w.x == 0 && w.y == 0) CHECK(at.row == (w.z > 0 ? 0 : m->h - 1), "pole %g: row %u", (double)w.z, at.row);
     }
     arena_free(&a);
