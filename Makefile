@@ -10,6 +10,8 @@ PREFIX ?= /usr/local
 # -Wno-psabi: gcc's note that 8 and 16 wide vectors cross functions differently with AVX; in the header every such function is inlined.
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-psabi
 FLAGS = $(CFLAGS) -std=c99 $(WARNINGS) -I. -Itests
+# The tests demand the same bits from every width; the header promises them where a*b+c is not contracted.
+EXACT = -ffp-contract=off
 LIBS = -lm
 
 TESTS = $(sort $(wildcard tests/test_*.c))
@@ -27,7 +29,7 @@ OPENMP = $(shell mkdir -p $(BUILD) && printf '\043include <omp.h>\nint main(void
 	$(CC) -fopenmp -x c - -o $(BUILD)/openmp.probe 2>/dev/null && echo -fopenmp)
 
 test: ## build and run every tests/test_*.c (the default); FILTER=text and SEED=number narrow it down
-	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS) -ffp-contract=off'
+	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS) $(EXACT)'
 	+@$(SUBMAKE) test-binaries
 	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS)
 
@@ -71,18 +73,17 @@ example-binaries: $(EXAMPLE_BINS)
 # Rewritten only when the compiler or a flag changes, so that such a change rebuilds everything and nothing else does.
 $(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
-	@echo '$(CC) $(FLAGS)' | cmp -s - $@ || echo '$(CC) $(FLAGS)' > $@
+	@echo '$(CC) $(FLAGS) $(EXACT)' | cmp -s - $@ || echo '$(CC) $(FLAGS) $(EXACT)' > $@
 
 $(BUILD)/%: %.c mcsample.h $(wildcard tests/*.h) $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(CC) $(FLAGS) $(EXACT) $< -o $@ $(LIBS)
+	$(CC) $(FLAGS) $(CONTRACT) $< -o $@ $(LIBS)
 
 $(RENDER): examples/render.c mcsample.h $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(FLAGS) $(OPENMP) $< -o $@ $(LIBS)
 
-# The tests demand the same bits from every width; the header promises them where a*b+c is not contracted.
-$(TEST_BINS): EXACT = -ffp-contract=off
+$(TEST_BINS): CONTRACT = $(EXACT)
 
 # ---- benchmarks: what a user's build gives, -O2 without -march. Everything below $(BUILD)/bench.
 BENCH = $(BUILD)/bench

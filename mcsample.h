@@ -1923,7 +1923,7 @@ MCSI_BATCH_VALUE(beckmann_eval, beckmann)
  * parameters         ax, ay > 0, taken within [1e-7, 1e4]; mcs_is_mirror tells alphas that are below it: use a mirror
  * cost               h: 2 sqrt, 3 div, 1 sincos. vndf, bounded: 2 sqrt, 3 div, 1 sincos beyond what is constant per wo (2-3 sqrt,
  *                    4-5 div)
- * accuracy           h: pdf of u 0.4 E, of h 0.6 E; vndf, bounded: pdf of u 0.6 E, of h or wi 0.6 E; eval 0.6 E, weight 0.4 E; |h|,
+ * accuracy           h: pdf of u 0.4 E, of h 0.6 E; vndf, bounded: pdf of u 0.7 E, of h or wi 0.6 E; eval 0.6 E, weight 0.4 E; |h|,
  *                    |wi| 4 ulp: at grazing incidence too, since the azimuth counts from wo's (visible_half below)
  * source             Trowbridge and Reitz 1975; Walter et al. 2007; Heitz 2014, 2018; Dupuy and Benyoub 2023, "Sampling visible GGX
  *                    normals with spherical caps"; Tokuyoshi and Eto 2023, "Bounded VNDF sampling for the Smith-GGX BRDF" */

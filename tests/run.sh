@@ -6,7 +6,7 @@
 set -u
 jobs=$1
 shift
-tmp=$(mktemp -d "${TMPDIR:-/tmp}/mcs_run.XXXXXX") || exit 1
+tmp=$(mktemp -d) || exit 1
 trap 'rm -rf "$tmp"' EXIT
 trap 'exit 1' HUP INT TERM
 
