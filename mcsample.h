@@ -89,8 +89,10 @@
  *              mcs_pwc_sample_n mcs_discrete_sample mcs_discrete_pmf mcs_pwl mcs_pwl_bytes mcs_pwl_build mcs_pwl_sample mcs_pwl_pdf
  *              mcs_pwl_invert mcs_pwl_sample_n mcs_alias mcs_alias_bytes mcs_alias_build mcs_alias_sample mcs_alias_pmf
  * [env]        directions per solid angle; memory of the caller
- *              mcs_env mcs_texel mcs_env_bytes mcs_env_build mcs_env_sample mcs_env_pdf mcs_env_invert mcs_env_texel
- *              mcs_env_sample_n mcs_env_pdf_n
+ *              mcs_image mcs_image_make mcs_env mcs_texel mcs_env_bytes mcs_env_build mcs_env_build_rows mcs_env_finish mcs_env_check
+ *              mcs_env_mean mcs_env_sample mcs_env_sample_bits mcs_env_pdf mcs_env_invert mcs_env_texel mcs_env_weight
+ *              mcs_env_sample_n mcs_env_pdf_n mcs_env_window mcs_env_window_bytes mcs_env_window_build mcs_env_window_sample
+ *              mcs_env_window_pdf mcs_env_window_sample_n
  * [estimator]  mcs_stat mcs_stat_add mcs_stat_merge mcs_stat_variance mcs_stat_error mcs_stat_ci
  * END OF INDEX */
 
@@ -157,6 +159,12 @@ typedef float mcsi_x86_f __attribute__((vector_size(16)));
 typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #else
 #include <math.h>
+#endif
+
+#if defined(__GNUC__)
+#define MCSI_PREFETCH(p) __builtin_prefetch(p)
+#else
+#define MCSI_PREFETCH(p) ((void)0)
 #endif
 
 /* Square root without errno: sqrtf would cost a test and a call in every loop. */
@@ -270,7 +278,14 @@ MCS_FN
 #define MCSI_OUT(b, k, v) (void)((b).out[k] ? (MCSI_(store)((b).out[k] + (b).i, v), 0) : 0)
 #endif
 
-typedef enum { MCS_OK = 0, MCS_UNIFORM = 1, MCS_ERR_ARG = -1, MCS_ERR_SIZE = -2, MCS_ERR_MEMORY = -3 } mcs_status;
+typedef enum {
+    MCS_OK = 0,
+    MCS_UNIFORM = 1,
+    MCS_ERR_ARG = -1,
+    MCS_ERR_SIZE = -2,
+    MCS_ERR_MEMORY = -3,
+    MCS_ERR_FORMAT = -4
+} mcs_status;
 typedef enum { MCS_WARD_GMD = 0, MCS_WARD_DUER = 1, MCS_WARD_1992 = 2 } mcs_ward_model;
 
 /* The pass whose loops the `_n` forms use when no wider one may be picked at run time. */
@@ -421,14 +436,15 @@ typedef double mcsi_d;
 
 /* Array forms: MCSI_BATCH(x_n, (parameters), (arguments), body) defines the loop in the passes that the `_n` forms use, and in the
  * scalar pass the public mcs_x_n, which calls the loop of the widest of them that the CPU runs. */
+#define MCSI_BATCH(name, params, args, ...) MCSI_BATCH_AS(mcs_##name, name, params, args, __VA_ARGS__)
 #if defined(MCSI_LOOPS)
-#define MCSI_BATCH(name, params, args, ...) \
+#define MCSI_BATCH_AS(caller, name, params, args, ...) \
     __attribute__((unused)) static void MCSI_(name) params { __VA_ARGS__ }
 #elif MCSI_W > 1
-#define MCSI_BATCH(name, params, args, ...)
+#define MCSI_BATCH_AS(caller, name, params, args, ...)
 #elif defined(MCS_NO_WIDE)
-#define MCSI_BATCH(name, params, args, ...) \
-    MCS_FN void mcs_##name params { __VA_ARGS__ }
+#define MCSI_BATCH_AS(caller, name, params, args, ...) \
+    MCS_FN void caller params { __VA_ARGS__ }
 #else
 #if defined(MCSI_PICK_AVX512)
 #define MCSI_DECLARE_AVX512(name, params) MCSI_FOR_AVX512 static void mcsi_avx512_##name params;
@@ -449,11 +465,11 @@ typedef double mcsi_d;
 #define MCSI_DECLARE_AVX2(name, params)
 #define MCSI_TRY_AVX2(name, args)
 #endif
-#define MCSI_BATCH(name, params, args, ...)                     \
+#define MCSI_BATCH_AS(caller, name, params, args, ...)          \
     MCSI_DECLARE_AVX512(name, params)                           \
     MCSI_DECLARE_AVX2(name, params)                             \
     __attribute__((unused)) static void MCSI_BASE(name) params; \
-    MCS_FN void mcs_##name params { MCSI_TRY_AVX512(name, args) MCSI_TRY_AVX2(name, args) MCSI_BASE(name) args; }
+    MCS_FN void caller params { MCSI_TRY_AVX512(name, args) MCSI_TRY_AVX2(name, args) MCSI_BASE(name) args; }
 #endif
 
 /* ---- lanes: what C has no operator for --------------------------------------------------------------------------------------- */
@@ -1453,10 +1469,12 @@ MCSI_FN MCS_(frame) MCS_(frame_make)(MCS_(vec3) n) {
 }
 /* Any finite v; components that are NaN or beyond 1e37 count as 0. */
 MCSI_CORE MCSI_F MCSI_(finite)(MCSI_F x) { return MCSI_(sel)(MCSI_(abs)(x) <= 1e37f, x, MCSI_(set)(0.0f)); }
-MCSI_FN MCS_(vec3) MCS_(to_world)(const MCS_(frame) * f, MCS_(vec3) v) {
-    v = MCSI_(vec3)(MCSI_(finite)(v.x), MCSI_(finite)(v.y), MCSI_(finite)(v.z));
+MCSI_CORE MCS_(vec3) MCSI_(to_world)(const MCS_(frame) * f, MCS_(vec3) v) {
     return MCSI_(vec3)(f->s.x * v.x + f->t.x * v.y + f->n.x * v.z, f->s.y * v.x + f->t.y * v.y + f->n.y * v.z,
                        f->s.z * v.x + f->t.z * v.y + f->n.z * v.z);
+}
+MCSI_FN MCS_(vec3) MCS_(to_world)(const MCS_(frame) * f, MCS_(vec3) v) {
+    return MCSI_(to_world)(f, MCSI_(vec3)(MCSI_(finite)(v.x), MCSI_(finite)(v.y), MCSI_(finite)(v.z)));
 }
 MCSI_FN MCS_(vec3) MCS_(to_local)(const MCS_(frame) * f, MCS_(vec3) v) {
     v = MCSI_(vec3)(MCSI_(finite)(v.x), MCSI_(finite)(v.y), MCSI_(finite)(v.z));
@@ -2323,79 +2341,115 @@ typedef struct {
 typedef struct {
     double total;
     uint32_t n, bad, shift, unused;
-} mcs_pwc; /* then cdf[n], guide[] */
+} mcs_pwc; /* then cdf[n + 1], guide[] */
 typedef struct {
     mcs_pwc cells;
-} mcs_pwl; /* then cdf[n], guide[], vertex[n + 1] */
+} mcs_pwl; /* then cdf[n + 1], guide[], vertex[n + 1] */
 
-/* Entries of an image row or a list: every `step` floats one of 1 channel, or of 3 (Rec. 709 luminance); as cells, or the mean of
- * neighbouring vertices. */
-typedef struct {
-    const float *p;
-    size_t step;
-    int rgb, vertices;
-} mcsi_source;
-
-MCS_FN double mcsi_clean(double x, uint32_t *bad) {
-    int good = x >= 0.0 && x <= 3.4028234663852886e38;
+MCSI_CORE float mcsi_clean(float x, uint32_t *bad) {
+    int good = x >= 0.0f && x <= FLT_MAX;
     *bad += !good;
-    return good ? x : 0.0;
+    return good ? x : 0.0f;
 }
-MCS_FN double mcsi_entry(const mcsi_source *s, size_t i, uint32_t *bad) {
-    float v[3];
-    uint32_t b = 0;
-    double r;
-    memcpy(v, s->p + i * s->step, (s->rgb ? 3 : 1) * sizeof(float)); /* the list may overlap the table being built */
-    if (!s->rgb) return mcsi_clean((double)v[0], bad);
-    r = 0.2126 * mcsi_clean((double)v[0], &b) + 0.7152 * mcsi_clean((double)v[1], &b) + 0.0722 * mcsi_clean((double)v[2], &b);
-    *bad += b != 0;
-    return b ? 0.0 : r;
+/* A weight on its way to becoming a cumulative sum in the same place. */
+MCSI_CORE float mcsi_word_weight(const uint32_t *word) {
+    float w;
+    memcpy(&w, word, sizeof w);
+    return w;
 }
-MCS_FN double mcsi_weight(const mcsi_source *s, size_t i) {
-    uint32_t bad = 0;
-    double w = mcsi_entry(s, i, &bad);
-    return s->vertices ? 0.5 * (w + mcsi_entry(s, i + 1, &bad)) : w;
+MCSI_CORE void mcsi_put_weight(uint32_t *word, float w) { memcpy(word, &w, sizeof w); }
+/* Moves a list, which may overlap the table, into the place of its sums, cleaned; counts the bad ones. */
+MCS_FN uint32_t mcsi_weights_in(uint32_t *words, const float *f, uint32_t n) {
+    uint32_t i, bad = 0;
+    memmove(words, f, n * sizeof *words);
+    for (i = 0; i < n; i++) mcsi_put_weight(words + i, mcsi_clean(mcsi_word_weight(words + i), &bad));
+    return bad;
 }
 
-/* Guide tables have 2^k entries, k by the number of cells per entry. */
+/* A run over part of a list: the sum of all parts before, of this part so far, and the entries so far that are not zero. */
+typedef struct {
+    double before, sum;
+    uint32_t seen;
+} mcsi_run;
+MCSI_CORE void mcsi_run_add(mcsi_run *r, const uint32_t *words, uint32_t i) {
+    float w = mcsi_word_weight(words + i);
+    r->sum += (double)w, r->seen += w > 0.0f;
+}
+MCSI_CORE void mcsi_run_start(mcsi_run *r, double *total, uint32_t *some) {
+    double sum = r->sum;
+    uint32_t seen = r->seen;
+    r->before = *total, r->sum = 0.0, r->seen = *some;
+    *total += sum, *some += seen;
+}
+MCSI_CORE void mcsi_run_put(mcsi_run *r, uint32_t *words, uint32_t i, double scale, uint32_t some) {
+    double w = (double)mcsi_word_weight(words + i), below = (r->before + r->sum) * scale, top = (double)(MCSI_ONE - some);
+    words[i] = r->seen == some ? MCSI_ONE : r->seen + (uint32_t)(below < top ? below : top);
+    r->sum += w, r->seen += w > 0.0;
+}
+/* Cumulative sums 0 = cdf[0] <= ... <= cdf[n] = 2^31 in the place of n weights (floats, finite, not negative): entry i gets its
+ * share cdf[i + 1] - cdf[i] of 2^31, at least 1 unless it is zero. Returns the sum of the weights; 0: all are zero, all shares are
+ * alike. Four parts take turns, as each sum waits for the one before it. */
+MCS_FN double mcsi_cdf_build(uint32_t *cdf, uint32_t n) {
+    mcsi_run a = {0.0, 0.0, 0}, b = a, c = a, d = a;
+    double total = 0.0, scale;
+    uint32_t i, some = 0, part = n / 4;
+    for (i = 0; i < part; i++) {
+        mcsi_run_add(&a, cdf, i), mcsi_run_add(&b, cdf, part + i);
+        mcsi_run_add(&c, cdf, 2 * part + i), mcsi_run_add(&d, cdf, 3 * part + i);
+    }
+    for (i = 4 * part; i < n; i++) mcsi_run_add(&d, cdf, i);
+    mcsi_run_start(&a, &total, &some), mcsi_run_start(&b, &total, &some);
+    mcsi_run_start(&c, &total, &some), mcsi_run_start(&d, &total, &some);
+    cdf[n] = MCSI_ONE;
+    if (some == 0) {
+        for (i = 0; i < n; i++) cdf[i] = (uint32_t)((uint64_t)i * MCSI_ONE / n);
+        return 0.0;
+    }
+    scale = (double)(MCSI_ONE - some) / total;
+    for (i = 0; i < part; i++) {
+        mcsi_run_put(&a, cdf, i, scale, some), mcsi_run_put(&b, cdf, part + i, scale, some);
+        mcsi_run_put(&c, cdf, 2 * part + i, scale, some), mcsi_run_put(&d, cdf, 3 * part + i, scale, some);
+    }
+    for (i = 4 * part; i < n; i++) mcsi_run_put(&d, cdf, i, scale, some);
+    return total;
+}
+
+/* Guide tables: entry g of 2^k is the last i with cdf[i] <= g 2^shift, and one more entry is the last that can be drawn. Entries
+ * are uint16_t where lists are short enough (rows of images), else uint32_t. */
 MCS_FN uint32_t mcsi_guide_shift(uint32_t n, uint32_t cells_per_entry) {
     uint32_t shift = 31;
     while (shift > 0 && (MCSI_ONE >> (shift - 1)) <= n / cells_per_entry) shift--;
     return shift;
 }
-MCS_FN uint32_t mcsi_cdf_next(const uint32_t *cdf, uint32_t n, uint32_t i) { return i + 1 < n ? cdf[i + 1] : MCSI_ONE; }
-/* Integer cumulative sums from weights: entry i gets its share of 2^31, at least 1 unless it is zero. Returns the sum of weights;
- * 0: all are zero, the table is uniform. cdf may be the memory that the source reads. */
-MCS_FN double mcsi_cdf_build(uint32_t *cdf, uint32_t n, const mcsi_source *s) {
-    double total = 0.0, sum = 0.0, scale;
-    uint32_t i, some = 0, seen = 0;
-    for (i = 0; i < n; i++) {
-        double w = mcsi_weight(s, i);
-        total += w, some += w > 0.0;
+#define MCSI_GUIDE_BUILD(guide, type, shift, cdf, n)                                                     \
+    do {                                                                                                 \
+        uint32_t g_, i_, end_ = MCSI_ONE >> (shift), last_ = (n)-1;                                      \
+        for (g_ = 0; g_ <= end_; g_++) (guide)[g_] = 0;                                                  \
+        for (i_ = 0; i_ < (n); i_++) (guide)[((cdf)[i_] + ((1u << (shift)) - 1)) >> (shift)] = (type)i_; \
+        for (g_ = 1; g_ < end_; g_++)                                                                    \
+            if ((guide)[g_] < (guide)[g_ - 1]) (guide)[g_] = (guide)[g_ - 1];                            \
+        while ((cdf)[last_] == MCSI_ONE) last_--;                                                        \
+        (guide)[end_] = (type)last_;                                                                     \
+    } while (0)
+/* The cell that holds U: the last i in [lo, hi] with cdf[i] <= U, one that is known to be there. Without branches where the guide
+ * leaves few cells, as nothing could predict them. */
+MCSI_CORE uint32_t mcsi_cdf_search(const uint32_t *cdf, uint32_t n, uint32_t lo, uint32_t hi, uint32_t U) {
+    if (hi - lo < 32 && n >= 32) {
+        if (hi - lo >= 4) {
+            lo = lo < n - 32 ? lo : n - 32;
+            lo += (uint32_t)(cdf[lo + 16] <= U) << 4;
+            lo += (uint32_t)(cdf[lo + 8] <= U) << 3;
+            lo += (uint32_t)(cdf[lo + 4] <= U) << 2;
+        } else {
+            lo = lo < n - 4 ? lo : n - 4;
+        }
+        lo += (uint32_t)(cdf[lo + 2] <= U) << 1;
+        return lo + (uint32_t)(cdf[lo + 1] <= U);
     }
-    scale = some ? (double)(MCSI_ONE - some) / total : (double)MCSI_ONE / n;
-    for (i = 0; i < n; i++) {
-        double w = mcsi_weight(s, i), below = sum * scale, top = (double)(MCSI_ONE - some);
-        uint32_t q = some == 0 ? (uint32_t)(i * scale) : seen == some ? MCSI_ONE : seen + (uint32_t)(below < top ? below : top);
-        memcpy(cdf + i, &q, sizeof q);
-        sum += w, seen += w > 0.0;
-    }
-    return total;
-}
-MCS_FN void mcsi_guide_build(uint32_t *guide, uint32_t shift, const uint32_t *cdf, uint32_t n) {
-    uint32_t i = 0, g;
-    for (g = 0; g < MCSI_ONE >> shift; g++) {
-        while (mcsi_cdf_next(cdf, n, i) <= g << shift) i++;
-        guide[g] = i;
-    }
-}
-/* The cell that holds U: the first i with cdf[i + 1] > U. */
-MCS_FN uint32_t mcsi_cdf_find(const uint32_t *cdf, uint32_t n, const uint32_t *guide, uint32_t shift, uint32_t U) {
-    uint32_t g = U >> shift, lo = guide[g], hi = g + 1 < MCSI_ONE >> shift ? guide[g + 1] : n - 1;
     while (lo < hi) {
-        uint32_t mid = lo + (hi - lo) / 2;
-        if (mcsi_cdf_next(cdf, n, mid) > U) hi = mid;
-        else lo = mid + 1;
+        uint32_t mid = lo + (hi - lo + 1) / 2;
+        if (cdf[mid] <= U) lo = mid;
+        else hi = mid - 1;
     }
     return lo;
 }
@@ -2415,50 +2469,45 @@ MCS_FN mcs_status mcsi_table_check(const void *t, size_t bytes, const void *sour
 }
 enum { MCSI_CELLS_MAX = 1 << 28 };
 MCS_FN const uint32_t *mcsi_cdf(const mcs_pwc *t) { return (const uint32_t *)(const void *)(t + 1); }
-MCS_FN const uint32_t *mcsi_guide(const mcs_pwc *t) { return mcsi_cdf(t) + t->n; }
-MCS_FN size_t mcsi_pwc_words(uint32_t n) { return (size_t)n + (MCSI_ONE >> mcsi_guide_shift(n, 1)); }
+MCS_FN const uint32_t *mcsi_guide(const mcs_pwc *t) { return mcsi_cdf(t) + t->n + 1; }
+MCS_FN size_t mcsi_pwc_words(uint32_t n) { return (size_t)n + 2 + (MCSI_ONE >> mcsi_guide_shift(n, 1)); }
 
 MCS_FN size_t mcs_pwc_bytes(uint32_t n) {
     return n && n <= MCSI_CELLS_MAX ? (sizeof(mcs_pwc) + mcsi_pwc_words(n) * sizeof(uint32_t) + 7) / 8 * 8 : 0;
 }
-MCS_FN mcs_status mcsi_pwc_fill(mcs_pwc *t, const mcsi_source *s, uint32_t n, uint32_t entries) {
-    uint32_t *cdf = (uint32_t *)(void *)(t + 1), i, bad = 0;
-    for (i = 0; i < entries; i++) mcsi_entry(s, i, &bad);
+/* The words hold the weights. */
+MCS_FN mcs_status mcsi_pwc_fill(mcs_pwc *t, uint32_t n, uint32_t bad) {
+    uint32_t *cdf = (uint32_t *)(void *)(t + 1), *guide = cdf + n + 1;
     t->n = n, t->bad = bad, t->unused = 0;
     t->shift = mcsi_guide_shift(n, 1);
-    t->total = mcsi_cdf_build(cdf, n, s);
-    mcsi_guide_build(cdf + n, t->shift, cdf, n);
+    t->total = mcsi_cdf_build(cdf, n);
+    MCSI_GUIDE_BUILD(guide, uint32_t, t->shift, cdf, n);
     return t->total > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 MCS_FN mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n) {
     mcs_status e = mcsi_table_check(t, bytes, f, n, MCSI_CELLS_MAX, mcs_pwc_bytes(n));
-    mcsi_source s;
-    s.p = f, s.step = 1, s.rgb = 0, s.vertices = 0;
-    return e ? e : mcsi_pwc_fill(t, &s, n, n);
+    return e ? e : mcsi_pwc_fill(t, n, mcsi_weights_in((uint32_t *)(void *)(t + 1), f, n));
 }
 MCS_FN mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context, uint32_t n) {
     mcs_status e = mcsi_table_check(t, bytes, f ? (const void *)t : NULL, n, MCSI_CELLS_MAX, mcs_pwc_bytes(n));
-    mcsi_source s;
-    float *mean;
-    uint32_t i;
+    uint32_t i, bad = 0;
     if (e) return e;
-    mean = (float *)(void *)(t + 1);
     for (i = 0; i < n; i++) {
         double a = 0.34785484513745385 * ((double)f((float)((i + 0.069431844202973712) / n), context) +
                                           (double)f((float)((i + 0.93056815579702629) / n), context));
         double b = 0.65214515486254614 * ((double)f((float)((i + 0.33000947820757187) / n), context) +
                                           (double)f((float)((i + 0.66999052179242813) / n), context));
-        mean[i] = (float)(0.5 * (a + b));
+        mcsi_put_weight((uint32_t *)(void *)(t + 1) + i, mcsi_clean((float)(0.5 * (a + b)), &bad));
     }
-    s.p = mean, s.step = 1, s.rgb = 0, s.vertices = 0;
-    return mcsi_pwc_fill(t, &s, n, n);
+    return mcsi_pwc_fill(t, n, bad);
 }
 /* The cell of u, with the place of u in it. */
 MCS_FN uint32_t mcsi_pwc_find(const mcs_pwc *t, float u, double *place, uint32_t *mass) {
     const uint32_t *cdf = mcsi_cdf(t);
     double U = (double)u * MCSI_ONE;
-    uint32_t i = mcsi_cdf_find(cdf, t->n, mcsi_guide(t), t->shift, (uint32_t)U);
-    *mass = mcsi_cdf_next(cdf, t->n, i) - cdf[i];
+    const uint32_t *guide = mcsi_guide(t) + ((uint32_t)U >> t->shift);
+    uint32_t i = mcsi_cdf_search(cdf, t->n, guide[0], guide[1], (uint32_t)U);
+    *mass = cdf[i + 1] - cdf[i];
     *place = (U - cdf[i]) / *mass;
     return i;
 }
@@ -2487,13 +2536,13 @@ MCS_FN float mcs_pwc_pdf(const mcs_pwc *t, float x) {
     double place;
     int ok;
     uint32_t i = mcsi_pwc_cell(t, x, &place, &ok);
-    return ok ? (float)((double)(mcsi_cdf_next(mcsi_cdf(t), t->n, i) - mcsi_cdf(t)[i]) / MCSI_ONE * t->n) : 0.0f;
+    return ok ? (float)((double)(mcsi_cdf(t)[i + 1] - mcsi_cdf(t)[i]) / MCSI_ONE * t->n) : 0.0f;
 }
 MCS_FN float mcs_pwc_invert(const mcs_pwc *t, float x) {
     double place;
     int ok;
     uint32_t i = mcsi_pwc_cell(t, x > 1.0f ? 1.0f : x, &place, &ok), a = mcsi_cdf(t)[i];
-    return mcsi_below_one((a + place * (mcsi_cdf_next(mcsi_cdf(t), t->n, i) - a)) / MCSI_ONE);
+    return mcsi_below_one((a + place * (mcsi_cdf(t)[i + 1] - a)) / MCSI_ONE);
 }
 #ifndef MCS_NO_BATCH
 MCS_FN void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf) {
@@ -2517,7 +2566,7 @@ MCS_FN mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u) {
     return c;
 }
 MCS_FN float mcs_discrete_pmf(const mcs_pwc *t, uint32_t i) {
-    return i < t->n ? (float)((double)(mcsi_cdf_next(mcsi_cdf(t), t->n, i) - mcsi_cdf(t)[i]) / MCSI_ONE) : 0.0f;
+    return i < t->n ? (float)((double)(mcsi_cdf(t)[i + 1] - mcsi_cdf(t)[i]) / MCSI_ONE) : 0.0f;
 }
 
 MCS_FN size_t mcs_pwl_bytes(uint32_t n) {
@@ -2525,14 +2574,21 @@ MCS_FN size_t mcs_pwl_bytes(uint32_t n) {
 }
 MCS_FN mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n) {
     mcs_status e = mcsi_table_check(t, bytes, f, n, MCSI_CELLS_MAX, mcs_pwl_bytes(n));
-    float *vertex;
-    mcsi_source s;
-    uint32_t i, bad = 0;
+    uint32_t *words, *vertex, i, bad;
+    float top = 0.0f;
+    double total = 0.0;
     if (e) return e;
-    vertex = (float *)(void *)(t + 1) + mcsi_pwc_words(n);
-    s.p = f, s.step = 1, s.rgb = 0, s.vertices = 1;
-    e = mcsi_pwc_fill(&t->cells, &s, n, n + 1);
-    for (i = 0; i <= n; i++) vertex[i] = e == MCS_UNIFORM ? 1.0f : (float)mcsi_entry(&s, i, &bad);
+    words = (uint32_t *)(void *)(t + 1), vertex = words + mcsi_pwc_words(n);
+    bad = mcsi_weights_in(vertex, f, n + 1);
+    for (i = 0; i <= n; i++) top = mcsi_max(top, mcsi_word_weight(vertex + i));
+    for (i = 0; i < n; i++) { /* a cell weighs the sum of its vertices, or half of it where that could overflow */
+        float a = mcsi_word_weight(vertex + i), b = mcsi_word_weight(vertex + i + 1), w = top > 1e38f ? 0.5f * a + 0.5f * b : a + b;
+        mcsi_put_weight(words + i, w > 0.0f ? w : mcsi_max(a, b));
+        total += 0.5 * ((double)a + (double)b);
+    }
+    e = mcsi_pwc_fill(&t->cells, n, bad);
+    t->cells.total = total;
+    for (i = 0; e == MCS_UNIFORM && i <= n; i++) mcsi_put_weight(vertex + i, 1.0f);
     return e;
 }
 MCS_FN const float *mcsi_pwl_vertices(const mcs_pwl *t) {
@@ -2558,7 +2614,7 @@ MCS_FN float mcs_pwl_pdf(const mcs_pwl *t, float x) {
     double place, sum, mass;
     int ok;
     uint32_t i = mcsi_pwc_cell(&t->cells, x, &place, &ok);
-    mass = mcsi_cdf_next(mcsi_cdf(&t->cells), t->cells.n, i) - mcsi_cdf(&t->cells)[i], sum = (double)v[i] + (double)v[i + 1];
+    mass = mcsi_cdf(&t->cells)[i + 1] - mcsi_cdf(&t->cells)[i], sum = (double)v[i] + (double)v[i + 1];
     return ok && sum > 0.0
                ? (float)(mass / MCSI_ONE * t->cells.n * 2.0 * ((1.0 - place) * (double)v[i] + place * (double)v[i + 1]) / sum)
                : 0.0f;
@@ -2568,7 +2624,7 @@ MCS_FN float mcs_pwl_invert(const mcs_pwl *t, float x) {
     double place, sum, mass, a;
     int ok;
     uint32_t i = mcsi_pwc_cell(&t->cells, x > 1.0f ? 1.0f : x, &place, &ok);
-    a = mcsi_cdf(&t->cells)[i], mass = mcsi_cdf_next(mcsi_cdf(&t->cells), t->cells.n, i) - a, sum = (double)v[i] + (double)v[i + 1];
+    a = mcsi_cdf(&t->cells)[i], mass = mcsi_cdf(&t->cells)[i + 1] - a, sum = (double)v[i] + (double)v[i + 1];
     place = sum > 0.0 ? place * ((double)v[i] * (2.0 - place) + (double)v[i + 1] * place) / sum : 0.0;
     return mcsi_below_one((a + place * mass) / MCSI_ONE);
 }
@@ -2600,21 +2656,19 @@ MCS_FN void mcsi_column_leave(mcsi_column *c, uint64_t left) { c->cut = (uint32_
 MCS_FN mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n) {
     mcs_status e = mcsi_table_check(t, bytes, w, n, MCSI_CELLS_MAX, mcs_alias_bytes(n));
     mcsi_column *c;
-    mcsi_source s;
     double sum = 0.0;
     uint64_t all = (uint64_t)n << 31, given = 0;
     uint32_t i, some = 0, seen = 0, donor = 0, bad = 0;
     if (e) return e;
     c = mcsi_columns(t);
-    s.p = w, s.step = 1, s.rgb = 0, s.vertices = 0;
     t->n = n, t->total = 0.0;
     for (i = 0; i < n; i++) {
-        double v = mcsi_entry(&s, i, &bad);
+        double v = (double)mcsi_clean(w[i], &bad);
         t->total += v, some += v > 0.0;
     }
     t->bad = bad;
     for (i = 0; i < n; i++) { /* cumulative shares, so that they add up to n * 2^31 exactly */
-        double v = some ? mcsi_weight(&s, i) : 1.0, part;
+        double v = some ? (double)mcsi_clean(w[i], &bad) : 1.0, part;
         uint64_t upto;
         sum += v, seen += v > 0.0;
         part = some ? sum / t->total * (double)(all - some) : (double)seen * MCSI_ONE;
@@ -2657,57 +2711,209 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
     return i < t->n ? (float)((double)mcsi_columns(t)[i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
 }
 
+#endif /* MCS_NO_TABLES */
+#endif /* MCSI_W == 1 */
+
 /* ==== [env] latitude-longitude environment map =================================================================================
  * domain (u1, u2): u1 the column within the row, u2 the row; codomain unit w: row 0 holds +z, phi = 2 pi (column + .)/width from +x
  * towards +y. Density per solid angle: texel probability (luminance times solid angle) over the texel's solid angle 2 pi/W (cos t0
  * - cos t1): constant within a texel, because there cos(theta), not theta, is linear; no division by sin(theta) is left (slide 23).
  *
- *   size_t mcs_env_bytes(w, h)                          bytes to give to build, 8-byte aligned; 0 where refused
- *   mcs_env_build(e, bytes, pixels, w, h, channels, row_stride)   channels 1 (luminance) or 3 and more (the first 3 linear RGB,
- *                                                       Rec. 709 luminance); row_stride in floats, 0: packed
- *   mcs_env_sample(e, u1, u2) -> {w, pdf, col, row}     mcs_env_pdf(e, w); mcs_env_texel(e, w) -> the same struct, for radiance and
- *                                                       density in one look-up; mcs_env_invert(e, w) -> (u1, u2)
- *   mcs_env_sample_n, mcs_env_pdf_n                     arrays
+ *   mcs_image                    the pixels; mcs_image_make(pixels, w, h, channels), then set what differs: pixels, w, h; channels 1 (luminance) or 3 and more (the first 3 linear RGB, Rec. 709
+ *                                luminance); pixel_stride, row_stride in floats, 0: packed, row_stride may be negative (pixels is
+ *                                the row at +z); bilinear: radiance will be looked up with a bilinear filter (columns wrap, rows
+ *                                end at the poles); floor: luminance taken off every texel, see below
+ *   mcs_env_bytes(w, h)          bytes to give to build, 8-byte aligned; 0 where refused
+ *   mcs_env_build(e, bytes, &image)
+ *   mcs_env_build_rows(e, bytes, &image, y0, y1), mcs_env_finish(e, bytes, &image)   the same in parts: any ranges that together
+ *                                hold every row, in any order, by any threads; then finish once. The bits are those of build.
+ *   mcs_env_sample(e, u1, u2) -> {w, pdf, col, row}; _sample_bits takes 32 random bits each: maps beyond 4096 columns have more
+ *                                texels than a float u can tell apart
+ *   mcs_env_pdf(e, w); mcs_env_texel(e, w) -> the same struct, for radiance and density in one look-up
+ *   mcs_env_invert(e, w) -> (u1, u2)
+ *   mcs_env_sample_n, _pdf_n     arrays; memory is fetched ahead, so these are the fast forms for large maps
+ *   mcs_env_check(e, bytes)      whether memory (a file read or mapped) is a table: MCS_OK; MCS_ERR_MEMORY when cut short,
+ *                                MCS_ERR_FORMAT when it is none, of another version or byte order, or damaged. Reads all of it.
+ *   mcs_env_mean(&image)         mean luminance over the sphere
+ *   mcs_env_weight(e, pdf)       1/pdf, for an estimator without other strategies: 0 and MCS_ASSERT for a map with a floor
+ *   mcs_env_window_*             the same for a rectangle of texels: `rows` rows from `row`, `cols` columns from `col`, across the
+ *                                seam where need be. _bytes(rows); _build(m, bytes, e, row, rows, col, cols); the window holds no
+ *                                pointer and goes with any table of the same image
+ *   e->frame                     orientation: world directions of local x, y, z. build makes it the axes; it may be changed at any
+ *                                time
  *
  * Tables are exact as in [tables]: texel probabilities are integers over 2^31 by row and by column; a texel that is not black can
  * be drawn, black ones never are, and texel and pdf of the returned float direction are those of the sample (a place within a
- * rounding error of the texel's border is moved inside). Bad texels count as black (e->bad); an all-black image gives the uniform
- * sphere and MCS_UNIFORM. e->total is the luminance integrated over the sphere. Both maps are monotone: stratified u stay
- * stratified. Cost: about three cache misses; 4.5 bytes a texel. Source: Pharr, Jakob, Humphreys 2023, section 12.5. */
+ * rounding error of the texel's border is moved inside; with the axes as frame). Bad texels count as black (e->bad). e->total is
+ * the luminance integrated over the sphere. Maps are monotone: stratified u stay stratified.
+ * Bilinear: weights are the texels filtered by (1 2 1)/4 along rows and columns, at least a quarter of what a filtered look-up
+ * finds anywhere in the texel: L/pdf is at most 4 times the filtered total.
+ * MIS compensation (Karlik et al. 2019): with image.floor = mcs_env_mean(&image), what is darker than the mean is left to the other
+ * strategy. Such a table is incomplete (e->incomplete): its density is 0 where the map is not black.
+ * Skipped: a constant map is the uniform sphere and its rows are never read; an all-black one likewise, build returns MCS_UNIFORM;
+ * rows without light are not written, texels outside rows [row0, row1) and columns [col0, col1) not read.
+ * Cost: two cache misses; 4.4 bytes a texel. Source: Pharr, Jakob, Humphreys 2023, section 12.5. */
 
+#ifndef MCS_NO_TABLES
+/* A point on its way: where it lies in its row's share of 2^31 and that share, where the row begins in 1 - cos(theta) from the
+ * nearer pole and its height (negative when that is the southern one), and where it lies in its texel's share. */
 typedef struct {
+    MCSI_F row_rest, row_mass, edge, height, col, col_rest, col_mass;
+} MCSI_(env_point);
+/* A part of a texel, kept off its borders by what the rounding of a direction can move, n 2^-22 cells. */
+MCSI_CORE MCSI_F MCSI_(env_place)(MCSI_F rest, MCSI_F mass, float margin) {
+    return MCSI_(min)(MCSI_(max)(rest / mass, MCSI_(set)(margin)), MCSI_(set)(1.0f - margin));
+}
+MCSI_CORE MCS_(vec3) MCSI_(env_direction)(const MCS_(frame) * f, const MCSI_(env_point) * p, float w, float h) {
+    MCSI_F t = p->edge + MCSI_(env_place)(p->row_rest, p->row_mass, h * 2.38418579e-07f) * p->height,
+           sine = MCSI_(sqrt)(t * (2.0f - t));
+    MCSI_F turns = (p->col + MCSI_(env_place)(p->col_rest, p->col_mass, w * 2.38418579e-07f)) / w, s, c;
+    MCSI_(sincos_turns)(turns, &s, &c);
+    return MCSI_(to_world)(
+        f, MCSI_(vec3)(sine * c, sine * s, MCSI_(from_bits)(MCSI_(bits)(1.0f - t) ^ (MCSI_(bits)(p->height) & (-0x7fffffff - 1)))));
+}
+/* Where a direction lies: 1 - |cos(theta)|, with the sign of cos(theta), and 4 for a bad direction; the angle to the nearer pole
+ * and the azimuth in turns. */
+MCSI_CORE void MCSI_(env_locate)(const MCS_(frame) * f, MCS_(vec3) w, MCSI_F *off_pole, MCSI_F *polar, MCSI_F *turns) {
+    MCSI_I ok = MCSI_(always)();
+    MCSI_F sine2, up;
+    w = MCS_(to_local)(f, MCSI_(direction)(w, &ok));
+    sine2 = w.x * w.x + w.y * w.y, up = MCSI_(abs)(w.z);
+    *off_pole = MCSI_(sel)(ok, MCSI_(with_sign)(sine2 / (1.0f + up), w.z), MCSI_(set)(4.0f));
+    *polar = MCSI_(atan2_turns)(MCSI_(sqrt)(sine2), up);
+    *turns = MCSI_(atan2_turns)(w.y, w.x);
+}
+MCSI_CORE MCS_(frame) MCSI_(spread_frame)(const mcs_frame *f) {
+    MCS_(frame) r;
+    r.s = MCSI_(spread)(f->s), r.t = MCSI_(spread)(f->t), r.n = MCSI_(spread)(f->n);
+    return r;
+}
+#ifndef MCS_NO_BATCH
+#if MCSI_W == 1
+enum { MCSI_ENV_BLOCK = 64 };
+typedef struct {
+    float row_rest[MCSI_ENV_BLOCK], row_mass[MCSI_ENV_BLOCK], edge[MCSI_ENV_BLOCK], height[MCSI_ENV_BLOCK], col[MCSI_ENV_BLOCK],
+        col_rest[MCSI_ENV_BLOCK], col_mass[MCSI_ENV_BLOCK], x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK], z[MCSI_ENV_BLOCK],
+        pdf[MCSI_ENV_BLOCK];
+} mcsi_env_block;
+#endif
+MCSI_BATCH_AS(mcsi_env_directions_n, env_directions_n, (const mcs_frame *f, size_t n, mcsi_env_block *b, float w, float h),
+              (f, n, b, w, h), {
+                  MCS_(frame) frame = MCSI_(spread_frame)(f);
+                  size_t i;
+                  for (i = 0; i < n; i += MCSI_W) {
+                      MCSI_(env_point) p;
+                      MCS_(vec3) v;
+                      p.row_rest = MCSI_(load)(b->row_rest + i), p.row_mass = MCSI_(load)(b->row_mass + i);
+                      p.edge = MCSI_(load)(b->edge + i), p.height = MCSI_(load)(b->height + i), p.col = MCSI_(load)(b->col + i);
+                      p.col_rest = MCSI_(load)(b->col_rest + i), p.col_mass = MCSI_(load)(b->col_mass + i);
+                      v = MCSI_(env_direction)(&frame, &p, w, h);
+                      MCSI_(store)(b->x + i, v.x), MCSI_(store)(b->y + i, v.y), MCSI_(store)(b->z + i, v.z);
+                  }
+              })
+MCSI_BATCH_AS(mcsi_env_locate_n, env_locate_n,
+              (const mcs_frame *f, size_t n, const float *x, const float *y, const float *z, float *off_pole, float *polar,
+               float *turns),
+              (f, n, x, y, z, off_pole, polar, turns), {
+                  mcsi_batch b;
+                  MCS_(frame) frame = MCSI_(spread_frame)(f);
+                  mcsi_batch_start(&b, n, x, y, z);
+                  b.out[0] = off_pole, b.out[1] = polar, b.out[2] = turns;
+                  MCSI_EACH(b) {
+                      MCSI_F o, p, t;
+                      MCSI_(env_locate)(&frame, MCSI_(vec3)(MCSI_IN(b, 0), MCSI_IN(b, 1), MCSI_IN(b, 2)), &o, &p, &t);
+                      MCSI_OUT(b, 0, o), MCSI_OUT(b, 1, p), MCSI_OUT(b, 2, t);
+                  }
+              })
+#endif
+
+#if MCSI_W == 1
+typedef struct {
+    const float *pixels;
+    uint32_t w, h, channels;
+    int bilinear;
+    ptrdiff_t pixel_stride, row_stride;
+    float floor;
+} mcs_image;
+MCS_FN mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels) {
+    mcs_image im;
+    memset(&im, 0, sizeof im);
+    im.pixels = pixels, im.w = w, im.h = h, im.channels = channels;
+    return im;
+}
+/* Where things lie behind the header, in bytes: edge[] = 1 - cos(theta) of the row borders from a pole to the equator (double),
+ * line[h], info[h]; rows[h + 1], row_guide[]; cdf[h][w + 1], col_guide[h][guides]. */
+typedef struct {
+    uint64_t edge, line, info, rows, row_guide, cdf, col_guide, bytes;
+    uint32_t row_shift, col_shift, guides, unused;
+} mcsi_env_parts;
+typedef struct {
+    uint32_t magic, version;
+    mcsi_env_parts at;
     double total;
-    uint32_t w, h, bad, row_shift, col_shift, unused;
+    uint32_t w, h, bad, row0, row1, col0, col1, uniform, incomplete;
+    mcs_frame frame;
 } mcs_env;
+typedef struct {
+    uint32_t row, rows, col, cols, shift, uniform;
+} mcs_env_window; /* then line[rows], cdf[rows + 1], guide[] */
 typedef struct {
     mcs_vec3 w;
     float pdf;
     uint32_t col, row;
 } mcs_texel;
 
-/* Where things lie behind the header, in bytes: edge[h + 1] = 1 - cos(theta) of the row borders and power[h] (double); rows[h] and
- * row_guide[], cdf[h][w] and col_guide[h][guides] (uint32_t). */
+/* What a draw needs of a row: the density of a texel per unit of its own 2^31, its border and height (mcsi_env_point), the part of
+ * its 2^31 that may be drawn. */
 typedef struct {
-    size_t edge, power, rows, row_guide, cdf, col_guide, guides, bytes;
-} mcsi_env_parts;
+    double scale;
+    float edge, height;
+    uint32_t begin, mass;
+} mcsi_env_line;
+/* What build_rows leaves to finish: the weight of the row; the weight of its texels if they are all alike, else -1. */
+typedef struct {
+    double power;
+    float level;
+    uint32_t bad, col0, col1;
+} mcsi_env_info;
+/* Rows and columns to draw from: the whole map or a window. */
+typedef struct {
+    const uint32_t *rows;
+    const uint16_t *guide;
+    const mcsi_env_line *line;
+    uint32_t row, count, col, cols, shift, uniform;
+} mcsi_env_view;
+
+enum { MCSI_ENV_MAX = 1 << 16, MCSI_ENV_VERSION = 1, MCSI_ENV_CELLS = 8, MCSI_ENV_CHUNK = 64 };
+#define MCSI_ENV_MAGIC 0x4553434du /* "MCSE" in a little-endian file */
+
+MCS_FN uint64_t mcsi_up8(uint64_t bytes) { return (bytes + 7) / 8 * 8; }
 MCS_FN mcsi_env_parts mcsi_env_layout(uint32_t w, uint32_t h) {
     mcsi_env_parts p;
-    p.edge = sizeof(mcs_env), p.power = p.edge + ((size_t)h + 1) * sizeof(double);
-    p.rows = p.power + h * sizeof(double), p.row_guide = p.rows + h * sizeof(uint32_t);
-    p.cdf = p.row_guide + (MCSI_ONE >> mcsi_guide_shift(h, 1)) * sizeof(uint32_t);
-    p.col_guide = p.cdf + (size_t)w * h * sizeof(uint32_t), p.guides = MCSI_ONE >> mcsi_guide_shift(w, 8);
-    p.bytes = (p.col_guide + p.guides * h * sizeof(uint32_t) + 7) / 8 * 8;
+    p.row_shift = mcsi_guide_shift(h, 1), p.col_shift = mcsi_guide_shift(w, MCSI_ENV_CELLS), p.unused = 0;
+    p.guides = (MCSI_ONE >> p.col_shift) + 1;
+    p.edge = sizeof(mcs_env), p.line = p.edge + ((h + 1) / 2 + 1) * sizeof(double);
+    p.info = p.line + h * sizeof(mcsi_env_line), p.rows = p.info + h * sizeof(mcsi_env_info);
+    p.row_guide = p.rows + (h + 1) * sizeof(uint32_t);
+    p.cdf = mcsi_up8(p.row_guide + ((MCSI_ONE >> p.row_shift) + 1) * sizeof(uint16_t));
+    p.col_guide = p.cdf + (w + (uint64_t)1) * h * sizeof(uint32_t);
+    p.bytes = mcsi_up8(p.col_guide + (uint64_t)p.guides * h * sizeof(uint16_t));
     return p;
 }
-MCS_FN const uint32_t *mcsi_env_words(const mcs_env *e, size_t offset) {
-    return (const uint32_t *)(const void *)((const char *)e + offset);
+MCSI_CORE const double *mcsi_env_edge(const mcs_env *e) { return (const double *)(const void *)((const char *)e + e->at.edge); }
+MCSI_CORE const uint32_t *mcsi_env_cdf(const mcs_env *e, uint32_t row) {
+    return (const uint32_t *)(const void *)((const char *)e + e->at.cdf) + (size_t)row * (e->w + 1);
 }
-MCS_FN const double *mcsi_env_edge(const mcs_env *e) { return (const double *)(const void *)(e + 1); }
-enum { MCSI_ENV_MAX = 1 << 16 }; /* texels along a side: what the float directions can tell apart */
-
-MCS_FN size_t mcs_env_bytes(uint32_t w, uint32_t h) {
-    if (w == 0 || h == 0 || w > MCSI_ENV_MAX || h > MCSI_ENV_MAX || (size_t)-1 / w / h < 16) return 0;
-    return mcsi_env_layout(w, h).bytes;
+MCSI_CORE const uint16_t *mcsi_env_guide(const mcs_env *e, uint32_t row) {
+    return (const uint16_t *)(const void *)((const char *)e + e->at.col_guide) + (size_t)row * e->at.guides;
+}
+MCSI_CORE mcsi_env_view mcsi_env_whole(const mcs_env *e) {
+    mcsi_env_view v;
+    v.rows = (const uint32_t *)(const void *)((const char *)e + e->at.rows);
+    v.guide = (const uint16_t *)(const void *)((const char *)e + e->at.row_guide);
+    v.line = (const mcsi_env_line *)(const void *)((const char *)e + e->at.line);
+    v.row = 0, v.count = e->h, v.col = 0, v.cols = e->w, v.shift = e->at.row_shift, v.uniform = e->uniform;
+    return v;
 }
 /* 1 - cos(pi x), x in [0,1], without libm so that tables are the same everywhere: 2 sin^2(pi x/2) by Taylor to x^17. */
 MCS_FN double mcsi_one_minus_cos_pi(double x) {
@@ -2719,137 +2925,499 @@ MCS_FN double mcsi_one_minus_cos_pi(double x) {
                                                                                               z * (1.0 / 355687428096000.0)))))))));
     return x > 0.5 ? 2.0 - 2.0 * s * s : 2.0 * s * s;
 }
-MCS_FN mcs_status mcs_env_build(mcs_env *e, size_t bytes, const float *pixels, uint32_t w, uint32_t h, uint32_t channels,
-                                size_t row_stride) {
-    mcs_status status = mcsi_table_check(e, bytes, pixels, w, MCSI_ENV_MAX, 0);
+/* A row as counted from the nearer pole, where its borders 1 - cos(theta) keep their digits. */
+MCSI_CORE uint32_t mcsi_env_from_pole(uint32_t row, uint32_t h) { return 2 * row < h ? row : h - 1 - row; }
+MCS_FN double mcsi_env_height(uint32_t row, uint32_t h) {
+    uint32_t m = mcsi_env_from_pole(row, h);
+    return mcsi_one_minus_cos_pi((m + 1.0) / h) - mcsi_one_minus_cos_pi((double)m / h);
+}
+/* `share` of all draws fall on the `mass` of a row's 2^31 from `begin` on. */
+MCS_FN void mcsi_env_set_line(mcsi_env_line *line, double share, uint32_t begin, uint32_t mass, uint32_t row, uint32_t w,
+                              uint32_t h) {
+    double height = mcsi_env_height(row, h);
+    uint32_t m = mcsi_env_from_pole(row, h);
+    line->begin = begin, line->mass = mass;
+    line->scale = mass ? share / mass * w / (6.2831853071795865 * height) : 0.0;
+    line->edge = (float)mcsi_one_minus_cos_pi((m + (m != row)) / (double)h), line->height = (float)(m == row ? height : -height);
+}
+
+/* ---- building ---- */
+
+MCS_FN size_t mcs_env_bytes(uint32_t w, uint32_t h) {
+    if (w == 0 || h == 0 || w > MCSI_ENV_MAX || h > MCSI_ENV_MAX || (size_t)-1 / w / h < 80) return 0;
+    return (size_t)mcsi_env_layout(w, h).bytes;
+}
+/* How many floats a row or an image spans must be a size that memory can have. */
+MCS_FN int mcsi_image_ok(const mcs_image *im) {
+    const uint64_t most = PTRDIFF_MAX / sizeof(float) / (MCSI_ENV_MAX + 1);
+    uint64_t row = im->row_stride < 0 ? -(uint64_t)im->row_stride : (uint64_t)im->row_stride;
+    uint64_t step = im->pixel_stride ? (uint64_t)im->pixel_stride : im->channels;
+    if (im->pixel_stride < 0 || step < im->channels || step > most || step * im->w > most) return 0;
+    return !row || (row >= (im->w - 1) * step + im->channels && row <= most);
+}
+MCS_FN mcs_status mcsi_env_refuse(const mcs_env *e, size_t bytes, const mcs_image *im) {
+    if (!e || !im || !im->pixels || ((uintptr_t)e & 7u) || im->channels == 0 || im->channels == 2) return MCS_ERR_ARG;
+    if (!mcs_env_bytes(im->w, im->h) || !mcsi_image_ok(im)) return MCS_ERR_SIZE;
+    return bytes < mcs_env_bytes(im->w, im->h) ? MCS_ERR_MEMORY : MCS_OK;
+}
+
+MCSI_CORE float mcsi_luminance(const float *p, uint32_t *bad) {
+    uint32_t b = 0;
+    float r = mcsi_clean(p[0], &b), g = mcsi_clean(p[1], &b), l = mcsi_clean(p[2], &b);
+    *bad += b != 0;
+    l = 0.2126f * r + 0.7152f * g + 0.0722f * l;
+    return b ? 0.0f : mcsi_min(l, FLT_MAX);
+}
+/* Texels [x, x + n) of a row. */
+MCS_FN void mcsi_image_texels(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
+    ptrdiff_t step = im->pixel_stride ? im->pixel_stride : (ptrdiff_t)im->channels;
+    const float *p = im->pixels + (ptrdiff_t)y * (im->row_stride ? im->row_stride : step * (ptrdiff_t)im->w) + (ptrdiff_t)x * step;
+    uint32_t k;
+    if (im->channels >= 3)
+        for (k = 0; k < n; k++, p += step) v[k] = mcsi_luminance(p, bad);
+    else
+        for (k = 0; k < n; k++, p += step) v[k] = mcsi_clean(*p, bad);
+}
+/* The weights of texels [x, x + n), n <= MCSI_ENV_CHUNK. */
+MCS_FN void mcsi_image_weights(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
+    uint32_t k;
+    if (im->bilinear) {
+        float sum[MCSI_ENV_CHUNK + 2] = {0.0f}, line[MCSI_ENV_CHUNK + 2];
+        int r;
+        for (r = -1; r <= 1; r++) {
+            uint32_t near_y = r < 0 && y > 0 ? y - 1 : r > 0 && y + 1 < im->h ? y + 1 : y, uncounted = 0;
+            mcsi_image_texels(im, near_y, (x + im->w - 1) % im->w, 1, line, &uncounted);
+            mcsi_image_texels(im, near_y, x, n, line + 1, r ? &uncounted : bad);
+            mcsi_image_texels(im, near_y, (x + n) % im->w, 1, line + n + 1, &uncounted);
+            for (k = 0; k < n + 2; k++) sum[k] += (r ? 0.25f : 0.5f) * line[k];
+        }
+        for (k = 0; k < n; k++) v[k] = 0.25f * sum[k] + 0.5f * sum[k + 1] + 0.25f * sum[k + 2];
+    } else {
+        mcsi_image_texels(im, y, x, n, v, bad);
+    }
+    if (im->floor > 0.0f)
+        for (k = 0; k < n; k++) v[k] = mcsi_max(v[k] - im->floor, 0.0f);
+}
+MCS_FN float mcs_env_mean(const mcs_image *im) {
+    mcs_image plain = *im;
+    double sum = 0.0;
+    uint32_t x, y, k, n, bad = 0;
+    float v[MCSI_ENV_CHUNK];
+    if (!im->pixels || im->channels == 0 || im->channels == 2 || !mcs_env_bytes(im->w, im->h) || !mcsi_image_ok(im)) return 0.0f;
+    plain.floor = 0.0f;
+    for (y = 0; y < im->h; y++) {
+        double row = 0.0;
+        for (x = 0; x < im->w; x += n) {
+            n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : MCSI_ENV_CHUNK;
+            mcsi_image_weights(&plain, y, x, n, v, &bad);
+            for (k = 0; k < n; k++) row += (double)v[k];
+        }
+        sum += row * mcsi_env_height(y, im->h);
+    }
+    return (float)(sum / (2.0 * im->w));
+}
+
+MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, uint16_t *guide, uint32_t shift,
+                               mcsi_env_info *info) {
+    uint32_t x, k, n, first = im->w, last = 0, same = 0;
+    float v[MCSI_ENV_CHUNK], level = 0.0f;
+    info->bad = 0;
+    for (x = 0; x < im->w; x += n) {
+        uint32_t lit = 0;
+        n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : MCSI_ENV_CHUNK;
+        mcsi_image_weights(im, y, x, n, v, &info->bad);
+        level = x ? level : v[0];
+        for (k = 0; k < n; k++) lit = v[k] > 0.0f ? k + 1 : lit, same += v[k] == level;
+        if (lit) { /* a row is written from its first light on */
+            if (!last) {
+                memset(cdf, 0, x * sizeof *cdf);
+                for (first = x; !(v[first - x] > 0.0f);) first++;
+            }
+            last = x + lit;
+        }
+        if (last) memcpy(cdf + x, v, n * sizeof *v);
+    }
+    info->power = 0.0, info->level = same == im->w ? level : -1.0f, info->col0 = first, info->col1 = last;
+    if (!last) return;
+    info->power = mcsi_cdf_build(cdf, im->w) * mcsi_env_height(y, im->h);
+    MCSI_GUIDE_BUILD(guide, uint16_t, shift, cdf, im->w);
+}
+MCS_FN mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1) {
+    mcs_status status = mcsi_env_refuse(e, bytes, im);
     mcsi_env_parts at;
-    mcsi_source s;
-    double *edge, *power, top = 0.0;
-    uint32_t *rows, *cdf, *guide, x, y;
+    char *p = (char *)e;
     if (status) return status;
-    if (channels == 0 || channels == 2) return MCS_ERR_ARG;
-    if (!mcs_env_bytes(w, h) || (row_stride && row_stride / channels < w) ||
-        (size_t)-1 / sizeof(float) / channels / h < (row_stride ? row_stride / channels + 1 : w))
-        return MCS_ERR_SIZE;
-    if (bytes < mcs_env_bytes(w, h)) return MCS_ERR_MEMORY;
-    at = mcsi_env_layout(w, h);
-    edge = (double *)(void *)((char *)e + at.edge), power = (double *)(void *)((char *)e + at.power);
-    rows = (uint32_t *)(void *)((char *)e + at.rows), cdf = (uint32_t *)(void *)((char *)e + at.cdf);
-    guide = (uint32_t *)(void *)((char *)e + at.col_guide);
-    e->total = 0.0, e->w = w, e->h = h, e->bad = 0, e->unused = 0;
-    e->row_shift = mcsi_guide_shift(h, 1), e->col_shift = mcsi_guide_shift(w, 8);
-    s.step = channels, s.rgb = channels >= 3, s.vertices = 0;
-    for (y = 0; y <= h; y++) edge[y] = mcsi_one_minus_cos_pi((double)y / h);
-    for (y = 0; y < h; y++) {
-        s.p = pixels + y * (row_stride ? row_stride : (size_t)w * channels);
-        for (x = 0; x < w; x++) mcsi_entry(&s, x, &e->bad);
-        power[y] = mcsi_cdf_build(cdf + (size_t)y * w, w, &s) * (edge[y + 1] - edge[y]);
-        mcsi_guide_build(guide + y * at.guides, e->col_shift, cdf + (size_t)y * w, w);
-        e->total += power[y] * (6.2831853071795865 / w);
-        top = power[y] > top ? power[y] : top;
+    if (y0 > y1 || y1 > im->h) return MCS_ERR_SIZE;
+    at = mcsi_env_layout(im->w, im->h);
+    for (; y0 < y1; y0++)
+        mcsi_env_build_row(im, y0, (uint32_t *)(void *)(p + at.cdf) + (size_t)y0 * (im->w + 1),
+                           (uint16_t *)(void *)(p + at.col_guide) + (size_t)y0 * at.guides, at.col_shift,
+                           (mcsi_env_info *)(void *)(p + at.info) + y0);
+    return MCS_OK;
+}
+MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) {
+    mcs_status status = mcsi_env_refuse(e, bytes, im);
+    const mcsi_env_info *info;
+    mcsi_env_line *line;
+    uint32_t *rows, y;
+    uint16_t *guide;
+    double *edge, top = 0.0;
+    if (status) return status;
+    memset(e, 0, sizeof *e);
+    e->magic = MCSI_ENV_MAGIC, e->version = MCSI_ENV_VERSION, e->at = mcsi_env_layout(im->w, im->h);
+    e->w = im->w, e->h = im->h, e->row0 = im->h, e->col0 = im->w, e->uniform = 1, e->incomplete = im->floor > 0.0f;
+    e->frame.s.x = e->frame.t.y = e->frame.n.z = 1.0f;
+    edge = (double *)(void *)((char *)e + e->at.edge), line = (mcsi_env_line *)(void *)((char *)e + e->at.line);
+    info = (const mcsi_env_info *)(const void *)((const char *)e + e->at.info);
+    rows = (uint32_t *)(void *)((char *)e + e->at.rows), guide = (uint16_t *)(void *)((char *)e + e->at.row_guide);
+    for (y = 0; y <= (e->h + 1) / 2; y++) edge[y] = mcsi_one_minus_cos_pi((double)y / e->h);
+    for (y = 0; y < e->h; y++) {
+        e->bad += info[y].bad, e->total += info[y].power * (6.2831853071795865 / e->w);
+        e->uniform &= info[y].level >= 0.0f && info[y].level == info[0].level;
+        top = info[y].power > top ? info[y].power : top;
+        if (!(info[y].power > 0.0)) continue;
+        e->row0 = y < e->row0 ? y : e->row0, e->row1 = y + 1;
+        e->col0 = info[y].col0 < e->col0 ? info[y].col0 : e->col0, e->col1 = info[y].col1 > e->col1 ? info[y].col1 : e->col1;
     }
-    for (y = 0; y < h; y++) { /* row weights as floats, in the place of their cumulative sums */
-        double p = top > 0.0 ? power[y] / top : edge[y + 1] - edge[y];
-        float f = (float)(p > 0.0 && p < 1e-30 ? 1e-30 : p);
-        memcpy(rows + y, &f, sizeof f);
+    for (y = 0; y < e->h; y++) {
+        double p = top > 0.0 ? info[y].power / top : 0.0;
+        mcsi_put_weight(rows + y, (float)(p > 0.0 && p < 1e-30 ? 1e-30 : p));
     }
-    s.p = (const float *)(const void *)rows, s.step = 1, s.rgb = 0;
-    mcsi_cdf_build(rows, h, &s);
-    mcsi_guide_build(rows + h, e->row_shift, rows, h);
+    mcsi_cdf_build(rows, e->h);
+    MCSI_GUIDE_BUILD(guide, uint16_t, e->at.row_shift, rows, e->h);
+    for (y = 0; y < e->h; y++) mcsi_env_set_line(&line[y], (rows[y + 1] - rows[y]) / (double)MCSI_ONE, 0, MCSI_ONE, y, e->w, e->h);
     return top > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
-MCS_FN float mcsi_env_texel_pdf(const mcs_env *e, uint32_t row_mass, uint32_t col_mass, uint32_t row) {
-    double share = (double)row_mass * col_mass / ((double)MCSI_ONE * MCSI_ONE);
-    return (float)(share * e->w / (6.2831853071795865 * (mcsi_env_edge(e)[row + 1] - mcsi_env_edge(e)[row])));
+MCS_FN mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im) {
+    mcs_status status = mcs_env_build_rows(e, bytes, im, 0, im ? im->h : 0);
+    return status ? status : mcs_env_finish(e, bytes, im);
 }
-/* The place of U within [below, below + mass), kept off the borders by what the rounding of a direction can move, n 2^-22 cells. */
-MCS_FN double mcsi_env_place(double U, uint32_t below, uint32_t mass, uint32_t n) {
-    double place = (U - below) / mass, margin = n * 2.384185791015625e-07;
-    return place < margin ? margin : place > 1.0 - margin ? 1.0 - margin : place;
+
+/* A cumulative list and its guide as the builders leave them. */
+MCS_FN int mcsi_cdf_ok(const uint32_t *cdf, uint32_t n, const uint16_t *guide, uint32_t shift) {
+    uint32_t i, g, end = MCSI_ONE >> shift;
+    if (cdf[0] != 0 || cdf[n] != MCSI_ONE) return 0;
+    for (i = 0; i < n; i++)
+        if (cdf[i] > cdf[i + 1]) return 0;
+    for (g = 0; g < end; g++)
+        if (guide[g] >= n || cdf[guide[g]] > g << shift || cdf[guide[g] + 1] <= g << shift) return 0;
+    return guide[end] < n && cdf[guide[end]] < MCSI_ONE && cdf[guide[end] + 1] == MCSI_ONE;
 }
-MCS_FN mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2) {
-    const mcsi_env_parts at = mcsi_env_layout(e->w, e->h);
-    const uint32_t *rows = mcsi_env_words(e, at.rows), *cdf;
-    const double *edge = mcsi_env_edge(e);
-    mcs_texel r;
-    uint32_t row_mass, col_mass;
-    int32_t ok = 1;
-    double U1 = (double)mcsi_unit(u1, &ok) * MCSI_ONE, U2 = (double)mcsi_unit(u2, &ok) * MCSI_ONE, t;
-    float s, c, sine;
-    r.row = mcsi_cdf_find(rows, e->h, rows + e->h, e->row_shift, (uint32_t)U2);
-    cdf = mcsi_env_words(e, at.cdf) + (size_t)r.row * e->w;
-    r.col = mcsi_cdf_find(cdf, e->w, mcsi_env_words(e, at.col_guide) + r.row * at.guides, e->col_shift, (uint32_t)U1);
-    row_mass = mcsi_cdf_next(rows, e->h, r.row) - rows[r.row], col_mass = mcsi_cdf_next(cdf, e->w, r.col) - cdf[r.col];
-    t = edge[r.row] + mcsi_env_place(U2, rows[r.row], row_mass, e->h) * (edge[r.row + 1] - edge[r.row]);
-    sine = mcsi_sqrt((float)(t * (2.0 - t)));
-    mcsi_sincos_turns((float)((r.col + mcsi_env_place(U1, cdf[r.col], col_mass, e->w)) / e->w), &s, &c);
-    r.w = mcsi_vec3(sine * c, sine * s, (float)(1.0 - t));
-    r.pdf = ok ? mcsi_env_texel_pdf(e, row_mass, col_mass, r.row) : 0.0f;
+MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
+    mcsi_env_parts at;
+    mcsi_env_view v;
+    uint32_t y;
+    if (!e || ((uintptr_t)e & 7u)) return MCS_ERR_ARG;
+    if (bytes < sizeof *e) return MCS_ERR_MEMORY;
+    if (e->magic != MCSI_ENV_MAGIC || e->version != MCSI_ENV_VERSION || !mcs_env_bytes(e->w, e->h)) return MCS_ERR_FORMAT;
+    at = mcsi_env_layout(e->w, e->h);
+    if (memcmp(&at, &e->at, sizeof at) || e->uniform > 1 || e->incomplete > 1) return MCS_ERR_FORMAT;
+    if (bytes < at.bytes) return MCS_ERR_MEMORY;
+    v = mcsi_env_whole(e);
+    for (y = 0; y <= (e->h + 1) / 2; y++)
+        if (!(mcsi_env_edge(e)[y] >= 0.0 && mcsi_env_edge(e)[y] <= 2.0)) return MCS_ERR_FORMAT;
+    if (e->uniform) return MCS_OK;
+    if (!mcsi_cdf_ok(v.rows, e->h, v.guide, v.shift)) return MCS_ERR_FORMAT;
+    for (y = 0; y < e->h; y++) {
+        int lit = v.rows[y + 1] > v.rows[y];
+        if (v.line[y].begin != 0 || v.line[y].mass != MCSI_ONE || lit != (v.line[y].scale > 0.0) || !(v.line[y].scale <= 1e30) ||
+            (lit && !mcsi_cdf_ok(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.col_shift)))
+            return MCS_ERR_FORMAT;
+    }
+    return MCS_OK;
+}
+
+/* ---- drawing ---- */
+
+/* A number in [0, 2^31): integer and fraction. */
+typedef struct {
+    uint32_t i;
+    float f;
+} mcsi_fixed;
+MCSI_CORE mcsi_fixed mcsi_fixed_u(float u, int32_t *ok) {
+    float U = mcsi_unit(u, ok) * 2147483648.0f;
+    int32_t i = (int32_t)U;
+    mcsi_fixed r;
+    r.i = (uint32_t)i, r.f = U - (float)i;
     return r;
 }
-/* The texel of a direction, and 1 - cos(theta) and the azimuth in turns; bad directions count as +z and give 0. */
-MCS_FN int mcsi_env_locate(const mcs_env *e, mcs_vec3 w, uint32_t *col, uint32_t *row, double *t, double *turns) {
+MCSI_CORE mcsi_fixed mcsi_fixed_bits(uint32_t bits) {
+    mcsi_fixed r;
+    r.i = bits >> 1, r.f = 0.5f * (float)(bits & 1u);
+    return r;
+}
+/* The place of u in the part of a row that a window has. */
+MCSI_CORE mcsi_fixed mcsi_env_within(const mcsi_env_line *line, mcsi_fixed u) {
+    double P;
+    if (line->mass == MCSI_ONE) return u;
+    P = line->begin + ((double)u.i + (double)u.f) * (line->mass * (1.0 / MCSI_ONE));
+    P = P < MCSI_ONE ? P : P - MCSI_ONE;
+    u.i = (uint32_t)P, u.f = (float)(P - u.i);
+    return u;
+}
+/* Row of the view. */
+MCSI_CORE uint32_t mcsi_env_draw_row(const mcsi_env_view *v, mcsi_fixed u2, mcsi_env_point *p) {
+    const uint16_t *guide = v->guide + (u2.i >> v->shift);
+    uint32_t i = mcsi_cdf_search(v->rows, v->count, guide[0], guide[1], u2.i);
+    p->row_rest = (float)(u2.i - v->rows[i]) + u2.f, p->row_mass = (float)(v->rows[i + 1] - v->rows[i]);
+    p->edge = v->line[i].edge, p->height = v->line[i].height;
+    return i;
+}
+MCSI_CORE uint32_t mcsi_env_draw_col(const uint32_t *cdf, uint32_t w, uint32_t lo, uint32_t hi, mcsi_fixed u1, mcsi_env_point *p,
+                                     uint32_t *mass) {
+    uint32_t c = mcsi_cdf_search(cdf, w, lo, hi, u1.i);
+    *mass = cdf[c + 1] - cdf[c];
+    p->col = (float)c, p->col_rest = (float)(u1.i - cdf[c]) + u1.f, p->col_mass = (float)*mass;
+    return c;
+}
+/* Row of a direction that mcsi_env_locate has placed. */
+MCSI_CORE uint32_t mcsi_env_row_at(const mcs_env *e, float off_pole, float polar) {
     const double *edge = mcsi_env_edge(e);
+    uint32_t last = (e->h - 1) / 2, m = (uint32_t)(2.0f * polar * (float)e->h);
+    double t = (double)mcsi_abs(off_pole);
+    m = m < last ? m : last;
+    while (m > 0 && t < edge[m]) m--;
+    while (m < last && t >= edge[m + 1]) m++;
+    return mcsi_bits(off_pole) < 0 ? e->h - 1 - m : m;
+}
+MCSI_CORE uint32_t mcsi_env_col_at(const mcs_env *e, float turns) {
+    uint32_t col = (uint32_t)((double)turns * e->w);
+    return col < e->w ? col : e->w - 1;
+}
+/* Constant maps: solid angle of the rows and columns of the view over 4 pi, and a point of them. */
+MCS_FN double mcsi_env_top(const mcs_env *e, uint32_t y) {
+    return 2 * y <= e->h + 1 ? mcsi_env_edge(e)[y] : 2.0 - mcsi_env_edge(e)[e->h - y];
+}
+MCSI_CORE float mcsi_env_uniform_pdf(const mcs_env *e, const mcsi_env_view *v) {
+    double height = mcsi_env_top(e, v->row + v->count) - mcsi_env_top(e, v->row);
+    return (float)(1.0 / (6.2831853071795865 * height * v->cols / e->w));
+}
+MCSI_CORE void mcsi_env_draw_uniform(const mcs_env *e, const mcsi_env_view *v, mcsi_fixed u1, mcsi_fixed u2, mcsi_env_point *p) {
+    double a = mcsi_env_top(e, v->row), b = mcsi_env_top(e, v->row + v->count), margin = 2.384185791015625e-07;
+    double t = a + (margin + (1.0 - 2.0 * margin) * ((u2.i + (double)u2.f) / MCSI_ONE)) * (b - a);
+    double at = v->col + (u1.i + (double)u1.f) / MCSI_ONE * v->cols;
+    at = at < e->w ? at : at - e->w;
+    p->row_rest = 0.5f, p->row_mass = 1.0f, p->edge = (float)(t < 1.0 ? t : 2.0 - t), p->height = t < 1.0 ? 0.0f : -0.0f;
+    p->col = (float)(uint32_t)at, p->col_rest = (float)(at - (uint32_t)at), p->col_mass = 1.0f;
+}
+MCSI_CORE int mcsi_env_in_view(const mcs_env *e, const mcsi_env_view *v, uint32_t row, uint32_t col) {
+    return row - v->row < v->count && (col >= v->col ? col - v->col : col + e->w - v->col) < v->cols;
+}
+MCSI_CORE float mcsi_env_density(const mcs_env *e, const mcsi_env_view *v, uint32_t row, uint32_t col) {
+    const uint32_t *cdf;
+    double scale;
+    if (!mcsi_env_in_view(e, v, row, col)) return 0.0f;
+    if (v->uniform) return mcsi_env_uniform_pdf(e, v);
+    scale = v->line[row - v->row].scale;
+    if (!(scale > 0.0) || col < e->col0 || col >= e->col1) return 0.0f;
+    cdf = mcsi_env_cdf(e, row) + col;
+    return (float)((cdf[1] - cdf[0]) * scale);
+}
+MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, mcsi_fixed u1, mcsi_fixed u2, int ok) {
+    mcsi_env_point p;
+    mcs_texel r;
+    if (v->uniform) {
+        float off_pole, polar, turns;
+        mcsi_env_draw_uniform(e, v, u1, u2, &p);
+        r.w = mcsi_env_direction(&e->frame, &p, (float)e->w, (float)e->h);
+        mcsi_env_locate(&e->frame, r.w, &off_pole, &polar, &turns);
+        r.row = mcsi_env_row_at(e, off_pole, polar), r.col = mcsi_env_col_at(e, turns);
+        r.pdf = ok ? mcsi_env_uniform_pdf(e, v) : 0.0f;
+    } else {
+        uint32_t i = mcsi_env_draw_row(v, u2, &p), mass;
+        const uint16_t *guide;
+        r.row = v->row + i, u1 = mcsi_env_within(&v->line[i], u1);
+        guide = mcsi_env_guide(e, r.row) + (u1.i >> e->at.col_shift);
+        r.col = mcsi_env_draw_col(mcsi_env_cdf(e, r.row), e->w, guide[0], guide[1], u1, &p, &mass);
+        r.w = mcsi_env_direction(&e->frame, &p, (float)e->w, (float)e->h);
+        r.pdf = ok ? (float)(mass * v->line[i].scale) : 0.0f;
+    }
+    return r;
+}
+MCSI_CORE mcs_texel mcsi_env_draw_u(const mcs_env *e, const mcsi_env_view *v, float u1, float u2) {
     int32_t ok = 1;
-    double s2;
-    uint32_t r;
-    w = mcsi_direction(w, &ok);
-    s2 = (double)w.x * w.x + (double)w.y * w.y;
-    *t = w.z > 0.0f ? s2 / (1.0 + w.z) : 2.0 - s2 / (1.0 - w.z); /* 1 - cos(theta), accurate at both poles */
-    *turns = (double)mcsi_atan2_turns(w.y, w.x);
-    *col = (uint32_t)(*turns * e->w);
-    r = (uint32_t)(2.0 * e->h * (double)mcsi_atan2_turns(mcsi_sqrt((float)s2), w.z));
-    if (r >= e->h) r = e->h - 1;
-    while (r > 0 && *t < edge[r]) r--;
-    while (r + 1 < e->h && *t >= edge[r + 1]) r++;
-    *row = r;
-    return ok;
+    mcsi_fixed U1 = mcsi_fixed_u(u1, &ok), U2 = mcsi_fixed_u(u2, &ok);
+    return mcsi_env_draw(e, v, U1, U2, ok);
+}
+MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, mcs_vec3 w) {
+    float off_pole, polar, turns;
+    mcs_texel r;
+    int ok;
+    mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
+    ok = off_pole < 4.0f;
+    r.row = ok ? mcsi_env_row_at(e, off_pole, polar) : 0, r.col = mcsi_env_col_at(e, turns);
+    r.w = ok ? w : e->frame.n;
+    r.pdf = ok ? mcsi_env_density(e, v, r.row, r.col) : 0.0f;
+    return r;
+}
+#ifndef MCS_NO_BATCH
+/* Blocks of points, so that the misses of one stage (guide, cumulative sums) are under way together before the next one needs
+ * them. */
+MCS_FN void mcsi_env_draw_n(const mcs_env *e, const mcsi_env_view *v, size_t n, const float *u1, const float *u2, float *x,
+                            float *y, float *z, float *pdf) {
+    mcsi_env_block b;
+    mcsi_env_point p;
+    mcsi_fixed at[MCSI_ENV_BLOCK];
+    uint32_t line[MCSI_ENV_BLOCK], lo[MCSI_ENV_BLOCK], hi[MCSI_ENV_BLOCK], mass;
+    const uint32_t *cdf[MCSI_ENV_BLOCK];
+    const uint16_t *guide[MCSI_ENV_BLOCK];
+    size_t i, k, m;
+    if (n < MCSI_ENV_BLOCK) memset(&b, 0, sizeof b);
+    for (i = 0; i < n; i += m) {
+        m = n - i < MCSI_ENV_BLOCK ? n - i : MCSI_ENV_BLOCK;
+        for (k = 0; k < m; k++) {
+            int32_t ok = 1;
+            mcsi_fixed U1 = mcsi_fixed_u(u1[i + k], &ok), U2 = mcsi_fixed_u(u2[i + k], &ok);
+            b.pdf[k] = ok ? 1.0f : 0.0f;
+            if (v->uniform) {
+                mcsi_env_draw_uniform(e, v, U1, U2, &p);
+                b.col[k] = p.col, b.col_rest[k] = p.col_rest, b.col_mass[k] = p.col_mass, b.pdf[k] *= mcsi_env_uniform_pdf(e, v);
+            } else {
+                line[k] = mcsi_env_draw_row(v, U2, &p), at[k] = mcsi_env_within(&v->line[line[k]], U1);
+                guide[k] = mcsi_env_guide(e, v->row + line[k]) + (at[k].i >> e->at.col_shift);
+                MCSI_PREFETCH(guide[k]);
+            }
+            b.row_rest[k] = p.row_rest, b.row_mass[k] = p.row_mass, b.edge[k] = p.edge, b.height[k] = p.height;
+        }
+        for (k = 0; k < m && !v->uniform; k++) {
+            cdf[k] = mcsi_env_cdf(e, v->row + line[k]), lo[k] = guide[k][0], hi[k] = guide[k][1];
+            MCSI_PREFETCH(cdf[k] + lo[k]), MCSI_PREFETCH(cdf[k] + hi[k] + 1);
+        }
+        for (k = 0; k < m && !v->uniform; k++) {
+            mcsi_env_draw_col(cdf[k], e->w, lo[k], hi[k], at[k], &p, &mass);
+            b.col[k] = p.col, b.col_rest[k] = p.col_rest, b.col_mass[k] = p.col_mass;
+            b.pdf[k] *= (float)(mass * v->line[line[k]].scale);
+        }
+        if (x || y || z) mcsi_env_directions_n(&e->frame, m, &b, (float)e->w, (float)e->h);
+        if (x) memcpy(x + i, b.x, m * sizeof *x);
+        if (y) memcpy(y + i, b.y, m * sizeof *y);
+        if (z) memcpy(z + i, b.z, m * sizeof *z);
+        if (pdf) memcpy(pdf + i, b.pdf, m * sizeof *pdf);
+    }
+}
+MCS_FN void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                             float *pdf) {
+    mcsi_env_view v = mcsi_env_whole(e);
+    mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf);
+}
+MCS_FN void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+    mcsi_env_view v = mcsi_env_whole(e);
+    float off_pole[MCSI_ENV_BLOCK], polar[MCSI_ENV_BLOCK], turns[MCSI_ENV_BLOCK];
+    uint32_t row[MCSI_ENV_BLOCK], col[MCSI_ENV_BLOCK];
+    size_t i, k, m;
+    for (i = 0; pdf && i < n; i += m) {
+        m = n - i < MCSI_ENV_BLOCK ? n - i : MCSI_ENV_BLOCK;
+        mcsi_env_locate_n(&e->frame, m, x + i, y + i, z + i, off_pole, polar, turns);
+        for (k = 0; k < m; k++) {
+            row[k] = off_pole[k] < 4.0f ? mcsi_env_row_at(e, off_pole[k], polar[k]) : e->h, col[k] = mcsi_env_col_at(e, turns[k]);
+            if (!v.uniform && row[k] < e->h) MCSI_PREFETCH(mcsi_env_cdf(e, row[k]) + col[k]);
+        }
+        for (k = 0; k < m; k++) pdf[i + k] = mcsi_env_density(e, &v, row[k], col[k]);
+    }
+}
+#endif
+MCS_FN mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2) {
+    mcsi_env_view v = mcsi_env_whole(e);
+    return mcsi_env_draw_u(e, &v, u1, u2);
+}
+MCS_FN mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2) {
+    mcsi_env_view v = mcsi_env_whole(e);
+    return mcsi_env_draw(e, &v, mcsi_fixed_bits(b1), mcsi_fixed_bits(b2), 1);
 }
 MCS_FN mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w) {
-    const mcsi_env_parts at = mcsi_env_layout(e->w, e->h);
-    const uint32_t *rows = mcsi_env_words(e, at.rows), *cdf;
-    mcs_texel r;
-    double t, turns;
-    int ok = mcsi_env_locate(e, w, &r.col, &r.row, &t, &turns);
-    cdf = mcsi_env_words(e, at.cdf) + (size_t)r.row * e->w;
-    r.w = ok ? w : mcsi_vec3(0.0f, 0.0f, 1.0f);
-    r.pdf = ok ? mcsi_env_texel_pdf(e, mcsi_cdf_next(rows, e->h, r.row) - rows[r.row], mcsi_cdf_next(cdf, e->w, r.col) - cdf[r.col],
-                                    r.row)
-               : 0.0f;
-    return r;
+    mcsi_env_view v = mcsi_env_whole(e);
+    return mcsi_env_look_up(e, &v, w);
 }
 MCS_FN float mcs_env_pdf(const mcs_env *e, mcs_vec3 w) { return mcs_env_texel(e, w).pdf; }
 MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
-    const mcsi_env_parts at = mcsi_env_layout(e->w, e->h);
-    const uint32_t *rows = mcsi_env_words(e, at.rows), *cdf;
-    const double *edge = mcsi_env_edge(e);
-    uint32_t col, row;
-    double t, turns, u1, u2;
-    int ok = mcsi_env_locate(e, w, &col, &row, &t, &turns);
-    cdf = mcsi_env_words(e, at.cdf) + (size_t)row * e->w;
-    u1 = cdf[col] + (turns * e->w - col) * (mcsi_cdf_next(cdf, e->w, col) - cdf[col]);
-    u2 = rows[row] + (t - edge[row]) / (edge[row + 1] - edge[row]) * (mcsi_cdf_next(rows, e->h, row) - rows[row]);
-    return mcsi_uv(ok, mcsi_below_one(u1 / MCSI_ONE), mcsi_below_one(u2 / MCSI_ONE));
+    mcsi_env_view v = mcsi_env_whole(e);
+    float off_pole, polar, turns;
+    double u1, u2, place, t;
+    uint32_t row, m;
+    mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
+    if (!(off_pole < 4.0f)) return mcsi_vec2(0.0f, 0.0f);
+    t = (double)mcsi_abs(off_pole);
+    if (v.uniform) {
+        u1 = (double)turns * MCSI_ONE, u2 = 0.5 * (mcsi_bits(off_pole) < 0 ? 2.0 - t : t) * MCSI_ONE;
+    } else {
+        const uint32_t *cdf;
+        uint32_t col = mcsi_env_col_at(e, turns);
+        row = mcsi_env_row_at(e, off_pole, polar), m = mcsi_env_from_pole(row, e->h), cdf = mcsi_env_cdf(e, row) + col;
+        place = (t - mcsi_env_edge(e)[m]) / (mcsi_env_edge(e)[m + 1] - mcsi_env_edge(e)[m]);
+        place = mcsi_bits(off_pole) < 0 ? 1.0 - place : place;
+        u1 = v.line[row].scale > 0.0 ? cdf[0] + ((double)turns * e->w - col) * (cdf[1] - cdf[0]) : 0.0;
+        u2 = v.rows[row] + place * (v.rows[row + 1] - v.rows[row]);
+    }
+    return mcsi_vec2(mcsi_below_one(u1 / MCSI_ONE), mcsi_below_one(u2 / MCSI_ONE));
+}
+MCS_FN float mcs_env_weight(const mcs_env *e, float pdf) {
+    MCS_ASSERT(!e->incomplete);
+    return mcsi_keep(!e->incomplete & (pdf > 0.0f), 1.0f / pdf);
+}
+
+/* ---- windows ---- */
+
+MCS_FN const mcsi_env_line *mcsi_window_line(const mcs_env_window *m) { return (const mcsi_env_line *)(const void *)(m + 1); }
+MCSI_CORE mcsi_env_view mcsi_env_part(const mcs_env_window *m) {
+    mcsi_env_view v;
+    v.line = mcsi_window_line(m), v.rows = (const uint32_t *)(const void *)(v.line + m->rows);
+    v.guide = (const uint16_t *)(const void *)(v.rows + m->rows + 1);
+    v.row = m->row, v.count = m->rows, v.col = m->col, v.cols = m->cols, v.shift = m->shift, v.uniform = m->uniform;
+    return v;
+}
+MCS_FN size_t mcs_env_window_bytes(uint32_t rows) {
+    if (rows == 0 || rows > MCSI_ENV_MAX) return 0;
+    return (size_t)mcsi_up8(sizeof(mcs_env_window) + rows * (sizeof(mcsi_env_line) + sizeof(uint32_t)) + sizeof(uint32_t) +
+                            ((MCSI_ONE >> mcsi_guide_shift(rows, 1)) + 1) * sizeof(uint16_t));
+}
+MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows, uint32_t col,
+                                       uint32_t cols) {
+    mcsi_env_line *line;
+    mcsi_env_view all;
+    uint32_t *cdf, i;
+    uint16_t *guide;
+    double total;
+    if (!m || !e || ((uintptr_t)m & 7u)) return MCS_ERR_ARG;
+    if (rows == 0 || cols == 0 || rows > e->h || row > e->h - rows || cols > e->w || col >= e->w) return MCS_ERR_SIZE;
+    if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
+    all = mcsi_env_whole(e), line = (mcsi_env_line *)(void *)(m + 1);
+    cdf = (uint32_t *)(void *)(line + rows), guide = (uint16_t *)(void *)(cdf + rows + 1);
+    m->row = row, m->rows = rows, m->col = col, m->cols = cols, m->shift = mcsi_guide_shift(rows, 1);
+    for (i = 0; i < rows; i++) {
+        uint32_t mass = e->uniform ? 0 : all.rows[row + i + 1] - all.rows[row + i], end = col + cols;
+        line[i].begin = line[i].mass = 0;
+        if (mass) {
+            const uint32_t *c = mcsi_env_cdf(e, row + i);
+            line[i].begin = c[col], line[i].mass = end <= e->w ? c[end] - c[col] : MCSI_ONE - c[col] + c[end - e->w];
+        }
+        mcsi_put_weight(cdf + i, (float)((double)mass * line[i].mass));
+    }
+    total = mcsi_cdf_build(cdf, rows);
+    m->uniform = !(total > 0.0);
+    MCSI_GUIDE_BUILD(guide, uint16_t, m->shift, cdf, rows);
+    for (i = 0; i < rows; i++)
+        mcsi_env_set_line(&line[i], (cdf[i + 1] - cdf[i]) / (double)MCSI_ONE, line[i].begin, line[i].mass, row + i, e->w, e->h);
+    return m->uniform && !e->uniform ? MCS_UNIFORM : MCS_OK;
+}
+MCS_FN mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2) {
+    mcsi_env_view v = mcsi_env_part(m);
+    return mcsi_env_draw_u(e, &v, u1, u2);
+}
+MCS_FN float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_vec3 w) {
+    mcsi_env_view v = mcsi_env_part(m);
+    return mcsi_env_look_up(e, &v, w).pdf;
 }
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                             float *pdf) {
-    size_t k;
-    for (k = 0; k < n; k++) {
-        mcs_texel s = mcs_env_sample(e, u1[k], u2[k]);
-        if (x) x[k] = s.w.x;
-        if (y) y[k] = s.w.y;
-        if (z) z[k] = s.w.z;
-        if (pdf) pdf[k] = s.pdf;
-    }
-}
-MCS_FN void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
-    size_t k;
-    for (k = 0; pdf && k < n; k++) pdf[k] = mcs_env_pdf(e, mcsi_vec3(x[k], y[k], z[k]));
+MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1, const float *u2, float *x,
+                                    float *y, float *z, float *pdf) {
+    mcsi_env_view v = mcsi_env_part(m);
+    mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf);
 }
 #endif
+#endif /* MCSI_W == 1 */
 #endif /* MCS_NO_TABLES */
 
+#if MCSI_W == 1
 /* ==== [estimator] running mean, variance, standard error =======================================================================
  * A zeroed mcs_stat is empty. mcs_stat_add is Welford 1962, mcs_stat_merge Chan, Golub, LeVeque 1983: both stable where sums of
  * squares are not, and merging in a fixed order gives the same result for any number of threads. mcs_stat_variance is the unbiased
@@ -2892,6 +3460,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_NARROW
 #undef MCSI_REQUIRE
 #undef MCSI_BATCH
+#undef MCSI_BATCH_AS
 #undef MCSI_W
 #undef MCSI_LOOPS
 #undef MCS_

@@ -13,6 +13,7 @@ int main(void) {
     static float sky[H][W];
     size_t bytes = mcs_env_bytes(W, H);
     mcs_env *env = (mcs_env *)malloc(bytes);
+    mcs_image image = mcs_image_make(&sky[0][0], W, H, 1);
     mcs_pcg32 rng = mcs_pcg32_make(8, 1);
     mcs_stat table = {0, 0, 0}, cosine = {0, 0, 0};
     double exact = 0;
@@ -25,7 +26,7 @@ int main(void) {
             if (y < H / 2) exact += sky[y][x] * (2 * pi / W) * (c0 * c0 - c1 * c1) / 2;
         }
     }
-    if (!env || mcs_env_build(env, bytes, &sky[0][0], W, H, 1, 0) != MCS_OK) {
+    if (!env || mcs_env_build(env, bytes, &image) != MCS_OK) {
         puts("the table could not be built");
         return 1;
     }

@@ -239,6 +239,7 @@ static int environment_make(environment *e, const char *map) {
     const char *name = map ? map : "built-in sky";
     size_t bytes, i;
     float *pixel;
+    mcs_image image;
     int status;
     if (!(map ? map_read(e, name) : map_sky(e, name))) return 0;
     map_survey(e);
@@ -247,7 +248,8 @@ static int environment_make(environment *e, const char *map) {
     pixel = malloc((size_t)e->w * e->h * sizeof *pixel);
     if (!e->table || !pixel) return free(pixel), complain(name, "not enough memory for the sampling table");
     for (i = 0; i < (size_t)e->w * e->h; i++) pixel[i] = luminance(radiance_at(e, (unsigned)(i % e->w), (unsigned)(i / e->w)));
-    status = mcs_env_build(e->table, bytes, pixel, e->w, e->h, 1, 0);
+    image = mcs_image_make(pixel, e->w, e->h, 1);
+    status = mcs_env_build(e->table, bytes, &image);
     free(pixel);
     if (status == MCS_UNIFORM) return complain(name, "the map is black: there is nothing to light the scene with");
     return status == MCS_OK ? 1 : complain(name, "no sampling table (status %d)", status);

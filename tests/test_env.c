@@ -131,11 +131,17 @@ static int arena_intact(const arena *a) { return untouched(a->raw, GUARD) && unt
 
 static void arena_free(arena *a) { free(a->raw); }
 
+static mcs_status build_from(mcs_env *e, size_t bytes, const float *p, uint32_t w, uint32_t h, uint32_t channels, size_t stride) {
+    mcs_image image = mcs_image_make(p, w, h, channels);
+    image.row_stride = (ptrdiff_t)stride;
+    return mcs_env_build(e, bytes, &image);
+}
+
 static arena build(const map *m) {
     arena a = arena_make(mcs_env_bytes(m->w, m->h));
     int rc;
     load(m);
-    rc = mcs_env_build(a.e, a.bytes, pixels, m->w, m->h, 1, 0);
+    rc = build_from(a.e, a.bytes, pixels, m->w, m->h, 1, 0);
     CHECK(rc == MCS_OK, "build returns %d", rc);
     CHECK(arena_intact(&a), "build wrote outside its %zu bytes", a.bytes);
     CHECK(a.e->bad == 0, "%llu bad texels", (unsigned long long)a.e->bad);
@@ -421,7 +427,7 @@ static void test_channels(void) {
                 }
             for (r = 0; r < H; r++)
                 for (c = 0, row_prob[r] = 0; c < W; c++) row_prob[r] += prob[r * W + c] /= sum;
-            rc = mcs_env_build(a.e, a.bytes, in, W, H, channels, padded ? STRIDE : 0);
+            rc = build_from(a.e, a.bytes, in, W, H, channels, padded ? STRIDE : 0);
             CHECK(rc == MCS_OK && a.e->bad == 0, "%u channels, stride %zu: returns %d, %llu bad", channels, stride, rc,
                   (unsigned long long)a.e->bad);
             CHECK(fabs((double)(a.e->total / sum - 1)) <= 4 * eps, "%u channels, stride %zu: total %g, not %g", channels, stride,
@@ -450,10 +456,10 @@ static void test_bad_pixels(void) {
             }
             count += (uint32_t)broken;
         }
-        rc = mcs_env_build(a.e, a.bytes, in, W, H, channels, 0);
+        rc = build_from(a.e, a.bytes, in, W, H, channels, 0);
         CHECK(rc == MCS_OK && a.e->bad == count && arena_intact(&a), "%u channels: returns %d, %llu bad, not %u", channels, rc,
               (unsigned long long)a.e->bad, count);
-        rc = mcs_env_build(b.e, b.bytes, clean, W, H, channels, 0);
+        rc = build_from(b.e, b.bytes, clean, W, H, channels, 0);
         CHECK(rc == MCS_OK && b.e->bad == 0 && a.e->total == b.e->total, "%u channels: total %g, not %g", channels, a.e->total,
               b.e->total);
         for (i = 0; i < 20000; i++) {
@@ -468,7 +474,7 @@ static void test_bad_pixels(void) {
     if (mcst.open) { /* one bad channel makes the texel bad */
         arena a = arena_make(mcs_env_bytes(2, 1));
         const float two[6] = {1, 1, 1, 1, NAN, 1};
-        const int rc = mcs_env_build(a.e, a.bytes, two, 2, 1, 3, 0);
+        const int rc = build_from(a.e, a.bytes, two, 2, 1, 3, 0);
         CHECK(rc == MCS_OK && a.e->bad == 1, "returns %d, %llu bad", rc, (unsigned long long)a.e->bad);
         CHECK(fabs(mcs_env_sample(a.e, 0.9f, 0.5f).pdf * 2 * pi - 1) <= 4 * eps, "density of the other half");
         arena_free(&a);
@@ -487,7 +493,7 @@ static void test_black(void) {
         int i, rc;
         for (i = 0; i < W * H; i++) in[i] = fill[k];
         load(&m);
-        rc = mcs_env_build(a.e, a.bytes, in, W, H, 1, 0);
+        rc = build_from(a.e, a.bytes, in, W, H, 1, 0);
         CHECK(rc == MCS_UNIFORM && arena_intact(&a), "all %g: returns %d", (double)fill[k], rc);
         CHECK(a.e->total == 0 && a.e->bad == (k == 2 ? W * H : 0), "all %g: total %g, %llu bad", (double)fill[k], a.e->total,
               (unsigned long long)a.e->bad);
@@ -509,24 +515,24 @@ static void test_refused(void) {
     unsigned char *at = a.raw + GUARD;
     size_t i;
     load(&maps[15]);
-    CHECK(mcs_env_build(NULL, need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "no memory");
-    CHECK(mcs_env_build(a.e, need, NULL, w, h, 1, 0) == MCS_ERR_ARG, "no pixels");
-    CHECK(mcs_env_build(a.e, need, pixels, 0, h, 1, 0) == MCS_ERR_SIZE, "no columns");
-    CHECK(mcs_env_build(a.e, need, pixels, w, 0, 1, 0) == MCS_ERR_SIZE, "no rows");
-    CHECK(mcs_env_build(a.e, need, pixels, w, h, 0, 0) == MCS_ERR_ARG, "no channels");
-    CHECK(mcs_env_build(a.e, need, pixels, w, h, 2, 0) == MCS_ERR_ARG, "two channels");
-    CHECK(mcs_env_build(a.e, need, pixels, w, h, 1, w - 1) == MCS_ERR_SIZE, "stride below a row");
-    CHECK(mcs_env_build((mcs_env *)(void *)(at + 4), need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "misaligned memory");
+    CHECK(build_from(NULL, need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "no memory");
+    CHECK(build_from(a.e, need, NULL, w, h, 1, 0) == MCS_ERR_ARG, "no pixels");
+    CHECK(build_from(a.e, need, pixels, 0, h, 1, 0) == MCS_ERR_SIZE, "no columns");
+    CHECK(build_from(a.e, need, pixels, w, 0, 1, 0) == MCS_ERR_SIZE, "no rows");
+    CHECK(build_from(a.e, need, pixels, w, h, 0, 0) == MCS_ERR_ARG, "no channels");
+    CHECK(build_from(a.e, need, pixels, w, h, 2, 0) == MCS_ERR_ARG, "two channels");
+    CHECK(build_from(a.e, need, pixels, w, h, 1, w - 1) == MCS_ERR_SIZE, "stride below a row");
+    CHECK(build_from((mcs_env *)(void *)(at + 4), need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "misaligned memory");
     for (i = 0; i < need; i++) {
-        const int rc = mcs_env_build(a.e, i, pixels, w, h, 1, 0);
+        const int rc = build_from(a.e, i, pixels, w, h, 1, 0);
         CHECK(rc == MCS_ERR_MEMORY, "%zu of %zu bytes: %d", i, need, rc);
     }
     CHECK(mcs_env_bytes(0, 1) == 0 && mcs_env_bytes(1, 0) == 0, "bytes of an empty map");
     CHECK(mcs_env_bytes(big, big) == 0, "bytes of 2^64 texels: %zu", mcs_env_bytes(big, big));
-    CHECK(mcs_env_build(a.e, SIZE_MAX, pixels, big, big, 1, 0) == MCS_ERR_SIZE, "2^64 texels");
-    CHECK(mcs_env_build(a.e, need, pixels, big, big, 4, 0) == MCS_ERR_SIZE, "2^64 texels");
-    CHECK(mcs_env_build(a.e, need, pixels, big, 1, big, 0) < 0, "2^64 floats in a row");
-    CHECK(mcs_env_build(a.e, need, pixels, w, h, 1, SIZE_MAX / 2) < 0, "a stride beyond memory");
+    CHECK(build_from(a.e, SIZE_MAX, pixels, big, big, 1, 0) == MCS_ERR_SIZE, "2^64 texels");
+    CHECK(build_from(a.e, need, pixels, big, big, 4, 0) == MCS_ERR_SIZE, "2^64 texels");
+    CHECK(build_from(a.e, need, pixels, big, 1, big, 0) < 0, "2^64 floats in a row");
+    CHECK(build_from(a.e, need, pixels, w, h, 1, SIZE_MAX / 2) < 0, "a stride beyond memory");
     CHECK(untouched(at, need + 8) && arena_intact(&a), "a refused build wrote");
     arena_free(&a);
 }

@@ -49,9 +49,10 @@ static double sunlit(const double w[3], double near_sun) { return 0.05 * sky(w, 
 static double flat(const double w[3], double near_sun) { return (void)w, (void)near_sun, 1; }
 
 static int map_table(map *m) {
+    const mcs_image image = mcs_image_make(m->light, m->w, m->h, 1);
     size_t bytes = mcs_env_bytes(m->w, m->h);
     m->table = malloc(bytes);
-    if (!m->table || mcs_env_build(m->table, bytes, m->light, m->w, m->h, 1, 0) != MCS_OK)
+    if (!m->table || mcs_env_build(m->table, bytes, &image) != MCS_OK)
         return fprintf(stderr, "%s: no sampling table\n", m->name), 0;
     return 1;
 }

@@ -138,7 +138,10 @@ static void build_pwc(void) { (void)mcs_pwc_build(now.pwc, mcs_pwc_bytes(now.w),
 static void build_pwl(void) { (void)mcs_pwl_build(now.pwl, mcs_pwl_bytes(now.w), now.image, now.w); }
 static void build_alias(void) { (void)mcs_alias_build(now.alias, mcs_alias_bytes(now.w), now.image, now.w); }
 static void build_env_text(void) { text_env_build(now.image, now.w, now.h); }
-static void build_env(void) { (void)mcs_env_build(now.env, mcs_env_bytes(now.w, now.h), now.image, now.w, now.h, 3, 0); }
+static void build_env(void) {
+    const mcs_image image = mcs_image_make(now.image, now.w, now.h, 3);
+    (void)mcs_env_build(now.env, mcs_env_bytes(now.w, now.h), &image);
+}
 
 #define DRAW(name, ...)                                                 \
     static void draw_##name(size_t at) {                                \

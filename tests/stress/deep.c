@@ -1,0 +1,263 @@
+/* Deep statistics: a thousand million samples of the array form of every main row against the integral of its shipped density, and
+ * the smallest error of a density that such a test sees.
+ *
+ * One case per row: chi-square over the bins of bins.h, Kolmogorov-Smirnov over the marginals of the bins and over the random
+ * numbers that the inverse gives back. Then the same samples against densities that are off by 0.1, 0.3 and 1 %, which must be told
+ * from the right one: the width of the lobe (its alphas, exponents, rate, deviation), a tilt from the centre outwards, a tilt
+ * around the azimuth. --filter 'ggx/' runs one row; MCS_TEST_SCALE scales the samples. */
+#include "bins.h"
+
+enum { CELLS_U = 65536, SHIFTS = 3 };
+static const double samples_at_full_scale = 1e9, samples_of_make_test = 1e7;
+static const double shifts[SHIFTS] = {0.001, 0.003, 0.01};
+
+/* vary: the parameters that make the width, as bits; without any there is no such mutant. */
+static const struct part {
+    const char *row;
+    unsigned vary;
+} parts[] = {
+    {"linear", 1},     {"tent", 0},        {"exponential", 1},   {"truncexp", 1},   {"normal", 2},        {"logistic", 2},
+    {"power", 1},      {"evenpower", 1},   {"disk", 0},          {"concentric", 0}, {"sphere", 0},        {"hemisphere", 0},
+    {"cosine", 0},     {"cone", 0},        {"phong_lobe", 1},    {"phong", 1},      {"ward_h", 3},        {"ward_gmd", 3},
+    {"beckmann_h", 3}, {"beckmann", 3},    {"ggx_h", 3},         {"ggx", 3},        {"ggx_vndf_h", 3},    {"ggx_vndf", 3},
+    {"ggx_bounded_h", 3}, {"ggx_bounded", 3}, {"ashikhmin_h", 3}, {"ashikhmin", 3},
+};
+
+/* --- counting ------------------------------------------------------------------------------------------------------------------- */
+
+static double observed[MCST_CELLS + 1], expected[MCST_CELLS + 1], back[2][CELLS_U];
+
+/* One line on stderr every ten seconds. */
+static void progress(const char *name, double share) {
+    static time_t last;
+    const time_t now = time(NULL);
+    if (!last) last = now;
+    if (now - last < 10) return;
+    last = now;
+    fprintf(stderr, "    %s: %.0f %%\n", name, 100 * share);
+}
+
+/* Fills observed and back; returns how many samples were drawn, 0 when one was not finite or came back outside [0,1). */
+static double draw(const mcst_row *row, const float *p, const mcst_map *map, double n, uint64_t seed) {
+    static float buffer[7][MCST_BLOCK];
+    float *const out[5] = {buffer[2], buffer[3], buffer[4], buffer[5], buffer[6]};
+    const int lost_cell = map->s_bins * map->t_bins, brdf = row->shape == MCST_IS_BRDF;
+    double done = 0;
+    int i;
+    memset(buffer, 0, sizeof buffer);
+    memset(observed, 0, sizeof observed);
+    memset(back, 0, sizeof back);
+    while (done < n) {
+        mcst_uniform(&seed, MCST_BLOCK, buffer[0], buffer[1]);
+        row->sample_n(p, MCST_BLOCK, buffer[0], buffer[1], out);
+        for (i = 0; i < MCST_BLOCK; i++) {
+            const float x[3] = {out[0][i], out[1][i], out[2][i]};
+            const int lost = brdf && !(out[3][i] > 0);
+            float u[2] = {0, 0};
+            if (!(isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]) && isfinite(out[3][i]))) return 0;
+            observed[lost ? lost_cell : mcst_cell(map, (double)x[0], (double)x[1], (double)x[2])] += 1;
+            if (!row->fn[0].invert) continue;
+            row->fn[0].invert(p, x, u);
+            if (!(u[0] >= 0 && u[0] < 1 && u[1] >= 0 && u[1] < 1)) return 0;
+            back[0][(int)(u[0] * CELLS_U)] += 1;
+            back[1][(int)(u[1] * CELLS_U)] += 1;
+        }
+        done += MCST_BLOCK;
+        progress(row->name, done / n);
+    }
+    return done;
+}
+
+/* --- chi-square ----------------------------------------------------------------------------------------------------------------- */
+
+/* Cells to groups. The random numbers are multiples of 2^-24, so a ring of constant s, an interval of one of them, gets a share that
+ * is up to 2^-24 off its mass m. That adds n 2^-48 / m to chi-square: rings are joined until it is below 0.01. */
+static int group_of[MCST_CELLS + 1];
+
+static int make_groups(const mcst_map *map, const double *mass, double n, int brdf) {
+    const double least = 100 * n * 0x1p-48;
+    int i, j, groups = 0, joined = -1;
+    double pool = 0;
+    for (i = 0; i < map->s_bins; i++) {
+        double ring = 0;
+        for (j = 0; j < map->t_bins; j++) ring += mass[i * map->t_bins + j];
+        for (j = 0; j < map->t_bins; j++) group_of[i * map->t_bins + j] = ring >= least ? groups++ : (joined < 0 ? joined = groups++ : joined);
+        if (ring >= least) continue;
+        pool += ring;
+        if (pool >= least) joined = -1, pool = 0;
+    }
+    if (pool > 0) /* what is left over joins the group before it */
+        for (i = 0; i < map->s_bins * map->t_bins; i++)
+            if (group_of[i] == joined) group_of[i] = joined > 0 ? joined - 1 : joined + 1;
+    if (brdf) group_of[map->s_bins * map->t_bins] = groups++;
+    return groups;
+}
+
+static void gather(const double *cells, int n, double *groups) {
+    int i;
+    memset(groups, 0, (MCST_CELLS + 1) * sizeof *groups);
+    for (i = 0; i < n; i++) groups[group_of[i]] += cells[i];
+}
+
+/* P(X > x) for a chi-square distributed X with noncentrality lambda: Poisson(lambda / 2) mixes central ones of dof + 2 j. */
+static double noncentral(double x, double dof, double lambda) {
+    const double mean = 0.5 * lambda, reach = 12 * sqrt(mean) + 40;
+    double sum = 0, j;
+    for (j = floor(fmax(0, mean - reach)); j <= mean + reach; j++) sum += st_poisson(j, mean) * gamma_q(0.5 * dof + j, 0.5 * x);
+    return sum;
+}
+
+/* The noncentrality that a test at `level` sees with probability 0.99. */
+static double visible(double dof, double level) {
+    double lo = dof, hi = 2 * dof + 1000, x;
+    int i;
+    for (i = 0; i < 60; i++) {
+        x = 0.5 * (lo + hi);
+        if (chi2_p(x, dof) > level) lo = x;
+        else hi = x;
+    }
+    x = hi, lo = 0, hi = 4 * (x - dof) + 1000;
+    for (i = 0; i < 40; i++) {
+        const double lambda = 0.5 * (lo + hi);
+        if (noncentral(x, dof, lambda) < 0.99) lo = lambda;
+        else hi = lambda;
+    }
+    return hi;
+}
+
+/* --- wrong densities ------------------------------------------------------------------------------------------------------------ */
+
+static const mcst_row *right;
+static unsigned varied;
+static float factor;
+
+static void off_pdf(const float *p, const float *x, float *out) {
+    float q[MCST_P];
+    memcpy(q, p, sizeof q);
+    if (varied & 1) q[0] *= factor;
+    if (varied & 2) q[1] *= factor;
+    right->fn[0].pdf(q, x, out);
+}
+
+enum kind { WIDTH_OFF, TILT_OUT, TILT_AROUND, KINDS };
+static const char *const kind_name[KINDS] = {"width", "outwards", "around"};
+
+/* The masses of the cells, and of what is lost, under a density that is eps off. The tilts are constant over a cell. */
+static void wrong_masses(enum kind kind, const mcst_row *row, const float *p, const mcst_map *map, double eps, const double *mass,
+                         double *wrong) {
+    const int cells = map->s_bins * map->t_bins, all = cells + (row->shape == MCST_IS_BRDF);
+    double sum = 0;
+    int i;
+    if (kind == WIDTH_OFF) {
+        mcst_row off = *row;
+        off.fn[0].pdf = off_pdf;
+        factor = (float)(1 + eps);
+        wrong[cells] = fmax(0, 1 - mcst_masses(&off, p, 1e-8, wrong));
+        return;
+    }
+    for (i = 0; i < all; i++) {
+        const double s = (i / map->t_bins + 0.5) / map->s_bins, t = (i % map->t_bins + 0.5) / map->t_bins;
+        wrong[i] = mass[i] * (i == cells ? 1 : 1 + eps * (kind == TILT_OUT ? 2 * s - 1 : cos(2 * ST_PI * t)));
+        sum += wrong[i];
+    }
+    for (i = 0; i < all; i++) wrong[i] /= sum;
+}
+
+/* --- one row -------------------------------------------------------------------------------------------------------------------- */
+
+static double ks_back(const double *counts, double n) {
+    /* The distance at the edges of 65536 cells. Within a cell it grows by 1.2e-7 at 1e9 samples (a standard deviation of the counts),
+     * a 250th of 1/sqrt(n), and is left out. A number comes back within 64 2^-24 of itself (test_oracle.c: a few roundings, and 8 ulp
+     * in each coordinate), so the share below an edge may be off by that without anything being wrong. */
+    static double flat[CELLS_U];
+    double sum = 0, d = 0;
+    int i;
+    for (i = 0; i < CELLS_U; i++) {
+        flat[i] = n / CELLS_U;
+        sum += counts[i] - flat[i];
+        d = fmax(d, fabs(sum) / n);
+    }
+    return ks_p(fmax(0, d - 65 * 0x1p-24), n);
+}
+
+static void check_row(const struct part *part, double n, double level) {
+    static double mass[MCST_CELLS + 1], wrong[MCST_CELLS + 1], o[MCST_CELLS + 1], e[MCST_CELLS + 1], w[MCST_CELLS + 1];
+    const mcst_row *row = mcst_find(part->row);
+    const mcst_set *set = &row->chi[0];
+    const int brdf = row->shape == MCST_IS_BRDF, full = mcst_scale() >= 1;
+    double so[MCST_LINE_BINS + 1] = {0}, se[MCST_LINE_BINS + 1] = {0}, to[MCST_T + 1] = {0}, te[MCST_T + 1] = {0};
+    double p_chi2, p_s, p_t = 1, p_u1 = 1, p_u2 = 1, p_stray, stray = 0, done, lambda99;
+    float p[MCST_P];
+    mcst_map map;
+    int i, j, kind, cells, groups, dof;
+    const clock_t began = clock();
+    mcst_fill(row, set->a, set->b, set->cos_o, set->azimuth, p);
+    map = mcst_map_make(row, p);
+    cells = map.s_bins * map.t_bins;
+    done = draw(row, p, &map, n, mcst_seed_for(row->name, "deep", 0));
+    CHECK(done > 0, "a sample is not finite, or comes back outside [0,1)");
+    if (!(done > 0)) return;
+
+    mass[cells] = fmax(0, 1 - mcst_masses(row, p, 1e-8, mass));
+    for (i = 0; i <= cells; i++) {
+        expected[i] = i < cells || brdf ? mass[i] * done : 0;
+        if (i < cells && mass[i] == 0) stray += observed[i], observed[i] = 0;
+        so[i / map.t_bins] += observed[i], se[i / map.t_bins] += expected[i];
+        to[i < cells ? i % map.t_bins : map.t_bins] += observed[i], te[i < cells ? i % map.t_bins : map.t_bins] += expected[i];
+    }
+    p_s = mcst_ks_bins(so, se, (size_t)(map.s_bins + brdf), done);
+    if (map.t_bins > 1) p_t = mcst_ks_bins(to, te, (size_t)(map.t_bins + brdf), done);
+    /* as in mcst_fit_xy: what may fall into cells that the quadrature takes for dark */
+    p_stray = stray > 0 ? 1 - gamma_q(stray, (1e-8 * map.t_bins + map.noise) * done) : 1;
+    if (row->fn[0].invert) {
+        p_u1 = ks_back(back[0], done);
+        if (row->inputs == 2) p_u2 = ks_back(back[1], done);
+    }
+    groups = make_groups(&map, mass, done, brdf);
+    gather(observed, cells + brdf, o);
+    gather(expected, cells + brdf, e);
+    p_chi2 = chi2_test(o, e, (size_t)groups, NULL, &dof);
+    printf("  %-14s %.3g samples, %d degrees of freedom; p: chi-square %.3g, stray %.3g, KS s %.3g t %.3g u1 %.3g u2 %.3g\n",
+           row->name, done, dof, p_chi2, p_stray, p_s, p_t, p_u1, p_u2);
+    CHECK(p_chi2 >= level, "chi-square p = %g", p_chi2);
+    CHECK(p_stray >= level, "%g samples where the density is 0, p = %g", stray, p_stray);
+    CHECK(p_s >= level, "KS along s p = %g", p_s);
+    CHECK(p_t >= level, "KS along t p = %g", p_t);
+    CHECK(p_u1 >= level, "KS of u1 p = %g", p_u1);
+    CHECK(p_u2 >= level, "KS of u2 p = %g", p_u2);
+
+    right = row, varied = part->vary;
+    lambda99 = visible(dof, level);
+    for (kind = 0; kind < KINDS; kind++) {
+        double value[SHIFTS], lambda = 0, eps99;
+        if (kind == WIDTH_OFF ? !part->vary : kind == TILT_AROUND && map.t_bins == 1) continue;
+        for (j = 0; j < SHIFTS; j++) {
+            wrong_masses((enum kind)kind, row, p, &map, shifts[j], mass, wrong);
+            for (i = 0; i <= cells; i++) wrong[i] *= done;
+            gather(wrong, cells + brdf, w);
+            value[j] = chi2_test(o, w, (size_t)groups, NULL, NULL);
+            for (lambda = i = 0; i < groups; i++)
+                if (e[i] >= 5) lambda += (w[i] - e[i]) * (w[i] - e[i]) / e[i];
+            if (full && shifts[j] >= 0.003) CHECK(value[j] < level, "%s off by %g: survived, p = %g", kind_name[kind], shifts[j], value[j]);
+        }
+        eps99 = shifts[SHIFTS - 1] * sqrt(lambda99 / lambda);
+        printf("  %-14s %-9s p at 0.1 %%: %-9.3g 0.3 %%: %-9.3g 1 %%: %-9.3g seen 99 times in 100 from %.3f %% on, %.2f %% in make test\n", "",
+               kind_name[kind], value[0], value[1], value[2], 100 * eps99, 100 * eps99 * sqrt(done / samples_of_make_test));
+    }
+    printf("  %-14s %.1f s\n", "", (double)(clock() - began) / CLOCKS_PER_SEC);
+    fflush(stdout);
+}
+
+int main(int argc, char **argv) {
+    const double n = samples_at_full_scale * mcst_scale();
+    double tests = 0, level;
+    size_t i;
+    for (i = 0; i < MCST_COUNT(parts); i++) tests += mcst_fit_tests(mcst_find(parts[i].row));
+    level = sidak(0.01, tests);
+    mcst_start(argc, argv);
+    for (i = 0; i < MCST_COUNT(parts); i++) {
+        mcst_group(parts[i].row);
+        if (mcst_case("%g samples", n)) check_row(&parts[i], n, level);
+    }
+    return mcst_finish();
+}

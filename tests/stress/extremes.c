@@ -1,0 +1,721 @@
+/* Extremes: every sampler and density over the product of the ends of its parameters, incidences and random numbers, against
+ * __float128 (gcc with libquadmath). The oracle below is the textbook: angles, tangents and powers of cosines as the papers print
+ * them (sources in the header), with 113 bits in place of care. That its maps have its densities is checked first, by numerical
+ * Jacobians.
+ *
+ * Inputs are the literal floats; directions are not made unit, and half-vectors are wo + wi. Densities are judged relative to
+ * E = 1e-6 (1 + |ln(pdf/peak)|), because a density e^-x has the rounding of x in it. Where that is exceeded, the bound is widened by
+ * what the exact density itself does when the inputs move by half an ulp; such points are counted and both figures are printed.
+ *
+ * --filter picks a row or a case; MCS_TEST_SCALE scales the number of u. */
+#include <quadmath.h>
+#include "stress.h"
+#include "mass.h"
+
+#define EPS 0x1p-24 /* half an ulp of 1 */
+/* Densities and values are judged where both cosines are at least this. Below, products of cosines leave the normal floats; results
+ * must be finite and directions unit there, too, and the errors are printed as a line of their own. */
+#define LEAST_COSINE 9.9e-8f
+
+__extension__ typedef __float128 qd;
+typedef struct {
+    qd x, y, z;
+} q3;
+static qd pi;
+
+/* --- the oracle ----------------------------------------------------------------------------------------------------------------- */
+
+static q3 vec(qd x, qd y, qd z) {
+    q3 v;
+    v.x = x, v.y = y, v.z = z;
+    return v;
+}
+static qd dot(q3 a, q3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static qd len(q3 a) { return sqrtq(dot(a, a)); }
+static q3 add(q3 a, q3 b) { return vec(a.x + b.x, a.y + b.y, a.z + b.z); }
+static q3 times(qd k, q3 a) { return vec(k * a.x, k * a.y, k * a.z); }
+static q3 cross(q3 a, q3 b) { return vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
+static qd square(qd x) { return x * x; }
+
+/* The direction with versine m = 1 - cos(theta), by the half angle: a versine of 2^-149 is no less than any other. */
+static q3 at_versine(qd m, qd phi) {
+    const qd half = m / 2, sine = 2 * sqrtq(half * (1 - half));
+    return vec(sine * cosq(phi), sine * sinq(phi), 1 - m);
+}
+static q3 at_tangent2(qd tan2, qd phi) {
+    const qd theta = atanq(sqrtq(tan2));
+    return vec(sinq(theta) * cosq(phi), sinq(theta) * sinq(phi), cosq(theta));
+}
+/* tan^2 of a direction, and cos^2(phi)/ax^2 + sin^2(phi)/ay^2 (Walter et al. 2007, anisotropic as in Heitz 2014) */
+static qd tan2_of(q3 h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
+static qd per_alpha2(qd ax, qd ay, q3 h) {
+    const qd r2 = h.x * h.x + h.y * h.y;
+    return r2 > 0 ? (square(h.x) / square(ax) + square(h.y) / square(ay)) / r2 : 0;
+}
+static qd alpha2_of(qd ax, qd ay, q3 w) { /* alpha^2 in the direction of w */
+    const qd r2 = w.x * w.x + w.y * w.y;
+    return r2 > 0 ? (square(ax * w.x) + square(ay * w.y)) / r2 : 0;
+}
+
+static qd beckmann_d(qd ax, qd ay, q3 h) {
+    const qd c = h.z / len(h);
+    return h.z > 0 ? expq(-tan2_of(h) * per_alpha2(ax, ay, h)) / (pi * ax * ay * c * c * c * c) : 0;
+}
+static qd ggx_d(qd ax, qd ay, q3 h) {
+    const qd c = h.z / len(h);
+    return h.z > 0 ? 1 / (pi * ax * ay * c * c * c * c * square(1 + tan2_of(h) * per_alpha2(ax, ay, h))) : 0;
+}
+static qd ashikhmin_h(qd nu, qd nv, q3 h) {
+    const qd r2 = h.x * h.x + h.y * h.y, c = h.z / len(h), s = r2 > 0 ? (nu * h.x * h.x + nv * h.y * h.y) / r2 : 0;
+    return h.z > 0 ? sqrtq((nu + 1) * (nv + 1)) / (2 * pi) * expq(s * logq(c)) : 0;
+}
+static qd ggx_lambda(qd ax, qd ay, q3 w) { return (sqrtq(1 + alpha2_of(ax, ay, w) * tan2_of(w)) - 1) / 2; }
+static qd beckmann_lambda(qd ax, qd ay, q3 w) {
+    const qd spread = sqrtq(alpha2_of(ax, ay, w) * tan2_of(w)), a = 1 / spread;
+    return spread > 0 ? (expq(-a * a) / (a * sqrtq(pi)) - erfcq(a)) / 2 : 0;
+}
+static qd bound(qd ax, qd ay, q3 wo) { /* Tokuyoshi and Eto 2023 */
+    const qd a = fminq(fminq(ax, ay), 1), s = 1 + sqrtq(wo.x * wo.x + wo.y * wo.y);
+    return (1 - a * a) * s * s / (s * s + a * a * wo.z * wo.z);
+}
+/* The view direction where the surface is a hemisphere. */
+static q3 stretched(qd ax, qd ay, q3 wo) {
+    const q3 v = vec(ax * wo.x, ay * wo.y, wo.z);
+    return times(1 / len(v), v);
+}
+static q3 mirror(q3 wo, q3 h) { return add(times(2 * dot(wo, h), h), times(-1, wo)); }
+
+static qd normal_quantile(qd u) { /* bisection to a start, then Newton: the cumulative is erfc(-z / sqrt 2) / 2 */
+    qd lo = -14, hi = 14, z;
+    int i;
+    if (u > 0.5) return -normal_quantile(1 - u);
+    for (i = 0; i < 12; i++) {
+        z = (lo + hi) / 2;
+        if (erfcq(-z / sqrtq(2)) / 2 < u) lo = z;
+        else hi = z;
+    }
+    for (i = 0, z = (lo + hi) / 2; i < 7; i++) z -= (erfcq(-z / sqrtq(2)) / 2 - u) * sqrtq(2 * pi) * expq(z * z / 2);
+    return z;
+}
+
+#define ST_ID(shape, row, fn, arg, base, coord, grid) ID_##row,
+enum { MCST_ROWS(ST_ID) IDS };
+
+/* A setting: parameters as the header clamps them, and wo. */
+typedef struct {
+    int id, half, visible; /* BRDF over half-vectors; 1 visible, 2 bounded */
+    qd a, b;
+    q3 wo;
+} setting;
+
+static setting setting_of(const mcst_row *row, const float *p) {
+    setting s;
+    s.id = (int)(row - mcst_rows);
+    s.half = row->shape == MCST_IS_BRDF && s.id != ID_phong;
+    s.visible = strstr(row->name, "vndf") ? 1 : strstr(row->name, "bounded") ? 2 : 0;
+    s.a = p[0], s.b = p[1];
+    if (row->coord == MCST_SLOPES) s.a = fminf(fmaxf(p[0], 1e-7f), 1e4f), s.b = fminf(fmaxf(p[1], 1e-7f), 1e4f);
+    if (row->coord == MCST_COSPOWER) s.a = fminf(p[0], 1e9f), s.b = fminf(p[1], 1e9f);
+    s.wo = vec(p[3], p[4], p[5]);
+    return s;
+}
+
+static q3 half_vector_map(const setting *s, qd u1, qd u2) {
+    const qd turn = 2 * pi * u2;
+    if (s->visible) {
+        const q3 i = stretched(s->a, s->b, s->wo);
+        const qd k = s->visible == 2 ? bound(s->a, s->b, s->wo) : 1;
+        q3 h = add(at_versine(u2 * (1 + k * i.z), atan2q(i.y, i.x) + 2 * pi * u1), i);
+        h = vec(s->a * h.x, s->b * h.y, h.z);
+        return times(1 / len(h), h);
+    }
+    if (s->id == ID_ashikhmin || s->id == ID_ashikhmin_h) {
+        const qd phi = atan2q(sqrtq(s->a + 1) * sinq(turn), sqrtq(s->b + 1) * cosq(turn));
+        const qd e = s->a * square(cosq(phi)) + s->b * square(sinq(phi));
+        return at_versine(-expm1q(log1pq(-u1) / (e + 1)), phi);
+    } else {
+        const qd r2 = s->id == ID_ggx || s->id == ID_ggx_h ? u1 / (1 - u1) : -log1pq(-u1);
+        return at_tangent2(r2 * (square(s->a * cosq(turn)) + square(s->b * sinq(turn))), atan2q(s->b * sinq(turn), s->a * cosq(turn)));
+    }
+}
+
+/* The density of half-vectors at h, any length. */
+static qd half_vector_density(const setting *s, q3 h) {
+    const qd c = h.z / len(h);
+    if (!(h.z > 0)) return 0;
+    if (s->visible) {
+        const q3 i = stretched(s->a, s->b, s->wo), m = vec(h.x / s->a, h.y / s->b, h.z);
+        const qd od = dot(s->wo, h) / len(h), t = len(vec(s->a * s->wo.x, s->b * s->wo.y, s->wo.z));
+        if (!(od > 0 && s->wo.z > 0)) return 0;
+        if (s->visible == 1) return ggx_d(s->a, s->b, h) * od / (s->wo.z * (1 + ggx_lambda(s->a, s->b, s->wo)));
+        if (2 * dot(i, m) * m.z / dot(m, m) - i.z < -bound(s->a, s->b, s->wo) * i.z) return 0; /* below the cap */
+        return 2 * od * ggx_d(s->a, s->b, h) / (bound(s->a, s->b, s->wo) * s->wo.z + t);
+    }
+    if (s->id == ID_ashikhmin || s->id == ID_ashikhmin_h) return ashikhmin_h(s->a, s->b, h);
+    return (s->id == ID_ggx || s->id == ID_ggx_h ? ggx_d(s->a, s->b, h) : beckmann_d(s->a, s->b, h)) * c;
+}
+
+static void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2, q3 *x) {
+    const qd a = s->a, b = s->b, least = 0x1p-126;
+    const qd d = 2 * u1 - 1, e = 2 * u2 - 1;
+    *x = vec(0, 0, 0);
+    switch (s->id) {
+    case ID_linear: x->x = u1 > 0 ? u1 * (a + b) / (a + sqrtq(a * a * (1 - u1) + b * b * u1)) : 0; return;
+    case ID_tent: x->x = u1 < 0.5 ? -a * (1 - sqrtq(2 * u1)) : a * (1 - sqrtq(2 * (1 - u1))); return;
+    case ID_exponential: x->x = -log1pq(-u1) / a; return;
+    case ID_truncexp: x->x = a > 0 ? -log1pq(u1 * expm1q(-a * b)) / a : u1 * b; return;
+    case ID_normal: x->x = a + b * normal_quantile(fmaxq(u1, least)); return;
+    case ID_logistic: x->x = a + b * logq(fmaxq(u1, least) / (1 - u1)); return;
+    case ID_power: x->x = u1 > 0 ? expq(logq(u1) / (a + 1)) : 0; return;
+    case ID_evenpower: x->x = d != 0 ? copysignq(expq(logq(fabsq(d)) / (a + 1)), d) : 0; return;
+    case ID_disk: x->x = a * sqrtq(u1) * cosq(2 * pi * u2), x->y = a * sqrtq(u1) * sinq(2 * pi * u2); return;
+    case ID_concentric: {
+        const qd r = fabsq(d) > fabsq(e) ? d : e, phi = r == 0 ? 0 : fabsq(d) > fabsq(e) ? pi / 4 * (e / d) : pi / 2 - pi / 4 * (d / e);
+        x->x = a * r * cosq(phi), x->y = a * r * sinq(phi);
+        return;
+    }
+    case ID_sphere: *x = at_versine(2 * u1, 2 * pi * u2); return;
+    case ID_hemisphere: *x = at_versine(u1, 2 * pi * u2); return;
+    case ID_cosine: *x = vec(sqrtq(u1) * cosq(2 * pi * u2), sqrtq(u1) * sinq(2 * pi * u2), sqrtq(1 - u1)); return;
+    case ID_cone: *x = at_versine(a * u1, 2 * pi * u2); return;
+    case ID_phong_lobe: *x = at_versine(-expm1q(log1pq(-u1) / (a + 1)), 2 * pi * u2); return;
+    case ID_phong: { /* Duff et al. 2017 */
+        const q3 l = at_versine(-expm1q(log1pq(-u1) / (a + 1)), 2 * pi * u2);
+        const q3 n = times(1 / len(s->wo), vec(-s->wo.x, -s->wo.y, s->wo.z));
+        const q3 f = vec(1 - n.x * n.x / (1 + n.z), -n.x * n.y / (1 + n.z), -n.x);
+        *x = add(add(times(l.x, f), times(l.y, cross(n, f))), times(l.z, n));
+        return;
+    }
+    default:
+        *x = half_vector_map(s, u1, u2);
+        if (row->shape == MCST_IS_BRDF) *x = mirror(s->wo, *x);
+    }
+}
+
+static qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
+    const qd a = s->a, b = s->b, z = b > 0 ? (x.x - a) / b : 0;
+    switch (s->id) {
+    case ID_linear: return x.x >= 0 && x.x <= 1 ? 2 * (a * (1 - x.x) + b * x.x) / (a + b) : 0;
+    case ID_tent: return fabsq(x.x) <= a ? (1 - fabsq(x.x) / a) / a : 0;
+    case ID_exponential: return x.x >= 0 ? a * expq(-a * x.x) : 0;
+    case ID_truncexp: return x.x < 0 || x.x > b ? 0 : a > 0 ? a * expq(-a * x.x) / -expm1q(-a * b) : 1 / b;
+    case ID_normal: return expq(-z * z / 2) / (b * sqrtq(2 * pi));
+    case ID_logistic: return expq(-fabsq(z)) / (b * square(1 + expq(-fabsq(z))));
+    case ID_power:
+        return x.x < 0 || x.x > 1 ? 0 : x.x > 0 ? (a + 1) * expq(a * logq(x.x)) : a > 0 ? 0 : 1;
+    case ID_evenpower:
+        return fabsq(x.x) > 1 ? 0 : x.x != 0 ? (a + 1) / 2 * expq(a * logq(fabsq(x.x))) : a > 0 ? 0 : (qd)0.5;
+    case ID_disk:
+    case ID_concentric: return x.x * x.x + x.y * x.y <= a * a * (1 + (qd)1e-30) ? 1 / (pi * a * a) : 0;
+    case ID_sphere: return 1 / (4 * pi);
+    case ID_hemisphere: return x.z > 0 ? 1 / (2 * pi) : 0;
+    case ID_cosine: return x.z > 0 ? x.z / pi : 0;
+    case ID_cone: { /* the versine is tan(theta/2) sin(theta) */
+        const qd r2 = x.x * x.x + x.y * x.y, l = len(x), m = x.z > 0 ? r2 / (l * (l + x.z)) : 1 - x.z / l;
+        return m <= a ? 1 / (2 * pi * a) : 0;
+    }
+    case ID_phong_lobe: return x.z > 0 ? (a + 1) / (2 * pi) * expq(-a / 2 * log1pq(tan2_of(x))) : 0;
+    case ID_phong: {
+        const q3 r = vec(-s->wo.x, -s->wo.y, s->wo.z);
+        const qd c = dot(r, x) / (len(r) * len(x));
+        return s->wo.z > 0 && x.z > 0 && c > 0 ? (a + 1) / (2 * pi) * expq(a * logq(c)) : 0;
+    }
+    default:
+        if (row->shape == MCST_IS_BRDF) {
+            const q3 h = add(s->wo, x);
+            if (!(s->wo.z > 0 && x.z > 0)) return 0;
+            if (s->visible == 1) return ggx_d(a, b, h) / (4 * s->wo.z * (1 + ggx_lambda(a, b, s->wo)));
+            if (s->visible == 2)
+                return ggx_d(a, b, h) / (2 * (bound(a, b, s->wo) * s->wo.z + len(vec(a * s->wo.x, b * s->wo.y, s->wo.z))));
+            return half_vector_density(s, h) / (2 * len(h)); /* 4 wo.h, wo.h = |wo + wi| / 2 */
+        }
+        return half_vector_density(s, x);
+    }
+}
+
+/* f of a BRDF, wo and wi above the surface. */
+static qd exact_value(const setting *s, q3 wi) {
+    const q3 h = add(s->wo, wi);
+    const qd zo = s->wo.z, zi = wi.z, a = s->a, b = s->b, gauss = expq(-tan2_of(h) * per_alpha2(a, b, h)) / (pi * a * b);
+    switch (s->id) {
+    case ID_phong: {
+        const q3 r = vec(-s->wo.x, -s->wo.y, s->wo.z);
+        const qd c = dot(r, wi) / (len(r) * len(wi));
+        return c > 0 ? (a + 2) / (2 * pi) * expq(a * logq(c)) : 0;
+    }
+    case ID_ward_gmd: return gauss * dot(h, h) / square(square(h.z));
+    case ID_ward_duer: return gauss / (4 * zo * zi);
+    case ID_ward_1992: return gauss / (4 * sqrtq(zo * zi));
+    case ID_beckmann:
+        return beckmann_d(a, b, h) / (4 * zo * zi * (1 + beckmann_lambda(a, b, s->wo) + beckmann_lambda(a, b, wi)));
+    case ID_ashikhmin: return ashikhmin_h(a, b, h) / (2 * len(h) * fmaxq(zo, zi)); /* 4 wo.h = 2 |H| */
+    default: return ggx_d(a, b, h) / (4 * zo * zi * (1 + ggx_lambda(a, b, s->wo) + ggx_lambda(a, b, wi)));
+    }
+}
+
+/* --- does the oracle agree with itself? -------------------------------------------------------------------------------------------- */
+
+/* The density at map(u) times the area of the map there, by central differences: 1. */
+static qd density_times_area(const mcst_row *row, const setting *s, qd u1, qd u2) {
+    const qd step = 1e-9;
+    q3 x, d[4];
+    exact_map(row, s, u1, u2, &x);
+    exact_map(row, s, u1 - step, u2, &d[0]), exact_map(row, s, u1 + step, u2, &d[1]);
+    exact_map(row, s, u1, u2 - step, &d[2]), exact_map(row, s, u1, u2 + step, &d[3]);
+    d[0] = times(1 / (2 * step), add(d[1], times(-1, d[0]))), d[2] = times(1 / (2 * step), add(d[3], times(-1, d[2])));
+    return exact_pdf(row, s, x) * (row->inputs == 1 ? len(d[0]) : len(cross(d[0], d[2])));
+}
+
+/* --- the grid ------------------------------------------------------------------------------------------------------------------------ */
+
+/* Alphas beyond both limits of the header, anisotropy 1e4 and more; exponents likewise. */
+static const float alphas[][2] = {{1e-8f, 1e-8f}, {1e-7f, 1e-7f}, {1e-6f, 1e-6f}, {1e-5f, 1e-5f}, {1e-3f, 1e-3f}, {0.01f, 0.01f},
+                                  {0.1f, 0.1f},   {0.3f, 0.3f},   {1, 1},         {3, 3},         {100, 100},     {1e4f, 1e4f},
+                                  {1e5f, 1e5f},   {1e-7f, 1e-3f}, {1e-3f, 1e-7f}, {1e-6f, 0.01f}, {1e-4f, 1},     {1, 1e-4f},
+                                  {0.1f, 1e3f},   {100, 0.01f},   {1e4f, 1},      {0.01f, 1},     {1e-7f, 1e4f}};
+static const float exponents[][2] = {{0, 0},       {0x1p-149f, 1e-30f}, {0.5f, 0.5f}, {1, 1},       {10, 10},       {1e3f, 1e3f},
+                                     {1e5f, 1e5f}, {1e7f, 1e7f},        {1e9f, 1e9f}, {1e30f, 1e30f}, {0, 1e9f},    {1e9f, 0},
+                                     {1, 1e4f},    {1e4f, 1},           {1e5f, 1e9f}, {10, 1000}};
+/* Beyond the grid of the registry. */
+static const float line_more[][3] = {
+    {ID_linear, 0x1p-149f, 1},   {ID_linear, FLT_MAX, 1},    {ID_linear, FLT_MAX, FLT_MAX},      {ID_linear, 0x1p-149f, 0x1p-149f},
+    {ID_linear, 1, FLT_MAX},     {ID_tent, 3e17f, 0},        {ID_tent, 2e-18f, 0},               {ID_exponential, 80, 0},
+    {ID_truncexp, 1e18f, 1e18f}, {ID_truncexp, 0x1p-149f, 1}, {ID_truncexp, 80, 1},              {ID_truncexp, 79.9f, 1},
+    {ID_truncexp, 1e-8f, 1},     {ID_truncexp, 2e-8f, 1},    {ID_truncexp, 1e-18f, 1e-18f},      {ID_truncexp, 1e18f, 1e-18f},
+    {ID_normal, 1e30f, 1e18f},   {ID_normal, -1e18f, 1e18f}, {ID_logistic, 1e30f, 1e18f},        {ID_logistic, -1e18f, 1e18f},
+    {ID_power, 0x1p-149f, 0},    {ID_power, 1e-30f, 0},      {ID_evenpower, 0x1p-149f, 0},       {ID_evenpower, 1e-30f, 0},
+    {ID_cone, 1e-30f, 0},        {ID_cone, 0.99999994f, 0},  {ID_cone, 1.9999999f, 0},           {ID_disk, 3e17f, 0},
+    {ID_concentric, 3e17f, 0}};
+static const float incidence[][2] = {{1, 0},        {0.99999994f, 0},        {0.99999994f, 2.2f}, {0.9f, 0.4f},     {0.5f, 1.5707964f},
+                                     {0.5f, -2.5f}, {0.1f, 0},               {0.1f, 2.1f},        {0.01f, 1.1f},    {1e-3f, -0.4f},
+                                     {1e-3f, 3.1415927f}, {1e-5f, 2.8f},     {1e-7f, 0},          {1e-7f, 0.785f},  {1e-7f, -1.5707964f},
+                                     {1e-12f, 0.5f}, {0x1p-126f, 2.0f},      {0x1p-140f, -2.0f}};
+static const float corners[] = {0,       0x1p-149f, 0x1p-140f, FLT_MIN,        0x1p-64f, 0x1p-24f,     0x1p-12f,   0.125f,
+                                0.25f,   0.49999997f, 0.5f,    0.50000006f,    0.75f,    1 - 0x1p-12f, 1 - 0x1p-24f};
+enum { CORNERS = 15, U_MAX = CORNERS * CORNERS + 64 * 64 };
+
+static int make_u(const mcst_row *row, uint64_t seed, int strata, float (*u)[2]) {
+    const int lines = row->inputs == 1;
+    int i, j, n = 0;
+    for (i = 0; i < CORNERS; i++)
+        for (j = 0; j < (lines ? 1 : CORNERS); j++, n++) u[n][0] = corners[i], u[n][1] = corners[j];
+    for (i = 0; i < strata * strata; i++, n++) {
+        mcst_uniform(&seed, 1, &u[n][0], &u[n][1]);
+        if (lines) u[n][0] = fminf(((float)i + u[n][0]) / (float)(strata * strata), 1 - 0x1p-24f);
+        else {
+            u[n][0] = fminf(((float)(i / strata) + u[n][0]) / (float)strata, 1 - 0x1p-24f);
+            u[n][1] = fminf(((float)(i % strata) + u[n][1]) / (float)strata, 1 - 0x1p-24f);
+        }
+    }
+    return n;
+}
+
+/* --- scores ------------------------------------------------------------------------------------------------------------------------ */
+
+enum { PDF_U, PDF_X, FAR_, VALUE, WEIGHT, AGREE, WHERE, SINE, SCORES };
+/* Densities, values and weights in E; where: in half ulps of 1 (lines and disks: of the size); sine: relative, in 1e-6. */
+static const char *const score_name[SCORES] = {"pdf(u)", "pdf(x)", "far", "eval", "weight", "agree", "where", "sine"};
+typedef struct {
+    int beyond; /* a cosine below LEAST_COSINE: errors are recorded, not judged */
+    double evaluations, nans, infinities, not_unit, zero, ill[SCORES], raw[SCORES], judged[SCORES];
+    char at[SCORES][160]; /* where raw is largest */
+} tally;
+
+/* raw: the error over its bound; judged: over the bound with its conditioning term, which is found only when needed. */
+static void score(tally *t, int what, double raw, double judged, const char *where) {
+    if (!(raw <= t->raw[what])) t->raw[what] = raw, snprintf(t->at[what], sizeof t->at[what], "%s", where);
+    if (!(judged <= t->judged[what])) t->judged[what] = judged;
+}
+
+/* What is asked of the oracle. */
+typedef struct {
+    const mcst_row *row;
+    const float *p;
+    q3 x;        /* where the density is asked for, or */
+    qd u1, u2;   /* the random numbers whose sample it is */
+    int of_u, what;
+} question;
+
+static qd answer(const question *q, const setting *s) {
+    q3 x = q->x;
+    if (q->of_u) exact_map(q->row, s, q->u1, q->u2, &x);
+    if (q->what == VALUE || q->what == WEIGHT) {
+        const qd f = s->wo.z > 0 && x.z > 0 ? exact_value(s, x) : 0;
+        return q->what == VALUE ? f : f > 0 ? f * x.z / exact_pdf(q->row, s, x) : 0;
+    }
+    return exact_pdf(q->row, s, x);
+}
+
+/* The change of the exact answer, relative to it, when every input moves by half an ulp: the sum over parameters, wo and, if it is
+ * the question, x. */
+static double conditioning(question q, qd want) {
+    const setting s = setting_of(q.row, q.p);
+    qd sum = 0;
+    int i;
+    for (i = 0; i < 8; i++) {
+        setting t = s;
+        question r = q;
+        qd *const slot[8] = {&t.a, &t.b, &t.wo.x, &t.wo.y, &t.wo.z, &r.x.x, &r.x.y, &r.x.z};
+        qd worst = 0;
+        int side;
+        if (i >= 5 && q.of_u) continue;
+        for (side = -1; side <= 1; side += 2) {
+            const qd was = *slot[i];
+            *slot[i] = was * (1 + side * (qd)EPS);
+            worst = fmaxq(worst, fabsq(answer(&r, &t) - want));
+            *slot[i] = was;
+        }
+        sum += worst;
+    }
+    return (double)(sum / want);
+}
+
+/* Is got within E of want? Densities beyond FLT_MAX saturate. A density is its peak times a float in [0,1]: where that float is
+ * subnormal its digits are gone, and all that is asked is that the density is small, too. */
+static int judge(tally *t, question q, float got, qd want, double unit, double peak, const char *where) {
+    const double top = want > (qd)FLT_MAX ? FLT_MAX : (double)want, floor_ = 0x1p-126 * peak + 0x1p-148;
+    const double err = fabs((double)((qd)got - (want > (qd)FLT_MAX ? (qd)FLT_MAX : want))), raw = err <= floor_ ? 0 : err / (unit * top);
+    double judged = raw;
+    if (!(raw <= 1)) {
+        const double wider = conditioning(q, want);
+        judged = err / (top * (unit + wider));
+        t->ill[q.what] += judged <= 1;
+        CHECK(judged <= 1 || t->beyond, "%s %s: %.9g, exact %.9g, error %.3g (bound %.3g, with half an ulp of the inputs %.3g)", where,
+              score_name[q.what], (double)got, top, err / top, unit, unit + wider);
+    }
+    score(t, q.what, raw, judged, where);
+    return judged <= 1;
+}
+static double unit_of(qd pdf, double peak) { return 1e-6 * (1 + (pdf > 0 && peak > 0 ? fabs((double)logq(pdf / (qd)peak)) : 0)); }
+
+/* How far the exact sample itself moves, in half ulps of 1, when parameters and wo move by half an ulp. */
+static double movement(const mcst_row *row, const float *p, qd u1, qd u2, q3 from) {
+    const setting s = setting_of(row, p);
+    qd sum = 0;
+    int i, side;
+    for (i = 0; i < 5; i++) {
+        qd worst = 0;
+        for (side = -1; side <= 1; side += 2) {
+            setting t = s;
+            qd *const slot[5] = {&t.a, &t.b, &t.wo.x, &t.wo.y, &t.wo.z};
+            q3 x;
+            *slot[i] *= 1 + side * (qd)EPS;
+            exact_map(row, &t, u1, u2, &x);
+            worst = fmaxq(worst, len(add(x, times(-1, from))));
+        }
+        sum += worst;
+    }
+    return (double)sum / EPS;
+}
+
+static void count_point(const mcst_row *row, const float *p, tally *t, const float s[5]) {
+    const double l2 = (double)s[0] * (double)s[0] + (double)s[1] * (double)s[1] + (double)s[2] * (double)s[2];
+    const double o2 = (double)p[3] * (double)p[3] + (double)p[4] * (double)p[4] + (double)p[5] * (double)p[5];
+    int i;
+    for (i = 0; i < 5; i++) t->nans += isnan(s[i]) != 0, t->infinities += isinf(s[i]) != 0;
+    /* 4 ulp; a mirrored direction is as long as wo */
+    if (row->dim == 3) t->not_unit += !(fabs(sqrt(l2) - 1) <= 4 * EPS + (row->shape == MCST_IS_BRDF ? fabs(sqrt(o2) - 1) : 0));
+}
+
+static void check_point(const mcst_row *row, const setting *s, const float *p, const float *u, double peak, double extent, tally *t) {
+    question q;
+    q3 x, at;
+    qd pdf_u, pdf_x;
+    float out[5] = {0}, pdf = 0, w[3];
+    char where[160];
+    double err, limit, size;
+    tally *g = t; /* where scores go */
+    int i, lost;
+    exact_map(row, s, u[0], u[1], &x);
+    row->fn[0].sample(p, &u[0], &u[1], out);
+    count_point(row, p, t, out);
+    t->evaluations += 2;
+    for (i = 0; i < 3; i++) w[i] = out[i];
+    if (row->has_wo && (p[5] < LEAST_COSINE || (row->shape == MCST_IS_BRDF && w[2] < LEAST_COSINE))) g = t + 1;
+    at = vec(w[0], w[1], w[2]);
+    snprintf(where, sizeof where, "p %g %g, wo %a %a %a, u %a %a", (double)p[0], (double)p[1], (double)p[3], (double)p[4],
+             (double)p[5], (double)u[0], (double)u[1]);
+    for (i = 0; i < 5; i++) CHECK(isfinite(out[i]), "%s: out[%d] = %g", where, i, (double)out[i]);
+    /* where: 4 ulp of 1, 6 of the normal distribution; of a reflection (h.wo) h - wo magnifies 3 half ulps of h by 4 and adds 3
+     * roundings. Lines and disks count from their size, where x is a difference from that of its terms. */
+    size = row->dim == 3 ? 1 : fmax(fabs((double)x.x), fabs((double)x.y));
+    if (row->coord == MCST_TENT) size = (double)p[0];
+    if (row->coord == MCST_WHOLELINE) size = fmax(size, fabs((double)p[0]) + (double)p[1]);
+    err = (double)len(add(at, times(-1, x))) / EPS;
+    limit = row->shape == MCST_IS_BRDF ? 16 : s->id == ID_normal ? 12 : 8;
+    err = err * EPS <= 0x1p-125 * extent + 0x1p-148 ? 0 : err / size; /* what is subnormal in units of the range has lost digits */
+    if (err <= limit) score(g, WHERE, err, err / limit, where);
+    else {
+        const double wider = limit + movement(row, p, u[0], u[1], x) / size;
+        score(g, WHERE, err, err / wider, where);
+        g->ill[WHERE] += err <= wider;
+        CHECK(err <= wider || g->beyond, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g", where, (double)w[0],
+              (double)w[1], (double)w[2], (double)x.x, (double)x.y, (double)x.z, err, wider);
+    }
+    if (row->dim == 3 && row->shape != MCST_IS_BRDF) {
+        /* sin(theta), and the point across the lobe in units of its width: both relative, where sin^2(theta) is a normal float
+         * (u of 2^-100, which no generator makes, would need more) */
+        const int slopes = row->coord == MCST_SLOPES, power = row->coord == MCST_COSPOWER;
+        const qd b = s->id == ID_phong_lobe ? s->a : s->b;
+        const qd wx = slopes ? s->a : power ? 1 / sqrtq(s->a + 1) : 1, wy = slopes ? s->b : power ? 1 / sqrtq(b + 1) : 1;
+        const qd sine = sqrtq(x.x * x.x + x.y * x.y), got = sqrtq(at.x * at.x + at.y * at.y);
+        const double across = (double)(sqrtq(square((at.x - x.x) / wx) + square((at.y - x.y) / wy)) /
+                                       sqrtq(square(x.x / wx) + square(x.y / wy))),
+                     along = fabs((double)(got / sine - 1)), rel = fmax(across, along) / 1e-6;
+        if (sine * sine > 0x1p-124) {
+            if (rel <= 1) score(g, SINE, rel, rel, where);
+            else {
+                /* of visible normals h = c + i is a sum: relative to the whole of it, not to what is left */
+                const double wider = 1 + movement(row, p, u[0], u[1], x) * EPS / (double)(sine * fminq(1, fminq(wx, wy) / fmaxq(wx, wy))) / 1e-6;
+                score(g, SINE, rel, rel / wider, where);
+                g->ill[SINE] += rel <= wider;
+                CHECK(rel <= wider || g->beyond, "%s: sin(theta) %.9g, exact %.9g: off by %.3g along, %.3g across the lobe (bound %.3g)", where,
+                      (double)got, (double)sine, along, across, 1e-6 * wider);
+            }
+        }
+    }
+    /* the returned density belongs to u */
+    q.row = row, q.p = p, q.u1 = u[0], q.u2 = u[1], q.x = at, q.of_u = 1, q.what = PDF_U;
+    pdf_u = exact_pdf(row, s, x);
+    lost = row->shape == MCST_IS_BRDF && !(x.z > 0);
+    if (row->shape == MCST_IS_BRDF && (lost || fabsq(x.z) <= 40 * (qd)EPS)) { /* near the horizon either is right */
+        CHECK(!lost || out[3] == 0 || fabsq(x.z) <= 40 * (qd)EPS, "%s: lost, but pdf %g", where, (double)out[3]);
+        if (!(out[3] > 0)) {
+            CHECK(out[4] == 0, "%s: lost, but weight %g", where, (double)out[4]);
+            return;
+        }
+        if (lost) return;
+    }
+    if (row->dim < 3 && pdf_u == 0 && out[3] == 0) return; /* the density is 0 there */
+    if (out[3] == 0 && pdf_u > (qd)(0x1p-126 * peak + 0x1p-148)) t->zero++;
+    if (!judge(g, q, out[3], pdf_u, unit_of(pdf_u, peak), peak, where)) return;
+    /* pdf() belongs to the float point */
+    row->fn[0].pdf(p, w, &pdf);
+    pdf_x = exact_pdf(row, s, at);
+    if (pdf_x == 0) { /* rounded over the rim of disk, cone or cap: 0 or what is inside */
+        CHECK(pdf >= 0 && (double)pdf <= (double)pdf_u * 1.001, "%s: pdf(x) %.9g on the rim, %.9g inside", where, (double)pdf,
+              (double)pdf_u);
+        return;
+    }
+    q.of_u = 0, q.what = PDF_X;
+    judge(g, q, pdf, pdf_x, unit_of(pdf_x, peak), peak, where);
+    /* and the two differ by the rounding of the point alone */
+    if (out[3] > FLT_MIN && pdf > FLT_MIN && pdf < FLT_MAX && (double)pdf_x > 0x1p-120 * peak) {
+        const double ratio = (double)((qd)pdf / (qd)out[3] / (pdf_x / pdf_u)), unit = unit_of(pdf_u, peak) + unit_of(pdf_x, peak);
+        score(g, AGREE, fabs(ratio - 1) / unit, 0, where);
+    }
+    if (row->fn[0].eval) {
+        const qd f = exact_value(s, at), weight = f > 0 ? f * at.z / pdf_x : 0;
+        float value = 0, v = 0;
+        row->fn[0].eval(p, w, &value), row->fn[0].weight(p, w, &v);
+        t->evaluations += 2;
+        q.what = VALUE;
+        judge(g, q, value, f, unit_of(pdf_x, peak), peak * (double)(f / pdf_x), where);
+        q.what = WEIGHT;
+        if (f > 0) judge(g, q, v, weight, 1e-6, 0, where);
+        /* the weight of the sample is a function of the cosines; wi.z is known to half an ulp of 1 */
+        if (f > 0 && !g->beyond)
+            CHECK(fabs((double)((qd)out[4] / fminq(weight, FLT_MAX)) - 1) <= 2e-6 + 40 * EPS / (double)w[2] || weight < (qd)0x1p-100,
+                  "%s: weight %.9g, exact %.9g", where, (double)out[4], (double)weight);
+    }
+}
+
+/* Directions that the sampler does not pick: mirrored, opposed, back, across, grazing, below, and any. */
+static void check_far(const mcst_row *row, const setting *s, const float *p, uint64_t seed, double peak, tally *t) {
+    static const float z_of[] = {1, 0.9f, 0.3f, 0.01f, 1e-4f, 1e-7f, 1e-30f, 0x1p-140f, 0, -0.5f};
+    int i;
+    for (i = 0; i < 40; i++) {
+        question q;
+        float w[3], pdf = -1, u, v;
+        char where[160];
+        tally *g = t;
+        qd want;
+        mcst_uniform(&seed, 1, &u, &v);
+        if (i < 20) {
+            const double z = (double)z_of[i / 2], r = sqrt(1 - z * z), l = sqrt((double)p[3] * (double)p[3] + (double)p[4] * (double)p[4]);
+            const double side = i % 2 ? 1 : -1; /* away from wo, or towards it */
+            w[0] = (float)(l > 0 ? side * r * (double)p[3] / l : r), w[1] = (float)(l > 0 ? side * r * (double)p[4] / l : 0), w[2] = (float)z;
+        } else if (i == 20) w[0] = -p[3], w[1] = -p[4], w[2] = p[5];
+        else if (i == 21) w[0] = p[3], w[1] = p[4], w[2] = p[5];
+        else if (i == 22) w[0] = -p[3], w[1] = -p[4], w[2] = -p[5];
+        else if (i == 23) w[0] = -p[4], w[1] = p[3], w[2] = p[5];
+        else {
+            const double z = (double)u, r = sqrt(1 - z * z);
+            w[0] = (float)(r * cos(6.283185307179586 * (double)v)), w[1] = (float)(r * sin(6.283185307179586 * (double)v)), w[2] = u;
+        }
+        q.row = row, q.p = p, q.x = vec(w[0], w[1], w[2]), q.u1 = q.u2 = 0, q.of_u = 0, q.what = FAR_;
+        snprintf(where, sizeof where, "p %g %g, wo %a %a %a, w %a %a %a", (double)p[0], (double)p[1], (double)p[3], (double)p[4],
+                 (double)p[5], (double)w[0], (double)w[1], (double)w[2]);
+        if ((row->has_wo && p[5] < LEAST_COSINE) || (w[2] > 0 && w[2] < LEAST_COSINE)) g = t + 1;
+        row->fn[0].pdf(p, w, &pdf);
+        t->evaluations++, t->nans += isnan(pdf) != 0, t->infinities += isinf(pdf) != 0;
+        want = exact_pdf(row, s, q.x);
+        if (row->shape == MCST_IS_VLOBE && want == 0) continue; /* the rim of the cap: see check_point */
+        if (s->id == ID_cone && fabsq((1 - q.x.z / len(q.x)) / s->a - 1) < (qd)1e-6) continue; /* the rim of the cone */
+        judge(g, q, pdf, want, unit_of(want, peak), peak, where);
+        if (row->fn[0].eval && w[2] > 0) {
+            const qd f = exact_value(s, q.x);
+            float value = -1, weight = -1;
+            row->fn[0].eval(p, w, &value), row->fn[0].weight(p, w, &weight);
+            t->evaluations += 2;
+            t->nans += isnan(value) || isnan(weight), t->infinities += isinf(value) || isinf(weight);
+            CHECK(value >= 0 && weight >= 0 && value <= FLT_MAX && weight <= FLT_MAX, "%s: eval %g, weight %g", where, (double)value,
+                  (double)weight);
+            q.what = VALUE;
+            judge(g, q, value, f, unit_of(want, peak), want > 0 ? peak * (double)(f / want) : 0, where);
+        }
+    }
+}
+
+/* Many samples by the array form, without the oracle: finite, unit, and no density 0 that is not lost. */
+static void sweep(const mcst_row *row, const float *p, uint64_t seed, size_t blocks, tally *t) {
+    enum { N = 4096 };
+    static float u[2][N], out[5][N];
+    float *const to[5] = {out[0], out[1], out[2], out[3], out[4]};
+    size_t b, i;
+    int j;
+    memset(out, 0, sizeof out);
+    for (b = 0; b < blocks; b++) {
+        mcst_uniform(&seed, N, u[0], u[1]);
+        for (i = 0; i < CORNERS; i++) u[0][i] = corners[i], u[1][N - 1 - i] = corners[i];
+        row->sample_n(p, N, u[0], u[1], to);
+        for (i = 0; i < N; i++) {
+            float s[5];
+            for (j = 0; j < 5; j++) s[j] = out[j][i];
+            count_point(row, p, t, s);
+            if (!(s[3] > 0) && (row->shape != MCST_IS_BRDF || s[2] > 0)) {
+                const setting set = setting_of(row, p);
+                q3 x;
+                qd pdf;
+                exact_map(row, &set, u[0][i], u[1][i], &x);
+                pdf = exact_pdf(row, &set, x);
+                if (pdf > (qd)FLT_MIN && !(row->shape == MCST_IS_BRDF && x.z <= 40 * (qd)EPS)) t->zero++;
+            }
+        }
+        t->evaluations += N;
+    }
+}
+
+static size_t settings_of(const mcst_row *row, float (*list)[2]) {
+    size_t n = 0, i;
+    const float (*more)[2] = row->coord == MCST_SLOPES ? alphas : row->coord == MCST_COSPOWER ? exponents : row->grid;
+    const size_t count = row->coord == MCST_SLOPES     ? MCST_COUNT(alphas)
+                         : row->coord == MCST_COSPOWER ? MCST_COUNT(exponents)
+                                                       : row->grid_size;
+    for (i = 0; i < count; i++) {
+        if (row->coord == MCST_COSPOWER && row->params == 1 && more[i][0] != more[i][1] && more[i][1] > 1e-20f) continue;
+        list[n][0] = more[i][0], list[n++][1] = more[i][1];
+    }
+    for (i = 0; i < MCST_COUNT(line_more); i++)
+        if ((int)line_more[i][0] == (int)(row - mcst_rows)) list[n][0] = line_more[i][1], list[n++][1] = line_more[i][2];
+    return n;
+}
+
+static void check_setting(const mcst_row *row, const float *p, uint64_t seed, double scale, tally *t) {
+    static float u[U_MAX][2];
+    const int strata = (int)fmin(64, fmax(4, sqrt((row->has_wo ? 256 : 4096) * scale))), n = make_u(row, seed, strata, u);
+    const setting s = setting_of(row, p);
+    double peak = 0, extent = 0;
+    int i;
+    for (i = 0; i < n; i++) {
+        q3 x;
+        qd pdf;
+        exact_map(row, &s, u[i][0], u[i][1], &x);
+        pdf = exact_pdf(row, &s, x);
+        extent = fmax(extent, fabs((double)x.x));
+        if (pdf > (qd)peak && pdf < (qd)1e300) peak = (double)pdf;
+    }
+    for (i = 0; i < n; i++) check_point(row, &s, p, u[i], peak, extent, t);
+    if (row->dim == 3) check_far(row, &s, p, seed, peak, t);
+    sweep(row, p, seed, (size_t)fmax(1, 4 * scale), t);
+}
+
+static void print_tally(const char *name, const tally *t, int head) {
+    int i;
+    if (head) {
+        printf("%-14s %11s %4s %4s %9s %9s |", "", "evaluations", "NaN", "inf", "not unit", "density 0");
+        for (i = 0; i < SCORES; i++) printf(" %13s", score_name[i]);
+        puts("  raw/judged (ill)");
+        return;
+    }
+    printf("%-14s %11.0f %4.0f %4.0f %9.0f %9.0f |", name, t->evaluations, t->nans, t->infinities, t->not_unit, t->zero);
+    for (i = 0; i < SCORES; i++) {
+        char cell[40];
+        if (t->ill[i] > 0) snprintf(cell, sizeof cell, "%.3g/%.2f (%.0f)", t->raw[i], t->judged[i], t->ill[i]);
+        else snprintf(cell, sizeof cell, "%.3g", t->raw[i]);
+        printf(" %13s", cell);
+    }
+    putchar('\n');
+    for (i = 0; i < SCORES && getenv("MCS_TEST_VERBOSE"); i++)
+        if (t->raw[i] > 0) printf("    %-8s %.3g at %s\n", score_name[i], t->raw[i], t->at[i]);
+    fflush(stdout);
+}
+
+int main(int argc, char **argv) {
+    const double scale = mcst_scale();
+    static float list[64][2];
+    static tally all[MCST_NROWS][2];
+    size_t i, j, k;
+    pi = acosq(-1);
+    mcst_start(argc, argv);
+    for (i = 0; i < MCST_NROWS; i++) {
+        const mcst_row *row = &mcst_rows[i];
+        const size_t settings = settings_of(row, list);
+        tally *t = all[i];
+        float p[MCST_P];
+        char group[64];
+        t[1].beyond = 1;
+        snprintf(group, sizeof group, "%s oracle", row->name);
+        mcst_group(group);
+        if (mcst_case("density times area of the map")) {
+            uint64_t seed = mcst_seed_for(row->name, "oracle", 0);
+            for (j = 0; j < 20; j++) { /* away from seams; wo is unit to 2^-24, the area is to that power 4 */
+                setting s;
+                float u1, u2;
+                double got;
+                mcst_uniform(&seed, 1, &u1, &u2);
+                mcst_fill(row, row->grid[j % row->grid_size][0], row->grid[j % row->grid_size][1], 0.2f + 0.7f * u2, 4 * u1, p);
+                s = setting_of(row, p);
+                u1 = 0.05f + 0.4f * u1, u2 = 0.55f + 0.4f * u2;
+                got = (double)density_times_area(row, &s, u1, u2);
+                CHECK(fabs(got - 1) <= 1e-6 || (got == 0 && row->shape == MCST_IS_BRDF), "p %g %g, u %g %g: %.9g", (double)p[0],
+                      (double)p[1], (double)u1, (double)u2, got);
+            }
+        }
+        mcst_group(row->name);
+        for (j = 0; j < settings; j++) {
+            if (!mcst_case("%g %g", (double)list[j][0], (double)list[j][1])) continue;
+            for (k = 0; k < (row->has_wo ? MCST_COUNT(incidence) : 1); k++) {
+                mcst_fill(row, list[j][0], list[j][1], incidence[k][0], incidence[k][1], p);
+                check_setting(row, p, mcst_seed_for(row->name, "extremes", j * MCST_COUNT(incidence) + k), scale, t);
+            }
+        }
+        if (t->evaluations > 0 && mcst_case("NaN, infinities, lengths, densities of 0"))
+            CHECK(t->nans == 0 && t->infinities == 0 && t->not_unit == 0 && t->zero == 0, "%.0f NaN, %.0f infinite, %.0f not unit, %.0f of density 0",
+                  t->nans, t->infinities, t->not_unit, t->zero);
+    }
+    mcst_group("mass");
+    for (i = 0; i < MCST_NROWS; i++) {
+        const mcst_row *row = &mcst_rows[i];
+        const size_t settings = settings_of(row, list);
+        for (j = 0; j < settings; j++) {
+            mcst_mass m;
+            float p[MCST_P];
+            mcst_fill(row, list[j][0], list[j][1], j % 2 ? 0.1f : 0.9f, 0.7f, p);
+            if (row->coord == MCST_SLOPES && (p[0] < 1e-7f || p[0] > 1e4f)) continue; /* clamped: bins.h does not know */
+            if (row->coord == MCST_COSPOWER && p[0] > 1e9f) continue;
+            if (!mcst_case("%s %g %g", row->name, (double)list[j][0], (double)list[j][1])) continue;
+            m = mcst_mass_of(row, p);
+            CHECK(!m.resolved || fabs(m.integral - m.lit) <= m.tolerance, "integral %.8f, not lost %.8f (%g, tolerance %g)", m.integral,
+                  m.lit, m.integral - m.lit, m.tolerance);
+        }
+    }
+    mcst_group("");
+    if (!mcst.list) {
+        print_tally("", NULL, 1);
+        for (i = 0; i < MCST_NROWS; i++)
+            for (j = 0; j < (mcst_rows[i].dim == 3 ? 2 : 1); j++)
+                if (all[i][0].evaluations > 0) print_tally(j ? "  below 1e-7" : mcst_rows[i].name, &all[i][j], 0);
+    }
+    return mcst_finish();
+}

@@ -1,0 +1,342 @@
+/* A libFuzzer target: raw bytes choose a function and are its arguments. Every public function is reached; every result must be
+ * finite and in its range; arrays and tables are allocated at exactly their size, so that the address sanitizer sees a byte too far.
+ *
+ *     clang -g -O1 -fsanitize=fuzzer,address,undefined,float-cast-overflow -fno-sanitize-recover=all -I. -Itests fuzz.c -o fuzz
+ *
+ * With -DMCS_FUZZ_MAIN and any compiler the program replays the files given to it, or, without any, a corpus made from a counter
+ * (1e6 inputs times MCS_TEST_SCALE); options as in mcs_test.h. */
+#include "stress.h"
+
+/* --- the input ----------------------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    const uint8_t *at;
+    size_t left;
+} bytes;
+
+static void take(bytes *b, void *to, size_t n) { /* zeros after the end */
+    const size_t have = n < b->left ? n : b->left;
+    memset(to, 0, n);
+    if (have) memcpy(to, b->at, have);
+    b->at += have, b->left -= have;
+}
+static uint8_t take_u8(bytes *b) {
+    uint8_t v;
+    take(b, &v, sizeof v);
+    return v;
+}
+static uint32_t take_u32(bytes *b) {
+    uint32_t v;
+    take(b, &v, sizeof v);
+    return v;
+}
+static uint64_t take_u64(bytes *b) {
+    uint64_t v;
+    take(b, &v, sizeof v);
+    return v;
+}
+static float take_float(bytes *b) { return st_float(take_u32(b)); }
+static mcs_vec3 take_vec3(bytes *b) {
+    mcs_vec3 v;
+    v.x = take_float(b), v.y = take_float(b), v.z = take_float(b);
+    return v;
+}
+/* Raw bytes are seldom a direction: where `tame` is set, any vector is brought to unit length. */
+static mcs_vec3 take_direction(bytes *b, int tame) {
+    mcs_vec3 v = take_vec3(b);
+    const double x = (double)v.x, y = (double)v.y, z = (double)v.z, l = sqrt(x * x + y * y + z * z);
+    if (tame && l > 0 && l <= 1e39) v.x = (float)(x / l), v.y = (float)(y / l), v.z = (float)fabs(z / l);
+    return v;
+}
+/* ... nor a random number. */
+static float take_u(bytes *b, int tame) {
+    const uint32_t v = take_u32(b);
+    return tame ? mcs_u01(v) : st_float(v);
+}
+
+/* --- what must hold ------------------------------------------------------------------------------------------------------------------- */
+
+static const char *doing = "";
+#ifdef MCS_FUZZ_MAIN
+#define MUST(cond) CHECK(cond, "%s", doing)
+#else
+#define MUST(cond) ((cond) ? (void)0 : fail(__LINE__, #cond))
+static void fail(int line, const char *what) {
+    fprintf(stderr, "fuzz.c:%d: %s: %s\n", line, doing, what);
+    abort();
+}
+#endif
+
+static int finite(float v) { return fabsf(v) <= FLT_MAX; }
+static int proper(float v) { return v >= 0 && v <= FLT_MAX; }
+static int below_one(float v) { return v >= 0 && v < 1; }
+static int finite3(mcs_vec3 v) { return finite(v.x) && finite(v.y) && finite(v.z); }
+
+/* `n` floats of their own allocation. */
+static float *floats(size_t n) {
+    float *f = (float *)malloc(n * sizeof(float) + !n);
+    if (!f) exit(2);
+    return f;
+}
+
+/* --- the functions --------------------------------------------------------------------------------------------------------------------- */
+
+static void fuzz_row(const mcst_row *row, bytes *b) {
+    const int tame = take_u8(b) & 1;
+    const size_t n = take_u8(b);
+    mcs_vec3 wo, w;
+    float p[MCST_P], u[2], x[3], out[5] = {0}, v[2] = {0}, *in[3], *to[5], *value;
+    size_t i;
+    int k;
+    for (k = 0; k < 3; k++) p[k] = take_float(b);
+    if (tame) /* any bits to a number between 2^-24 and 2^24, mostly in range */
+        for (k = 0; k < 3; k++) p[k] = fabsf(p[k]) > 0x1p-24f && fabsf(p[k]) < 0x1p24f ? fabsf(p[k]) : 0.5f;
+    wo = take_direction(b, tame), u[0] = take_u(b, tame), u[1] = take_u(b, tame), w = take_direction(b, tame);
+    p[3] = wo.x, p[4] = wo.y, p[5] = wo.z, x[0] = w.x, x[1] = w.y, x[2] = w.z;
+    row->fn[0].sample(p, &u[0], &u[1], out);
+    MUST(finite(out[0]) && finite(out[1]) && finite(out[2]) && proper(out[3]) && proper(out[4]));
+    MUST(out[3] > 0 || out[4] == 0);
+    row->fn[0].pdf(p, x, v);
+    MUST(proper(v[0]));
+    row->fn[0].pdf(p, out, v);
+    MUST(proper(v[0]));
+    if (row->fn[0].invert) {
+        v[0] = v[1] = 0;
+        row->fn[0].invert(p, x, v);
+        MUST(below_one(v[0]) && below_one(v[1]));
+    } else {
+        row->fn[0].eval(p, x, &v[0]), row->fn[0].weight(p, x, &v[1]);
+        MUST(proper(v[0]) && proper(v[1]));
+    }
+    for (k = 0; k < 3; k++) in[k] = floats(n);
+    for (k = 0; k < 5; k++) to[k] = floats(n), memset(to[k], 0, n * sizeof(float));
+    value = floats(n);
+    for (i = 0; i < n; i++)
+        for (k = 0; k < 3; k++) in[k][i] = b->left ? take_u(b, tame && k < 2) : k < 2 ? u[k] : x[k];
+    row->sample_n(p, n, in[0], in[1], to);
+    for (i = 0; i < n; i++) {
+        MUST(finite(to[0][i]) && finite(to[1][i]) && finite(to[2][i]) && proper(to[3][i]) && proper(to[4][i]));
+        MUST(to[3][i] > 0 || to[4][i] == 0);
+    }
+    if (row->pdf_n) {
+        row->pdf_n(p, n, in[0], in[1], in[2], value);
+        for (i = 0; i < n; i++) MUST(proper(value[i]));
+        row->eval_n(p, n, in[0], in[1], in[2], value);
+        for (i = 0; i < n; i++) MUST(proper(value[i]));
+    }
+    for (k = 0; k < 3; k++) free(in[k]);
+    for (k = 0; k < 5; k++) free(to[k]);
+    free(value);
+}
+
+static void fuzz_numbers(bytes *b) {
+    const uint32_t i = take_u32(b), dim = take_u32(b), seed = take_u32(b), nx = take_u32(b), ny = take_u32(b);
+    const uint64_t key = take_u64(b), counter = take_u64(b);
+    const size_t n = take_u8(b);
+    const mcs_vec2 s = mcs_stratified(i, nx, ny, seed), r = mcs_r2(i, seed);
+    const mcs_philox4 block = mcs_philox(key, counter, ~key);
+    mcs_pcg32 g = mcs_pcg32_make(key, counter), back;
+    float *out = floats(n);
+    size_t k;
+    MUST(below_one(s.x) && below_one(s.y) && below_one(r.x) && below_one(r.y));
+    MUST(below_one(mcs_latin(i, nx, dim, seed)) && below_one(mcs_sobol(i, dim, seed)) && below_one(mcs_u01(i)));
+    MUST(mcs_u01_open(i) > 0 && mcs_u01_open(i) < 1);
+    MUST(mcs_u01(mcs_sobol_bits(i, dim, seed)) == mcs_sobol(i, dim, seed));
+    MUST(mcs_u01(mcs_hash(i, seed)) < 1);
+    mcs_pcg32_advance(&g, key);
+    back = g;
+    MUST(below_one(mcs_pcg32_float(&g)));
+    mcs_pcg32_advance(&g, ~(uint64_t)0);
+    MUST(mcs_pcg32_next(&g) == mcs_pcg32_next(&back));
+    mcs_pcg32_fill_n(&g, n, out);
+    for (k = 0; k < n; k++) MUST(below_one(out[k]));
+    mcs_sobol_n(i, dim, seed, n, out);
+    for (k = 0; k < n; k++) MUST(out[k] == mcs_sobol(i + (uint32_t)k, dim, seed));
+    mcs_philox_fill_n(key, counter, n, out);
+    for (k = 0; k < n; k++) MUST(below_one(out[k]));
+    MUST(below_one(mcs_u01(block.v[i & 3])));
+    free(out);
+}
+
+static void fuzz_vectors(bytes *b) {
+    const int tame = take_u8(b) & 1;
+    const mcs_vec3 v = take_direction(b, tame), w = take_direction(b, tame), any = take_vec3(b);
+    const mcs_frame f = mcs_frame_make(v);
+    const mcs_ggx m = mcs_ggx_make(take_float(b), take_float(b));
+    const float p = take_float(b), q = take_float(b), r = take_float(b);
+    const mcs_vec3 h = mcs_half(v, w);
+    MUST(finite3(f.s) && finite3(f.t) && finite3(f.n));
+    MUST(finite3(mcs_to_world(&f, any)) && finite3(mcs_to_local(&f, any)));
+    MUST(finite3(mcs_reflect(v, w)) && finite3(mcs_reflect(any, w)) && finite3(mcs_half(any, w)));
+    MUST(fabs(sqrt((double)h.x * (double)h.x + (double)h.y * (double)h.y + (double)h.z * (double)h.z) - 1) <= 4 * 0x1p-24);
+    MUST(proper(mcs_cos_d(v, w)) && proper(mcs_cos_d(any, v)));
+    MUST(proper(mcs_schlick(p, q)) && mcs_schlick(p, q) <= 1);
+    MUST(proper(mcs_mis_balance(p, q)) && mcs_mis_balance(p, q) <= 1);
+    MUST(proper(mcs_mis_power(p, q)) && mcs_mis_power(p, q) <= 1);
+    MUST(proper(mcs_mix_pdf(p, q, r)) && proper(mcs_reflect_pdf(p, q)));
+    MUST(proper(mcs_ggx_d(&m, w)) && proper(mcs_ggx_g1(&m, w)) && proper(mcs_ggx_g2(&m, v, w)));
+    MUST(mcs_ggx_g1(&m, w) <= 1.000001f && mcs_ggx_g2(&m, v, w) <= 1.000001f);
+    MUST(proper(mcs_cone_from_sin2(p)) && mcs_cone_from_sin2(p) <= 1);
+    MUST(mcs_is_mirror(p, q) == (p < 1e-7f && q < 1e-7f));
+}
+
+static double take_moderate(bytes *b) { /* within 1e150, so that squares are doubles */
+    const uint64_t v = take_u64(b);
+    double x;
+    memcpy(&x, &v, sizeof x);
+    return fabs(x) <= 1e150 ? x : 0;
+}
+static void fuzz_estimator(bytes *b) {
+    mcs_stat all = {0, 0, 0}, parts[2] = {{0, 0, 0}, {0, 0, 0}};
+    size_t i;
+    for (i = 0; b->left; i++) {
+        const double x = take_moderate(b);
+        mcs_stat_add(&all, x), mcs_stat_add(&parts[i & 1], x);
+    }
+    parts[0] = mcs_stat_merge(parts[0], parts[1]);
+    MUST(parts[0].n == all.n && isfinite(parts[0].mean));
+    MUST(isfinite(all.mean) && mcs_stat_variance(&all) >= 0 && isfinite(mcs_stat_variance(&all)));
+    MUST(isfinite(mcs_stat_error(&all)) && isfinite(mcs_stat_ci(&all, 1.96)) && isfinite(mcs_stat_variance(&parts[0])));
+}
+
+enum { PWC, PWL, ALIAS, FROM_FUNCTION, KINDS };
+
+static float next_entry(float x, void *context) {
+    (void)x;
+    return take_float((bytes *)context);
+}
+static mcs_status build(int kind, void *t, size_t size, const float *f, uint32_t n, bytes *b) {
+    if (kind == PWL) return (mcs_status)mcs_pwl_build((mcs_pwl *)t, size, f, n);
+    if (kind == ALIAS) return (mcs_status)mcs_alias_build((mcs_alias *)t, size, f, n);
+    if (kind == FROM_FUNCTION) return (mcs_status)mcs_pwc_build_fn((mcs_pwc *)t, size, next_entry, b, n);
+    return (mcs_status)mcs_pwc_build((mcs_pwc *)t, size, f, n);
+}
+static size_t size_of(int kind, uint32_t n) {
+    return kind == PWL ? mcs_pwl_bytes(n) : kind == ALIAS ? mcs_alias_bytes(n) : mcs_pwc_bytes(n);
+}
+
+static void draw_table(int kind, const void *t, uint32_t n, float u, float x, uint32_t i) {
+    const int good = u >= 0 && u < 1;
+    if (kind == PWL) {
+        const mcs_cell c = mcs_pwl_sample((const mcs_pwl *)t, u);
+        MUST(below_one(c.x) && proper(c.pdf) && c.i < n && (good || c.pdf == 0));
+        MUST(proper(mcs_pwl_pdf((const mcs_pwl *)t, x)) && below_one(mcs_pwl_invert((const mcs_pwl *)t, x)));
+    } else if (kind == ALIAS) {
+        const mcs_pick c = mcs_alias_sample((const mcs_alias *)t, u);
+        MUST(below_one(c.u) && c.pmf <= 1 && c.i < n && (good ? c.pmf > 0 : c.pmf == 0));
+        MUST(proper(mcs_alias_pmf((const mcs_alias *)t, i)) && (!good || mcs_alias_pmf((const mcs_alias *)t, c.i) == c.pmf));
+    } else {
+        const mcs_pwc *pwc = (const mcs_pwc *)t;
+        const mcs_cell c = mcs_pwc_sample(pwc, u);
+        const mcs_pick d = mcs_discrete_sample(pwc, u);
+        MUST(below_one(c.x) && proper(c.pdf) && c.i < n && (good ? c.pdf > 0 : c.pdf == 0));
+        MUST(below_one(d.u) && d.i == c.i && d.pmf <= 1 && (good ? d.pmf > 0 : d.pmf == 0));
+        MUST(!good || (mcs_pwc_pdf(pwc, c.x) == c.pdf && mcs_discrete_pmf(pwc, d.i) == d.pmf));
+        MUST(proper(mcs_pwc_pdf(pwc, x)) && below_one(mcs_pwc_invert(pwc, x)) && proper(mcs_discrete_pmf(pwc, i)));
+    }
+}
+
+static void fuzz_table(int kind, bytes *b) {
+    const uint32_t wild = take_u32(b), n = 1 + wild % 2048, entries = n + (kind == PWL);
+    const size_t size = size_of(kind, n), less = take_u8(b), count = take_u8(b) % 70;
+    float *f = floats(entries), *u = floats(count), *x = floats(count), *pdf = floats(count);
+    void *t = malloc(size), *copy = malloc(size);
+    mcs_status e;
+    uint32_t i;
+    size_t k;
+    if (!t || !copy) exit(2);
+    for (k = 0; k < count; k++) u[k] = take_u(b, k & 1);
+    for (i = 0; i < entries; i++) f[i] = b->left ? take_float(b) : i ? f[i / 2] : 0;
+    /* sizes that are not what was allocated, and a table that starts at a wrong address */
+    e = build(kind, t, size < less + 1 ? 0 : size - less - 1, f, n, b);
+    MUST(e == MCS_ERR_MEMORY);
+    if (size_of(kind, wild) > size || size_of(kind, wild) == 0) {
+        e = build(kind, t, size, f, wild, b);
+        MUST(e == MCS_ERR_MEMORY || e == MCS_ERR_SIZE);
+    }
+    e = build(kind, (char *)t + 4, size, f, n, b);
+    MUST(e == MCS_ERR_ARG);
+    e = build(kind, t, size, f, n, b);
+    MUST(e == MCS_OK || e == MCS_UNIFORM);
+    memcpy(copy, t, size); /* tables hold no addresses */
+    free(t);
+    for (k = 0; k < count; k++) draw_table(kind, copy, n, u[k], u[count - 1 - k], wild);
+    if (kind != ALIAS) {
+        if (kind == PWL) mcs_pwl_sample_n((const mcs_pwl *)copy, count, u, x, pdf);
+        else mcs_pwc_sample_n((const mcs_pwc *)copy, count, u, x, pdf);
+        for (k = 0; k < count; k++) MUST(below_one(x[k]) && proper(pdf[k]));
+    }
+    free(copy), free(f), free(u), free(x), free(pdf);
+}
+
+enum { NUMBERS = MCST_NROWS, VECTORS, ESTIMATOR, TABLES, FUNCTIONS = TABLES + KINDS };
+static const char *const other_name[FUNCTIONS - MCST_NROWS] = {"numbers", "vectors", "estimator", "pwc", "pwl", "alias", "pwc of a function"};
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    bytes b;
+    int which;
+    b.at = data, b.left = size;
+    which = take_u8(&b) % FUNCTIONS;
+    doing = which < (int)MCST_NROWS ? mcst_rows[which].name : other_name[which - (int)MCST_NROWS];
+    if (which < (int)MCST_NROWS) fuzz_row(&mcst_rows[which], &b);
+    else if (which == NUMBERS) fuzz_numbers(&b);
+    else if (which == VECTORS) fuzz_vectors(&b);
+    else if (which == ESTIMATOR) fuzz_estimator(&b);
+    else fuzz_table(which - TABLES, &b);
+    return 0;
+}
+
+#ifdef MCS_FUZZ_MAIN
+static int replay(const char *path) {
+    uint8_t *data = NULL;
+    size_t size = 0, room = 0, got;
+    FILE *f = fopen(path, "rb");
+    if (!f) return 0;
+    do {
+        if (size == room) data = (uint8_t *)realloc(data, room = 2 * room + 4096);
+        if (!data) exit(2);
+        got = fread(data + size, 1, room - size, f);
+        size += got;
+    } while (got);
+    fclose(f);
+    LLVMFuzzerTestOneInput(data, size);
+    free(data);
+    return 1;
+}
+
+/* Input number i: words of every class of float, any bits, or small numbers, for the function i modulo their number. */
+static void replay_number(uint64_t i) {
+    uint8_t data[1200];
+    uint64_t state = mcst.seed + i, z = mcst_mix(&state);
+    const size_t size = 64 + z % (sizeof data - 64);
+    size_t k;
+    for (k = 0; k + 4 <= size; k += 4) {
+        const uint64_t word = mcst_mix(&state);
+        const float f = (z >> 40) & 1 ? st_hostile(word) : mcs_u01((uint32_t)(word >> 32));
+        memcpy(data + k, &f, sizeof f);
+        if ((word & 15) == 0) memcpy(data + k, &word, 4);
+    }
+    for (; k < size; k++) data[k] = (uint8_t)k;
+    data[0] = (uint8_t)(i % FUNCTIONS), data[1] = (uint8_t)(z >> 48), data[2] = (uint8_t)(z >> 56);
+    LLVMFuzzerTestOneInput(data, size);
+}
+
+int main(int argc, char **argv) {
+    uint64_t i, n;
+    int which;
+    if (argc > 1 && argv[1][0] != '-') {
+        mcst_group("fuzz files");
+        for (which = 1; which < argc; which++)
+            if (mcst_case("%s", argv[which])) CHECK(replay(argv[which]), "cannot be read");
+        return mcst_finish();
+    }
+    mcst_start(argc, argv);
+    n = (uint64_t)fmax(1000, 1e6 * mcst_scale() / FUNCTIONS);
+    mcst_group("fuzz");
+    for (which = 0; which < FUNCTIONS; which++)
+        if (mcst_case("%s", which < (int)MCST_NROWS ? mcst_rows[which].name : other_name[which - (int)MCST_NROWS]))
+            for (i = 0; i < n; i++) replay_number(i * FUNCTIONS + (uint64_t)which);
+    return mcst_finish();
+}
+#endif

@@ -1,0 +1,515 @@
+/* Hostile input: any bit pattern as any argument of every function, mixed with valid arguments so that each check behind another
+ * one is reached. Asserted: every result is finite; densities, weights, values and inverses are in range; directions are unit; bad
+ * input by the header's rules has density and weight 0. Then tables of random sizes from random numbers, in memory of exactly the
+ * size that was asked for, between guards.
+ *
+ * At full scale (MCS_TEST_SCALE=1) more than 1e9 evaluations; a part is picked with --filter. */
+#include "stress.h"
+#define MCST_W 8
+#include "adapters.h"
+
+enum { LANES = 8, ARRAY = 1024 };
+
+/* The functions of each row, 8 wide. */
+#define ST_FNS_LINE(row) MCST_FNS_UV(mcst8_, row)
+#define ST_FNS_PLANE(row) MCST_FNS_UV(mcst8_, row)
+#define ST_FNS_DIR(row) MCST_FNS_UV(mcst8_, row)
+#define ST_FNS_LOBE(row) MCST_FNS_UV(mcst8_, row)
+#define ST_FNS_VLOBE(row) MCST_FNS_UV(mcst8_, row)
+#define ST_FNS_BRDF(row) MCST_FNS_BRDF(mcst8_, row)
+#define ST_FNS(shape, row, fn, arg, base, coord, grid) ST_FNS_##shape(row),
+static const mcst_fns wide[] = {MCST_ROWS(ST_FNS)};
+
+/* What was counted, for the table. */
+typedef struct {
+    double evaluations, nans, infinities, negative, not_unit, not_discarded, outside;
+} tally;
+static double all_evaluations;
+
+static int proper(tally *t, float v) { /* finite and not negative */
+    t->nans += isnan(v) != 0, t->infinities += isinf(v) != 0, t->negative += v < 0;
+    return v >= 0 && v <= FLT_MAX;
+}
+static int finite(tally *t, float v) {
+    t->nans += isnan(v) != 0, t->infinities += isinf(v) != 0;
+    return fabsf(v) <= FLT_MAX;
+}
+
+/* One argument set of one lane: a quarter of the numbers is hostile, the others are valid. */
+typedef struct {
+    float p[MCST_P], u[2], x[3];
+} arguments;
+
+static void make_arguments(const mcst_row *row, uint64_t *state, arguments *a) {
+    const uint64_t pick = mcst_mix(state), which = mcst_mix(state);
+    const float *g = row->grid[pick % row->grid_size], *o = mcst_incidence[(pick >> 32) % MCST_COUNT(mcst_incidence)];
+    const uint64_t mask = which & (which >> 12); /* each bit set in a quarter of the cases */
+    float azimuth, r;
+    int i;
+    a->p[0] = g[0], a->p[1] = g[1], a->p[2] = 0;
+    r = sqrtf((1 - o[0]) * (1 + o[0]));
+    a->p[3] = pick & 0x100000 ? r * 0.6f : -r * 0.8f, a->p[4] = pick & 0x100000 ? -r * 0.8f : r * 0.6f, a->p[5] = o[0];
+    mcst_uniform(state, 1, &a->u[0], &a->u[1]);
+    mcst_uniform(state, 1, &azimuth, &a->x[2]);
+    r = sqrtf((1 - a->x[2]) * (1 + a->x[2]));
+    a->x[0] = r * (2 * azimuth - 1), a->x[1] = r * 2 * sqrtf(azimuth * (1 - azimuth));
+    if (!row->has_wo) a->p[3] = a->p[4] = 0, a->p[5] = 1;
+    for (i = 0; i < 11; i++) {
+        float *slot = i < 6 ? &a->p[i] : i < 8 ? &a->u[i - 6] : &a->x[i - 8];
+        if (i == 2 || (i < 6 && i >= row->params && !(row->has_wo && i >= 3))) continue;
+        if (mask >> i & 1) *slot = st_hostile(mcst_mix(state));
+    }
+}
+
+/* By the header: 1 bad, 0 good, -1 open. */
+static int worse(int a, int b) { return a == 1 || b == 1 ? 1 : a ? a : b; }
+static int setting_bad(const mcst_row *row, const float *p) {
+    int bad = 0, i;
+    for (i = 0; i < row->params; i++) bad = worse(bad, st_parameter_bad(row, i, p[i]));
+    if (row->coord == MCST_UNIT && p[0] == 0 && p[1] == 0) bad = 1;
+    if (row->has_wo) bad = worse(bad, st_above_bad(p[3], p[4], p[5]));
+    return bad;
+}
+static int u_bad(const mcst_row *row, const float *u) {
+    return !(u[0] >= 0 && u[0] < 1) || (row->inputs > 1 && !(u[1] >= 0 && u[1] < 1));
+}
+static int point_bad(const mcst_row *row, const float *x) {
+    if (row->dim < 3) return isnan(x[0]) || (row->dim > 1 && isnan(x[1]));
+    if (row->coord == MCST_SPHERE || row->coord == MCST_CONE) return st_direction_bad(x[0], x[1], x[2]);
+    return st_above_bad(x[0], x[1], x[2]);
+}
+
+#define SHOWN                                                                                                                    \
+    "p %a %a, wo %a %a %a, u %a %a, x %a %a %a", (double)a->p[0], (double)a->p[1], (double)a->p[3], (double)a->p[4],              \
+        (double)a->p[5], (double)a->u[0], (double)a->u[1], (double)a->x[0], (double)a->x[1], (double)a->x[2]
+
+/* s: x, y, z, pdf, weight of a sample. */
+static void check_sample(const mcst_row *row, tally *t, const arguments *a, int bad, const float s[5]) {
+    int i, sound = 1;
+    for (i = 0; i < row->dim; i++) sound &= finite(t, s[i]);
+    sound &= proper(t, s[3]) & proper(t, s[4]);
+    CHECK(sound, SHOWN);
+    if (row->dim == 3) {
+        /* 4 ulp; a mirrored direction is as long as wo, and as exact; bad ones count as +z */
+        const double l2 = (double)s[0] * (double)s[0] + (double)s[1] * (double)s[1] + (double)s[2] * (double)s[2];
+        const double o2 = (double)a->p[3] * (double)a->p[3] + (double)a->p[4] * (double)a->p[4] + (double)a->p[5] * (double)a->p[5];
+        const double off = row->shape != MCST_IS_BRDF || st_above_bad(a->p[3], a->p[4], a->p[5]) == 1 ? 0 : fabs(sqrt(o2) - 1);
+        const int due = off <= 0x1p-22, unit = fabs(sqrt(l2) - 1) <= 4 * 0x1p-24 + off;
+        t->not_unit += due && !unit;
+        CHECK(!due || unit, SHOWN);
+    }
+    if (bad == 1 || !(s[3] > 0)) {
+        const int discarded = s[3] == 0 && s[4] == 0;
+        t->not_discarded += !discarded;
+        CHECK(discarded, SHOWN);
+    }
+}
+
+static void check_value(tally *t, const arguments *a, int bad, float v) {
+    CHECK(proper(t, v), SHOWN);
+    if (bad == 1) {
+        t->not_discarded += v != 0;
+        CHECK(v == 0, SHOWN);
+    }
+}
+
+static void print_head(void) {
+    printf("%-22s %12s %5s %5s %9s %9s %14s %9s\n", "", "evaluations", "NaN", "inf", "negative", "not unit", "not discarded", "range");
+}
+static void print_tally(const char *name, const tally *t) {
+    printf("%-22s %12.0f %5.0f %5.0f %9.0f %9.0f %14.0f %9.0f\n", name, t->evaluations, t->nans, t->infinities, t->negative,
+           t->not_unit, t->not_discarded, t->outside);
+    all_evaluations += t->evaluations;
+}
+
+/* Every function of a row, 8 lanes with arguments of their own. */
+static void check_lanes(const mcst_row *row, const mcst_fns *fn, uint64_t seed, long rounds, tally *t) {
+    float p[MCST_P * LANES], u[2 * LANES], x[3 * LANES], s[5 * LANES], v[3][2 * LANES];
+    arguments a[LANES];
+    long k;
+    int i, l;
+    memset(s, 0, sizeof s);
+    for (k = 0; k < rounds; k++) {
+        for (l = 0; l < LANES; l++) {
+            make_arguments(row, &seed, &a[l]);
+            for (i = 0; i < MCST_P; i++) p[i * LANES + l] = a[l].p[i];
+            for (i = 0; i < 2; i++) u[i * LANES + l] = a[l].u[i];
+            for (i = 0; i < 3; i++) x[i * LANES + l] = a[l].x[i];
+        }
+        fn->sample(p, u, u + LANES, s);
+        fn->pdf(p, x, v[0]);
+        if (fn->invert) fn->invert(p, x, v[1]);
+        else fn->eval(p, x, v[1]), fn->weight(p, x, v[2]);
+        for (l = 0; l < LANES; l++) {
+            const int setting = setting_bad(row, a[l].p), at = worse(setting, point_bad(row, a[l].x));
+            float one[5];
+            for (i = 0; i < 5; i++) one[i] = s[i * LANES + l];
+            check_sample(row, t, &a[l], u_bad(row, a[l].u) ? 1 : setting, one);
+            check_value(t, &a[l], at, v[0][l]);
+            if (fn->invert) {
+                for (i = 0; i < row->inputs; i++) {
+                    const float back = v[1][i * LANES + l];
+                    const int inside = back >= 0 && back < 1;
+                    t->nans += isnan(back) != 0, t->outside += !inside;
+                    CHECK(inside, "invert%d %a: p %a %a, wo %a %a %a, x %a %a %a", i + 1, (double)back, (double)a[l].p[0],
+                          (double)a[l].p[1], (double)a[l].p[3], (double)a[l].p[4], (double)a[l].p[5], (double)a[l].x[0],
+                          (double)a[l].x[1], (double)a[l].x[2]);
+                }
+            } else {
+                check_value(t, &a[l], at, v[1][l]);
+                check_value(t, &a[l], at, v[2][l]);
+            }
+        }
+    }
+    t->evaluations += (double)rounds * LANES * (fn->invert ? 3 : 4);
+}
+
+/* The array forms: one setting a call, arrays of any length. */
+static void check_arrays(const mcst_row *row, uint64_t seed, long calls, tally *t) {
+    static float u[2][ARRAY], x[3][ARRAY], out[5][ARRAY], value[2][ARRAY];
+    long k;
+    for (k = 0; k < calls; k++) {
+        const uint64_t z = mcst_mix(&seed);
+        const size_t n = z % ARRAY + 1;
+        float *const to[5] = {out[0], out[1], out[2], out[3], out[4]};
+        arguments all, one;
+        size_t i;
+        int j, setting;
+        make_arguments(row, &seed, &all);
+        for (i = 0; i < n; i++) {
+            for (j = 0; j < 2; j++) u[j][i] = (z >> (3 * j)) % 4 ? all.u[j] : st_hostile(mcst_mix(&seed));
+            for (j = 0; j < 3; j++) x[j][i] = all.x[j];
+            if (i % 4 == 0) make_arguments(row, &seed, &one);
+            all.u[0] = one.u[i % 2], all.u[1] = one.u[1 - i % 2], all.x[0] = one.x[i % 2], all.x[1] = one.x[1 - i % 2];
+            all.x[2] = one.x[2];
+        }
+        memset(out, 0, sizeof out);
+        row->sample_n(all.p, n, u[0], u[1], to);
+        if (row->pdf_n) row->pdf_n(all.p, n, x[0], x[1], x[2], value[0]), row->eval_n(all.p, n, x[0], x[1], x[2], value[1]);
+        setting = setting_bad(row, all.p);
+        for (i = 0; i < n; i++) {
+            float s[5];
+            for (j = 0; j < 5; j++) s[j] = out[j][i];
+            for (j = 0; j < 2; j++) all.u[j] = u[j][i];
+            for (j = 0; j < 3; j++) all.x[j] = x[j][i];
+            check_sample(row, t, &all, u_bad(row, all.u) ? 1 : setting, s);
+            if (!row->pdf_n) continue;
+            check_value(t, &all, worse(setting, point_bad(row, all.x)), value[0][i]);
+            check_value(t, &all, worse(setting, point_bad(row, all.x)), value[1][i]);
+        }
+        t->evaluations += (double)n * (row->pdf_n ? 3 : 1);
+    }
+}
+
+/* --- functions that are no row: vectors, Fresnel, MIS, GGX terms, points, random numbers ----------------------------------------- */
+
+static mcs8_f eight(const float *v) {
+    mcs8_f r;
+    memcpy(&r, v, sizeof r);
+    return r;
+}
+static mcs8_vec3 eight3(float v[][LANES]) {
+    mcs8_vec3 r;
+    r.x = eight(v[0]), r.y = eight(v[1]), r.z = eight(v[2]);
+    return r;
+}
+static double dot(float a[3][LANES], float b[3][LANES], int l) {
+    return (double)a[0][l] * (double)b[0][l] + (double)a[1][l] * (double)b[1][l] + (double)a[2][l] * (double)b[2][l];
+}
+static void put(float out[3][LANES], mcs8_vec3 v) {
+    memcpy(out[0], &v.x, sizeof v.x), memcpy(out[1], &v.y, sizeof v.y), memcpy(out[2], &v.z, sizeof v.z);
+}
+
+enum { COS_D, SCHLICK, BALANCE, POWER_, MIX, REFLECT_PDF, GGX_D, GGX_G1, GGX_G2, FROM_SIN2, VALUES };
+static const float value_top[VALUES] = {2, 1, 1, 1, FLT_MAX, FLT_MAX, FLT_MAX, 1, 1, 1};
+static const char *const value_name[VALUES] = {"cos_d", "schlick", "mis_balance", "mis_power",   "mix_pdf",
+                                               "reflect_pdf", "ggx_d", "ggx_g1", "ggx_g2", "cone_from_sin2"};
+
+static void check_vectors(uint64_t seed, long rounds, tally *t) {
+    const mcst_row *row = mcst_find("ggx");
+    float in[11][LANES], out[7][3][LANES], value[VALUES][LANES]; /* arguments as in `arguments`, in order */
+    arguments a;
+    long k;
+    int i, j, l;
+    for (k = 0; k < rounds; k++) {
+        mcs8_frame f;
+        mcs8_ggx m;
+        mcs8_vec3 v, w;
+        mcs8_f r[VALUES];
+        for (l = 0; l < LANES; l++) {
+            make_arguments(row, &seed, &a);
+            for (i = 0; i < 11; i++) in[i][l] = i < 6 ? a.p[i] : i < 8 ? a.u[i - 6] : a.x[i - 8];
+        }
+        v = eight3(in + 3), w = eight3(in + 8), m = mcs8_ggx_make(eight(in[0]), eight(in[1]));
+        f = mcs8_frame_make(v);
+        put(out[0], f.s), put(out[1], f.t), put(out[2], f.n);
+        put(out[3], mcs8_to_world(&f, w)), put(out[4], mcs8_to_local(&f, w));
+        put(out[5], mcs8_reflect(v, w)), put(out[6], mcs8_half(v, w));
+        r[COS_D] = mcs8_cos_d(v, w), r[SCHLICK] = mcs8_schlick(eight(in[6]), eight(in[10]));
+        r[BALANCE] = mcs8_mis_balance(eight(in[6]), eight(in[7])), r[POWER_] = mcs8_mis_power(eight(in[6]), eight(in[7]));
+        r[MIX] = mcs8_mix_pdf(eight(in[6]), eight(in[7]), eight(in[8]));
+        r[REFLECT_PDF] = mcs8_reflect_pdf(eight(in[6]), eight(in[9]));
+        r[GGX_D] = mcs8_ggx_d(&m, w), r[GGX_G1] = mcs8_ggx_g1(&m, w), r[GGX_G2] = mcs8_ggx_g2(&m, v, w);
+        r[FROM_SIN2] = mcs8_cone_from_sin2(eight(in[7]));
+        memcpy(value, r, sizeof value);
+        for (l = 0; l < LANES; l++) {
+            const double n2 = dot(out[2], out[2], l);
+            int sound = 1;
+            for (i = 0; i < 7; i++)
+                for (j = 0; j < 3; j++) sound &= finite(t, out[i][j][l]);
+            CHECK(sound, "frame, reflect or half of %a %a %a and %a %a %a", (double)in[3][l], (double)in[4][l], (double)in[5][l],
+                  (double)in[8][l], (double)in[9][l], (double)in[10][l]);
+            /* a frame is as orthonormal as n is unit: to 4 ulp beyond that */
+            for (i = 0; i < 3; i++) {
+                const double l2 = dot(out[i], out[i], l), across = dot(out[i], out[(i + 1) % 3], l);
+                const int due = fabs(n2 - 1) <= 0x1p-22, unit = fabs(sqrt(l2) - 1) <= 4 * 0x1p-23 && fabs(across) <= 4 * 0x1p-23;
+                t->not_unit += due && !unit;
+                CHECK(!due || unit, "frame of %a %a %a: length %.9g, across %.3g", (double)in[3][l], (double)in[4][l],
+                      (double)in[5][l], sqrt(l2), across);
+            }
+            sound = fabs(sqrt(dot(out[6], out[6], l)) - 1) <= 4 * 0x1p-24;
+            t->not_unit += !sound;
+            CHECK(sound, "half of %a %a %a and %a %a %a", (double)in[3][l], (double)in[4][l], (double)in[5][l], (double)in[8][l],
+                  (double)in[9][l], (double)in[10][l]);
+            for (i = 0; i < VALUES; i++) {
+                const float top = value_top[i] * (value_top[i] < 3 ? 1.000001f : 1);
+                sound = proper(t, value[i][l]) && value[i][l] <= top;
+                t->outside += value[i][l] > top;
+                CHECK(sound, "%s = %a: in %a %a %a %a %a %a %a %a %a %a %a", value_name[i], (double)value[i][l], (double)in[0][l],
+                      (double)in[1][l], (double)in[2][l], (double)in[3][l], (double)in[4][l], (double)in[5][l], (double)in[6][l],
+                      (double)in[7][l], (double)in[8][l], (double)in[9][l], (double)in[10][l]);
+            }
+        }
+    }
+    t->evaluations += (double)rounds * LANES * (7 + VALUES);
+}
+
+static int below_one(tally *t, float v) {
+    const int inside = v >= 0 && v < 1;
+    t->nans += isnan(v) != 0, t->outside += !inside;
+    return inside;
+}
+
+static void check_numbers(uint64_t seed, long rounds, tally *t) {
+    static float out[ARRAY];
+    long k;
+    size_t i;
+    for (k = 0; k < rounds; k++) {
+        const uint64_t z = mcst_mix(&seed), y = mcst_mix(&seed);
+        const uint32_t a = (uint32_t)z >> (z >> 59), b = (uint32_t)y >> (y >> 59), c = (uint32_t)(y >> 32), d = (uint32_t)(z >> 32);
+        const mcs_vec2 s = mcs_stratified(c, a, b, d), r = mcs_r2(c, d);
+        mcs_pcg32 g = mcs_pcg32_make(z, y);
+        float v[9];
+        v[0] = s.x, v[1] = s.y, v[2] = r.x, v[3] = r.y;
+        v[4] = mcs_latin(c, a, b, d), v[5] = mcs_sobol(c, a, d), v[6] = mcs_u01(c), v[7] = mcs_u01_open(c);
+        mcs_pcg32_advance(&g, z ^ y);
+        v[8] = mcs_pcg32_float(&g);
+        for (i = 0; i < 9; i++)
+            CHECK(below_one(t, v[i]), "function %d: %a for %u %u %u %u", (int)i, (double)v[i], (unsigned)c, (unsigned)a, (unsigned)b,
+                  (unsigned)d);
+        CHECK(v[7] > 0, "u01_open of %u is 0", (unsigned)c);
+        if (k % 64 == 0) {
+            const size_t n = z % ARRAY + 1;
+            int which;
+            for (which = 0; which < 3; which++) {
+                if (which == 0) mcs_philox_fill_n(z, y, n, out);
+                else if (which == 1) mcs_sobol_n(c, a, d, n, out);
+                else mcs_pcg32_fill_n(&g, n, out);
+                for (i = 0; i < n; i++) CHECK(below_one(t, out[i]), "array %d: %a", which, (double)out[i]);
+                t->evaluations += (double)n;
+            }
+        }
+        t->evaluations += 9;
+    }
+}
+
+/* --- tables ------------------------------------------------------------------------------------------------------------------------ */
+
+enum { PWC, DISCRETE, PWL, ALIAS, FROM_FUNCTION, KINDS };
+static const char *const kind_name[KINDS] = {"pwc", "discrete", "pwl", "alias", "pwc of a function"};
+
+static size_t table_bytes(int kind, uint32_t n) {
+    return kind == PWL ? mcs_pwl_bytes(n) : kind == ALIAS ? mcs_alias_bytes(n) : mcs_pwc_bytes(n);
+}
+static float next_of(float x, void *context) { /* a function whose values are the entries of a list, whatever x is */
+    uint64_t *state = (uint64_t *)context;
+    (void)x;
+    return st_hostile(mcst_mix(state));
+}
+static mcs_status table_build(int kind, st_memory *m, size_t bytes, const float *f, uint32_t n, uint64_t *state) {
+    void *at = m->at;
+    if (kind == FROM_FUNCTION) return (mcs_status)mcs_pwc_build_fn((mcs_pwc *)at, bytes, f ? next_of : NULL, state, n);
+    if (kind == PWL) return (mcs_status)mcs_pwl_build((mcs_pwl *)at, bytes, f, n);
+    if (kind == ALIAS) return (mcs_status)mcs_alias_build((mcs_alias *)at, bytes, f, n);
+    return (mcs_status)mcs_pwc_build((mcs_pwc *)at, bytes, f, n);
+}
+
+/* Entries of one of six styles, zeros among them; how many of them are bad and the sum of the others come back. */
+static void make_entries(float *f, uint32_t n, uint64_t *state, uint32_t *bad, long double *sum, uint32_t *some) {
+    const uint64_t style = mcst_mix(state) % 6, giant = mcst_mix(state) % n;
+    uint32_t i;
+    *bad = *some = 0, *sum = 0;
+    for (i = 0; i < n; i++) {
+        const uint64_t z = mcst_mix(state);
+        switch (style) {
+        case 0: f[i] = st_hostile(z); break;
+        case 1: f[i] = z & 7 ? (float)(z >> 40) : st_hostile(z >> 3); break;
+        case 2: f[i] = 0; break;
+        case 3: f[i] = i == giant ? 1e30f : 0; break;
+        case 4: f[i] = st_float((uint32_t)(z >> 32) & 0x007fffffu); break;
+        default: f[i] = z & 1 ? FLT_MAX : 0x1p-149f; break;
+        }
+        if (!(f[i] >= 0 && f[i] <= FLT_MAX)) ++*bad;
+        else *sum += (long double)f[i], *some += f[i] > 0;
+    }
+}
+static int lit(const float *f, uint32_t i) { return f[i] > 0 && f[i] <= FLT_MAX; }
+
+static void check_draws(int kind, const st_memory *m, const float *f, uint32_t n, int uniform, uint64_t *state, tally *t) {
+    const mcs_pwc *pwc = (const mcs_pwc *)(const void *)m->at;
+    const mcs_pwl *pwl = (const mcs_pwl *)(const void *)m->at;
+    const mcs_alias *alias = (const mcs_alias *)(const void *)m->at;
+    int k;
+    for (k = 0; k < 400; k++) {
+        const uint64_t z = mcst_mix(state);
+        float u = z & 3 ? (float)(z >> 40) * 0x1p-24f : st_hostile(z >> 2), x, pdf, back;
+        const int good = u >= 0 && u < 1;
+        uint32_t i;
+        if (kind == DISCRETE || kind == ALIAS) {
+            const mcs_pick c = kind == ALIAS ? mcs_alias_sample(alias, u) : mcs_discrete_sample(pwc, u);
+            x = c.u, pdf = c.pmf, i = c.i;
+            CHECK(proper(t, pdf) && pdf <= 1, "%u entries, u %a: pmf %a", (unsigned)n, (double)u, (double)pdf);
+            CHECK(i < n, "%u entries, u %a: entry %u", (unsigned)n, (double)u, (unsigned)i);
+            CHECK(!good || pdf == (kind == ALIAS ? mcs_alias_pmf(alias, i) : mcs_discrete_pmf(pwc, i)), "u %a: pmf %a", (double)u,
+                  (double)pdf);
+            back = x;
+            (void)proper(t, kind == ALIAS ? mcs_alias_pmf(alias, (uint32_t)(z >> 16)) : mcs_discrete_pmf(pwc, (uint32_t)(z >> 16)));
+        } else {
+            const mcs_cell c = kind == PWL ? mcs_pwl_sample(pwl, u) : mcs_pwc_sample(pwc, u);
+            const float at = kind == PWL ? mcs_pwl_pdf(pwl, c.x) : mcs_pwc_pdf(pwc, c.x);
+            x = c.x, pdf = c.pdf, i = c.i;
+            CHECK(proper(t, pdf), "%u cells, u %a: pdf %a", (unsigned)n, (double)u, (double)pdf);
+            CHECK(i < n && (double)x * n >= i && (double)x * n < (double)i + 1, "%u cells, u %a: x %a in cell %u", (unsigned)n,
+                  (double)u, (double)x, (unsigned)i);
+            CHECK(!good || kind == PWL || pdf == at, "u %a: pdf %a, %a at x", (double)u, (double)pdf, (double)at);
+            u = z & 4 ? st_hostile(z >> 3) : x;
+            back = kind == PWL ? mcs_pwl_invert(pwl, u) : mcs_pwc_invert(pwc, u);
+            CHECK(proper(t, kind == PWL ? mcs_pwl_pdf(pwl, u) : mcs_pwc_pdf(pwc, u)), "pdf at %a", (double)u);
+        }
+        CHECK(below_one(t, x) && below_one(t, back), "%u cells: x or rest %a, invert %a", (unsigned)n, (double)x, (double)back);
+        if (!good) CHECK(pdf == 0, "u %a is bad, but density %a", (double)u, (double)pdf);
+        else if (f && !uniform) CHECK(kind == PWL ? lit(f, i) || lit(f, i + 1) : lit(f, i), "entry %u is zero, but drawn", (unsigned)i);
+        if (good && kind != PWL) CHECK(pdf > 0, "u %a: density 0 at its own sample", (double)u);
+    }
+    t->evaluations += 400 * 3;
+}
+
+static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
+    const uint32_t entries = n + (kind == PWL);
+    const size_t bytes = table_bytes(kind, n);
+    st_memory source = st_memory_make(entries * sizeof(float)), copy = st_memory_make(source.bytes), m = st_memory_make(bytes);
+    float *f = (float *)(void *)source.at;
+    uint32_t bad, some, i;
+    long double sum;
+    mcs_status e;
+    make_entries(f, entries, state, &bad, &sum, &some);
+    memcpy(copy.at, source.at, source.bytes);
+    e = table_build(kind, &m, bytes - 1, f, n, state);
+    CHECK(e == MCS_ERR_MEMORY && st_untouched(m.at, bytes), "%u entries, a byte too few: %d", (unsigned)n, (int)e);
+    e = table_build(kind, &m, bytes, NULL, n, state);
+    CHECK(e == MCS_ERR_ARG && st_untouched(m.at, bytes), "no entries: %d", (int)e);
+    e = table_build(kind, &m, bytes, f, 0, state);
+    CHECK(e == MCS_ERR_SIZE && st_untouched(m.at, bytes), "0 entries: %d", (int)e);
+    e = table_build(kind, &m, bytes, f, n, state);
+    CHECK(st_intact(&m) && st_intact(&source) && !memcmp(copy.at, source.at, source.bytes), "%u entries: written outside", (unsigned)n);
+    if (kind == FROM_FUNCTION) {
+        CHECK(e == MCS_OK || e == MCS_UNIFORM, "%u entries: status %d", (unsigned)n, (int)e);
+        check_draws(PWC, &m, NULL, n, 1, state, t);
+    } else {
+        const mcs_pwc *head = (const mcs_pwc *)(const void *)m.at;
+        const mcs_alias *alias = (const mcs_alias *)(const void *)m.at;
+        const double total = kind == ALIAS ? alias->total : head->total;
+        const uint32_t counted = kind == ALIAS ? alias->bad : head->bad;
+        /* of vertices the sum over cells of the means; n additions round, each by 2^-53 of the sum */
+        const long double first = lit(f, 0) ? (long double)f[0] : 0, last = lit(f, n) ? (long double)f[n] : 0;
+        const long double want = kind == PWL ? sum - 0.5L * (first + last) : sum;
+        CHECK(e == (some ? MCS_OK : MCS_UNIFORM), "%u entries, %u not zero: status %d", (unsigned)n, (unsigned)some, (int)e);
+        CHECK(counted == bad, "%u bad entries, counted %u", (unsigned)bad, (unsigned)counted);
+        CHECK(fabsl((long double)total - want) <= (long double)n * 0x1p-53L * want, "total %g, sum %Lg", total, want);
+        check_draws(kind, &m, f, n, e == MCS_UNIFORM, state, t);
+        if (kind == DISCRETE || kind == ALIAS) {
+            double all = 0;
+            for (i = 0; i < n; i++) {
+                const float q = kind == ALIAS ? mcs_alias_pmf(alias, i) : mcs_discrete_pmf(head, i);
+                CHECK((q > 0) == (e == MCS_UNIFORM || lit(f, i)), "entry %u of %u, weight %a: probability %a", (unsigned)i,
+                      (unsigned)n, (double)f[i], (double)q);
+                all += (double)q;
+            }
+            t->evaluations += n;
+            CHECK(fabs(all - 1) <= 0x1p-24, "probabilities add up to 1 + %g", all - 1); /* each rounded to 24 digits */
+        } else { /* arrays with exactly n places; in place */
+            const size_t count = mcst_mix(state) % 70;
+            st_memory u = st_memory_make(count * sizeof(float)), x = st_memory_make(u.bytes), pdf = st_memory_make(u.bytes);
+            float *in = (float *)(void *)u.at, *ox = (float *)(void *)x.at, *op = (float *)(void *)pdf.at;
+            for (i = 0; i < count; i++) in[i] = i & 3 ? (float)(mcst_mix(state) >> 40) * 0x1p-24f : st_hostile(mcst_mix(state));
+            if (kind == PWL) mcs_pwl_sample_n((const mcs_pwl *)(const void *)m.at, count, in, ox, op);
+            else mcs_pwc_sample_n(head, count, in, ox, op);
+            for (i = 0; i < count; i++) CHECK(below_one(t, ox[i]) && proper(t, op[i]), "u %a: %a %a", (double)in[i], (double)ox[i], (double)op[i]);
+            if (kind == PWL) mcs_pwl_sample_n((const mcs_pwl *)(const void *)m.at, count, in, in, NULL);
+            else mcs_pwc_sample_n(head, count, in, in, NULL);
+            CHECK(!memcmp(u.at, x.at, u.bytes), "in place is different");
+            CHECK(st_intact(&u) && st_intact(&x) && st_intact(&pdf), "arrays of %u: written outside", (unsigned)count);
+            t->evaluations += (double)count * 2;
+            st_memory_free(&u), st_memory_free(&x), st_memory_free(&pdf);
+        }
+    }
+    CHECK(st_intact(&m) && st_intact(&source), "%u entries: written outside while drawing", (unsigned)n);
+    st_memory_free(&source), st_memory_free(&copy), st_memory_free(&m);
+}
+
+int main(int argc, char **argv) {
+    const double scale = mcst_scale();
+    const long rounds = (long)fmax(1000, 1.5e6 * scale), calls = (long)fmax(20, 1e4 * scale), tables = (long)fmax(20, 2000 * scale);
+    tally t;
+    uint64_t state;
+    size_t i;
+    long k;
+    int kind;
+    mcst_start(argc, argv);
+    if (!mcst.list) print_head();
+    for (i = 0; i < MCST_NROWS; i++) {
+        const mcst_row *row = &mcst_rows[i];
+        memset(&t, 0, sizeof t);
+        mcst_group(row->name);
+        if (mcst_case("eight lanes")) check_lanes(row, &wide[i], mcst_seed_for(row->name, "lanes", 0), rounds, &t);
+        if (mcst_case("arrays")) check_arrays(row, mcst_seed_for(row->name, "arrays", 0), calls, &t);
+        mcst_close_case();
+        if (t.evaluations > 0) print_tally(row->name, &t);
+    }
+    memset(&t, 0, sizeof t);
+    mcst_group("vectors");
+    if (mcst_case("frame, reflection, Fresnel, MIS, GGX terms")) {
+        check_vectors(mcst_seed_for("vectors", "lanes", 0), rounds, &t);
+        print_tally("vectors", &t);
+    }
+    memset(&t, 0, sizeof t);
+    mcst_group("numbers");
+    if (mcst_case("random numbers and points")) {
+        check_numbers(mcst_seed_for("numbers", "", 0), 2 * rounds, &t);
+        print_tally("numbers", &t);
+    }
+    mcst_group("tables");
+    for (kind = 0; kind < KINDS; kind++) {
+        memset(&t, 0, sizeof t);
+        if (!mcst_case("%s", kind_name[kind])) continue;
+        state = mcst_seed_for("tables", kind_name[kind], 0);
+        for (k = 0; k < tables; k++) {
+            const uint64_t z = mcst_mix(&state);
+            check_table(kind, k < 40 ? (uint32_t)k + 1 : 1 + (uint32_t)(z >> 40) % (z % 50 ? 5000 : 200000), &state, &t);
+        }
+        mcst_close_case();
+        print_tally(kind_name[kind], &t);
+    }
+    if (!mcst.list) printf("%.3g evaluations\n", all_evaluations);
+    return mcst_finish();
+}

@@ -1,0 +1,465 @@
+/* Same bits everywhere: one hash per public function over 2432 deterministic inputs, good, extreme and bad, against tests/bits.txt.
+ * Scalar, 4, 8, 16 wide and array forms must all give it, whatever the machine, its byte order, the compiler and its optimisation.
+ *
+ * The functions are those of the header's index: a new one without an adapter (registry.h or bits.h) or without a line in bits.txt
+ * fails by name. Where results change on purpose:   build/tests/test_bits --print > tests/bits.txt
+ *
+ * As CUDA (nvcc -x cu --fmad=false) the same file evaluates every scalar function in kernels too, where a GPU is present.
+ * The terms of the promise are no contraction of a*b + c and floats evaluated as floats; any other build skips, and says so. */
+#include "mcsample.h"
+#ifndef MCS_NO_WIDE
+#define MCST_WIDE
+#endif
+#ifdef __CUDACC__ /* the adapters of registry.h for kernels too, and of what it includes nothing */
+#include "mcs_test.h"
+#include "oracle.h"
+#include "stats.h"
+#define inline __host__ __device__ inline
+#include "registry.h"
+#undef inline
+#else
+#include "registry.h"
+#endif
+
+#ifndef MCS_HEADER
+#define MCS_HEADER "mcsample.h" /* their paths from where the test is run */
+#endif
+#ifndef MCST_BITS
+#define MCST_BITS "tests/bits.txt"
+#endif
+#ifdef __CUDACC__
+#define BITS_HD __host__ __device__
+#else
+#define BITS_HD
+#endif
+
+/* --- the hash: FNV-1a, 64 bits, over the bit patterns, low byte first ---------------------------------------------------------- */
+
+#define BITS_START 0xcbf29ce484222325u
+BITS_HD static uint64_t bits_hash(uint64_t hash, const float *a, size_t n) {
+    size_t i;
+    int k;
+    for (i = 0; i < n; i++) {
+        uint32_t word;
+        memcpy(&word, &a[i], sizeof word);
+        for (k = 0; k < 32; k += 8) hash = (hash ^ (word >> k & 255)) * 0x100000001B3u;
+    }
+    return hash;
+}
+
+/* --- inputs: BLOCKS parameter sets with BLOCK cases each, so that an array form has two vectors of 8 and a rest ------------------ */
+
+enum { BLOCK = 19, BLOCKS = 128, CASES = BLOCK * BLOCKS, BITS_IN = 14, BITS_OUT = 10, P = 0, WO = 3, U = 6, X = 8, WORDS = 11 };
+static float given[CASES][BITS_IN], result[CASES][BITS_OUT];
+
+static float from_bits(uint32_t bits) {
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* Mostly in 2^-7 ... 2, a quarter in 2^-24 ... 2^31, some over all floats, some special. */
+static float any_parameter(uint64_t *state) {
+    static const float special[16] = {0,    -0.0f, 1e-7f, 1e4f,    1e9f,     FLT_MAX,  FLT_MIN, 0x1p-149f,
+                                      1e-6f, -1,    1,     INFINITY, -INFINITY, 0x1p-130f, 0.5f,    2};
+    const uint64_t z = mcst_mix(state);
+    const uint32_t mantissa = (uint32_t)(z >> 41), e = (uint32_t)(z >> 8 & 0xFFFF);
+    switch (z & 31) {
+        case 0: return from_bits(0x7fc00000); /* NaN */
+        case 1: return special[e % 16];
+        case 2: return from_bits((e % 254 + 1) << 23 | mantissa);
+        default: return from_bits((z & 3 ? 120 + e % 8 : 103 + e % 55) << 23 | mantissa);
+    }
+}
+
+static float any_u(uint64_t *state) {
+    static const float edge[16] = {0, -0.0f, 0x1p-149f, 0x1p-126f, 0x1p-24f, 0.25f, 0.5f, 0.75f, 1 - 0x1p-24f, 1, -1, 2, INFINITY, -1e30f, 0x1p-25f, 0.125f};
+    const uint64_t z = mcst_mix(state);
+    if (z % 8) return (float)(int32_t)(z >> 40) * 0x1p-24f;
+    return z >> 8 & 31 ? edge[z >> 16 & 15] : from_bits(0x7fc00000);
+}
+
+/* A unit vector from the pole to the horizon, now and then below it or bad. Only + - * / and sqrt, which no machine rounds differently. */
+static void any_direction(uint64_t *state, float w[3]) {
+    static const double cosines[8] = {1, 0.7, 0.35, 0.0871557, 1e-2, 1e-3, 1e-6, 1e-7};
+    const uint64_t z = mcst_mix(state);
+    const double t = (double)(int32_t)(z >> 40) * 0x1p-23 - 1, c = z & 1 ? cosines[z >> 1 & 7] : (double)(int32_t)(z >> 16 & 0xFFFFFF) * 0x1p-24;
+    const double s = sqrt((1 - c) * (1 + c)), up = z >> 4 & 7 ? 1 : -1, turn = z >> 7 & 1 ? 1 : -1;
+    w[0] = (float)(turn * s * (1 - t * t) / (1 + t * t)), w[1] = (float)(s * 2 * t / (1 + t * t)), w[2] = (float)(up * c);
+    if (z >> 8 & 15) return;
+    switch (z >> 12 & 3) {
+        case 0: w[z % 3] = any_parameter(state); break;
+        case 1: w[0] = w[1] = w[2] = 0; break;
+        case 2: w[0] = from_bits(0x7fc00000); break;
+        default: w[0] *= 1e30f, w[1] *= 1e30f, w[2] *= 1e30f;
+    }
+}
+
+/* Fills `given`; the points of a row are mostly its own samples. */
+static void make_inputs(const mcst_row *row) {
+    uint64_t state = 6;
+    int b, i, k;
+    for (b = 0; b < BLOCKS; b++) {
+        float set[U] = {0};
+        set[0] = any_parameter(&state), set[1] = b % 2 ? set[0] : any_parameter(&state);
+        if (b % 8 == 7) set[0] = -set[0];
+        any_direction(&state, set + WO);
+        for (i = b * BLOCK; i < (b + 1) * BLOCK; i++) {
+            float drawn[5] = {0};
+            const float v[2] = {any_u(&state), any_u(&state)};
+            memcpy(given[i], set, sizeof set);
+            given[i][U] = any_u(&state), given[i][U + 1] = any_u(&state);
+            any_direction(&state, given[i] + X);
+            if (row && i % 4) {
+                row->fn[0].sample(given[i], &v[0], &v[1], drawn);
+                memcpy(given[i] + X, drawn, 3 * sizeof(float));
+            }
+            for (k = WORDS; k < BITS_IN; k++) given[i][k] = 0;
+            for (k = WORDS; k < BITS_IN; k++) {
+                const uint32_t word = (uint32_t)(mcst_mix(&state) >> 32);
+                memcpy(&given[i][k], &word, sizeof word);
+            }
+        }
+    }
+}
+
+/* --- evaluation ------------------------------------------------------------------------------------------------------------- */
+
+#define BITS_W 1
+#define F_ float
+#define U_ uint32_t
+#define M_(x) mcs_##x
+#define B_(x) bits1_##x
+#include "bits.h"
+#ifdef MCST_WIDE
+#define BITS_W 4
+#define F_ mcs4_f
+#define U_ mcs4_u
+#define M_(x) mcs4_##x
+#define B_(x) bits4_##x
+#include "bits.h"
+#define BITS_W 8
+#define F_ mcs8_f
+#define U_ mcs8_u
+#define M_(x) mcs8_##x
+#define B_(x) bits8_##x
+#include "bits.h"
+#define BITS_W 16
+#define F_ mcs16_f
+#define U_ mcs16_u
+#define M_(x) mcs16_##x
+#define B_(x) bits16_##x
+#include "bits.h"
+#define FOUR(x) {bits1_##x, bits4_##x, bits8_##x, bits16_##x}
+#else
+#define FOUR(x) {bits1_##x, NULL, NULL, NULL}
+#endif
+
+/* A function of the index: a row and which of its functions, or one of bits.h. */
+enum { SAMPLE, PDF, INVERT, EVAL, WEIGHT, SAMPLE_N, PDF_N, EVAL_N, FORMS, OTHER = FORMS };
+static const char *const suffix[FORMS] = {"sample", "pdf", "invert", "eval", "weight", "sample_n", "pdf_n", "eval_n"};
+static const struct {
+    const char *name;
+    void (*fn[4])(const float *in, float *out);
+    int floats; /* all results are floats, and finite ones */
+} others[] = {
+#define LISTED(x) {"mcs_" #x, FOUR(x), 1},
+#define LISTED_WORD(x) {"mcs_" #x, FOUR(x), 0},
+#define LISTED_ONCE(x) {"mcs_" #x, {bits1_##x, NULL, NULL, NULL}, 0},
+    BITS_WIDE(LISTED) BITS_WORDS(LISTED_WORD) BITS_SCALAR(LISTED_ONCE)};
+
+typedef struct {
+    int form, at; /* at: in mcst_rows, or in others */
+} target;
+
+static void call(target t, int w, int lanes, const float *in, float *out) {
+    const mcst_fns *f = &mcst_rows[t.form == OTHER ? 0 : t.at].fn[w];
+    switch (t.form) {
+        case SAMPLE: f->sample(in, in + U * lanes, in + (U + 1) * lanes, out); break;
+        case PDF: f->pdf(in, in + X * lanes, out); break;
+        case INVERT: f->invert(in, in + X * lanes, out); break;
+        case EVAL: f->eval(in, in + X * lanes, out); break;
+        case WEIGHT: f->weight(in, in + X * lanes, out); break;
+        default: others[t.at].fn[w](in, out);
+    }
+}
+
+/* Fills `result` at width w; neighbouring lanes get cases of different parameter sets. */
+static void evaluate(target t, int w) {
+    const int lanes = w ? 2 << w : 1;
+    int i, k, l;
+    for (i = 0; i < CASES; i += lanes) {
+        float in[BITS_IN * 16], out[BITS_OUT * 16] = {0};
+        for (l = 0; l < lanes; l++)
+            for (k = 0; k < BITS_IN; k++) memcpy(&in[k * lanes + l], &given[(i + l) * 1009 % CASES][k], sizeof *in);
+        call(t, w, lanes, in, out);
+        for (l = 0; l < lanes; l++)
+            for (k = 0; k < BITS_OUT; k++) memcpy(&result[(i + l) * 1009 % CASES][k], &out[k * lanes + l], sizeof *out);
+    }
+}
+
+static void evaluate_arrays(target t) {
+    const mcst_row *row = &mcst_rows[t.at];
+    int b, i, k;
+    memset(result, 0, sizeof result);
+    for (b = 0; b < BLOCKS; b++) {
+        float in[BITS_IN][BLOCK], out[5][BLOCK] = {{0}};
+        float *const to[5] = {out[0], out[1], out[2], out[3], out[4]};
+        const float *p = given[b * BLOCK];
+        for (i = 0; i < BLOCK; i++)
+            for (k = U; k < WORDS; k++) in[k][i] = given[b * BLOCK + i][k];
+        if (t.form == SAMPLE_N) row->sample_n(p, BLOCK, in[U], in[U + 1], to);
+        else (t.form == PDF_N ? row->pdf_n : row->eval_n)(p, BLOCK, in[X], in[X + 1], in[X + 2], out[0]);
+        for (i = 0; i < BLOCK; i++)
+            for (k = 0; k < 5; k++) result[b * BLOCK + i][k] = out[k][i];
+    }
+}
+
+/* --- the same on a GPU ------------------------------------------------------------------------------------------------------ */
+
+#ifdef __CUDACC__
+namespace gpu {
+typedef void (*kernel)(const float *in, float *out);
+__device__ int here() { return (int)(blockIdx.x * blockDim.x + threadIdx.x); }
+template <void (*F)(const float *, const float *, const float *, float *)> __global__ void sample(const float *in, float *out) {
+    const int i = here();
+    if (i < CASES) F(in + i * BITS_IN, in + i * BITS_IN + U, in + i * BITS_IN + U + 1, out + i * BITS_OUT);
+}
+template <void (*F)(const float *, const float *, float *)> __global__ void value(const float *in, float *out) {
+    const int i = here();
+    if (i < CASES) F(in + i * BITS_IN, in + i * BITS_IN + X, out + i * BITS_OUT);
+}
+template <void (*F)(const float *, float *)> __global__ void other(const float *in, float *out) {
+    const int i = here();
+    if (i < CASES) F(in + i * BITS_IN, out + i * BITS_OUT);
+}
+#define GPU_LINE(r) {sample<mcst1_##r##_sample>, value<mcst1_##r##_pdf>, value<mcst1_##r##_invert>, NULL, NULL},
+#define GPU_PLANE GPU_LINE
+#define GPU_DIR GPU_LINE
+#define GPU_LOBE GPU_LINE
+#define GPU_VLOBE GPU_LINE
+#define GPU_BRDF(r) {sample<mcst1_##r##_sample>, value<mcst1_##r##_pdf>, NULL, value<mcst1_##r##_eval>, value<mcst1_##r##_weight>},
+#define GPU_ROW(shape, row, fn, arg, base, coord, grid) GPU_##shape(row)
+static const kernel rows[][SAMPLE_N] = {MCST_ROWS(GPU_ROW)};
+#define GPU_OTHER(x) other<bits1_##x>,
+static const kernel rest[] = {BITS_WIDE(GPU_OTHER) BITS_WORDS(GPU_OTHER) BITS_SCALAR(GPU_OTHER)};
+
+static int present() {
+    int count = 0;
+    return cudaGetDeviceCount(&count) == cudaSuccess && count > 0;
+}
+static const char *evaluate(target t) {
+    float *in = NULL, *out = NULL;
+    cudaError_t e = cudaMalloc(&in, sizeof given);
+    if (e == cudaSuccess) e = cudaMalloc(&out, sizeof result);
+    if (e == cudaSuccess) e = cudaMemcpy(in, given, sizeof given, cudaMemcpyHostToDevice);
+    if (e == cudaSuccess) e = cudaMemset(out, 0, sizeof result);
+    if (e == cudaSuccess) (t.form == OTHER ? rest[t.at] : rows[t.at][t.form])<<<(CASES + 63) / 64, 64>>>(in, out);
+    if (e == cudaSuccess) e = cudaGetLastError();
+    if (e == cudaSuccess) e = cudaMemcpy(result, out, sizeof result, cudaMemcpyDeviceToHost);
+    cudaFree(in), cudaFree(out);
+    return e == cudaSuccess ? NULL : cudaGetErrorString(e);
+}
+} // namespace gpu
+#endif
+
+/* --- names ------------------------------------------------------------------------------------------------------------------ */
+
+/* What test_env.c still has to itself. */
+static const char *const exempt[] = {"mcs_env_"};
+
+enum { NAMES = 512 };
+static char header[1 << 20];
+static char names[NAMES][48], stored_name[NAMES][48];
+static uint64_t stored[NAMES];
+static int name_count, stored_count;
+
+static int is_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
+
+static int is_type(const char *name) {
+    char text[64];
+    snprintf(text, sizeof text, "} %s;", name);
+    if (strstr(header, text)) return 1;
+    snprintf(text, sizeof text, "} MCS_(%s);", name + 4);
+    return strstr(header, text) != NULL;
+}
+
+static int is_exempt(const char *name) {
+    size_t i;
+    for (i = 0; i < MCST_COUNT(exempt); i++)
+        if (!strncmp(name, exempt[i], strlen(exempt[i]))) return 1;
+    return 0;
+}
+
+/* The functions of the index; its first block, up to a tag, is types. */
+static void read_index(void) {
+    FILE *f = fopen(MCS_HEADER, "rb");
+    const char *at, *end;
+    if (f) {
+        header[fread(header, 1, sizeof header - 1, f)] = 0;
+        fclose(f);
+    }
+    at = strstr(header, "/* INDEX"), end = strstr(header, "END OF INDEX");
+    for (at = at ? strstr(at, "[rng]") : NULL; at && end && (at = strstr(at, "mcs_")) != NULL && at < end;) {
+        size_t length = 0;
+        while (is_word(at[length])) length++;
+        if (!is_word(at[-1]) && length < sizeof names[0] && name_count < NAMES) {
+            memcpy(names[name_count], at, length);
+            names[name_count][length] = 0;
+            if (!is_type(names[name_count]) && !is_exempt(names[name_count])) name_count++;
+        }
+        at += length;
+    }
+}
+
+static void read_stored(void) {
+    FILE *f = fopen(MCST_BITS, "rb");
+    unsigned hi, lo;
+    if (!f) return;
+    while (stored_count < NAMES && fscanf(f, "%47s %8x%8x", stored_name[stored_count], &hi, &lo) == 3)
+        stored[stored_count++] = (uint64_t)hi << 32 | lo;
+    fclose(f);
+}
+
+static int find(const char *name, char (*list)[48], int count) {
+    int i;
+    for (i = 0; i < count && strcmp(list[i], name) != 0; i++) continue;
+    return i < count ? i : -1;
+}
+
+/* The first target of a name; at = -1: none. */
+static target find_target(const char *name) {
+    target t = {OTHER, -1};
+    size_t i;
+    for (i = 0; i < MCST_COUNT(others); i++)
+        if (!strcmp(name, others[i].name)) {
+            t.at = (int)i;
+            return t;
+        }
+    for (i = 0; i < MCST_NROWS; i++)
+        for (t.form = 0; t.form < FORMS; t.form++) {
+            char text[64];
+            snprintf(text, sizeof text, "mcs_%s_%s", mcst_rows[i].function, suffix[t.form]);
+            if (strcmp(name, text) != 0) continue;
+            t.at = (int)i;
+            return t;
+        }
+    return t;
+}
+
+/* The next row of the same function: Ward's three models. */
+static int next_row(target *t) {
+    const char *function = t->form == OTHER ? NULL : mcst_rows[t->at].function;
+    while (function && ++t->at < MCST_NROWS)
+        if (!strcmp(mcst_rows[t->at].function, function)) return 1;
+    return 0;
+}
+
+/* The ways to evaluate: width indices 0..3, then */
+enum { ARRAYS = 4, GPU, WAYS };
+static const char *const way_name[WAYS] = {"scalar", "4 wide", "8 wide", "16 wide", "arrays", "GPU"};
+
+static int has_way(target t, int way) {
+    const int arrays = t.form >= SAMPLE_N && t.form < FORMS;
+    if (way == ARRAYS) return arrays;
+#ifdef __CUDACC__
+    if (way == GPU) return !arrays && gpu::present();
+#endif
+    if (arrays || way > ARRAYS) return 0;
+    return t.form == OTHER ? others[t.at].fn[way] != NULL : mcst_rows[t.at].fn[way].sample != NULL;
+}
+
+static uint64_t hash_of(target t, int way) {
+    uint64_t hash = BITS_START;
+    do {
+        const float *r = result[0];
+        int i;
+        make_inputs(t.form == OTHER ? NULL : &mcst_rows[t.at]);
+        if (way < ARRAYS) evaluate(t, way);
+        else if (way == ARRAYS) evaluate_arrays(t);
+#ifdef __CUDACC__
+        else {
+            const char *error = gpu::evaluate(t);
+            CHECK(!error, "%s", error);
+        }
+#endif
+        if (t.form != OTHER || others[t.at].floats)
+            for (i = 0; i < CASES * BITS_OUT; i++)
+                CHECK(r[i] - r[i] == 0, "%s: result %d of case %d is %g", way_name[way], i % BITS_OUT, i / BITS_OUT, (double)r[i]);
+        hash = bits_hash(hash, r, CASES * BITS_OUT);
+    } while (next_row(&t));
+    return hash;
+}
+
+static void check(const char *name, int promised) {
+    const target t = find_target(name);
+    const int line = find(name, stored_name, stored_count);
+    int way;
+    CHECK(t.at >= 0, "%s has no row in registry.h and no adapter in bits.h", name);
+    CHECK(line >= 0, "%s has no hash in %s", name, MCST_BITS);
+    for (way = 0; promised && t.at >= 0 && line >= 0 && way < WAYS; way++)
+        if (has_way(t, way)) {
+            const uint64_t got = hash_of(t, way);
+            CHECK(got == stored[line], "%s: %08x%08x, stored %08x%08x", way_name[way], (unsigned)(got >> 32), (unsigned)got,
+                  (unsigned)(stored[line] >> 32), (unsigned)stored[line]);
+        }
+}
+
+static void print(void) {
+    int i;
+    for (i = 0; i < name_count; i++) {
+        const target t = find_target(names[i]);
+        if (t.at >= 0) {
+            const uint64_t hash = hash_of(t, t.form >= SAMPLE_N && t.form < FORMS ? ARRAYS : 0);
+            printf("%s %08x%08x\n", names[i], (unsigned)(hash >> 32), (unsigned)hash);
+        }
+    }
+}
+
+/* The array forms may contract where nothing else does, by the units they pick at run time. */
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__CUDACC__)
+__attribute__((target("avx2,fma"))) static int arrays_contract(void) {
+    volatile float v[3] = {1 + 0x1p-12f, 1 + 0x1p-12f, 0};
+    float a, b, c;
+    v[2] = -(v[0] * v[1]);
+    a = v[0], b = v[1], c = v[2];
+    return a * b + c != 0;
+}
+static int contracts(void) { return mcst_contracts() || (__builtin_cpu_supports("fma") && arrays_contract()); }
+#else
+static int contracts(void) { return mcst_contracts(); }
+#endif
+
+int main(int argc, char **argv) {
+    const char *reason = FLT_EVAL_METHOD > 0 ? "floats are not evaluated as floats" : contracts() ? "a*b + c is contracted" : NULL;
+    int i;
+    read_index();
+    read_stored();
+    if (argc == 2 && !strcmp(argv[1], "--print")) {
+        print();
+        return 0;
+    }
+    mcst_start(argc, argv);
+    if (!mcst.list) {
+        if (reason) printf("SKIPPED: %s in this build, so no hash is compared\n", reason);
+        for (i = 0; i < (int)MCST_COUNT(exempt); i++) printf("SKIPPED: %s*, not among the hashes\n", exempt[i]);
+#ifdef MCS_NO_WIDE
+        puts("SKIPPED: 4, 8 and 16 wide, which this compiler does not have");
+#endif
+#ifdef __CUDACC__
+        if (!gpu::present()) puts("SKIPPED: kernels compiled, but there is no GPU to run them");
+#endif
+    }
+    mcst_group("bits");
+    if (mcst_case("the index, the adapters and %s agree", MCST_BITS)) {
+        CHECK(name_count > 100, "%d functions in the index of %s; run the test where it is, or compile with -DMCS_HEADER", name_count, MCS_HEADER);
+        CHECK(stored_count == name_count, "%d hashes for %d functions", stored_count, name_count);
+        for (i = 0; i < stored_count; i++)
+            CHECK(find(stored_name[i], names, name_count) >= 0, "%s is stored, but not in the index", stored_name[i]);
+        for (i = 0; i < (int)MCST_COUNT(others); i++)
+            CHECK(find(others[i].name, names, name_count) >= 0, "%s has an adapter, but is not in the index", others[i].name);
+    }
+    for (i = 0; i < name_count; i++)
+        if (mcst_case("%s", names[i])) check(names[i], reason == NULL);
+    return mcst_finish();
+}
