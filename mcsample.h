@@ -147,6 +147,10 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
+#define MCSI_SUMS_MAY_MOVE /* (x + y) - y may become x */
+#endif
+
 #if defined(__has_builtin)
 #if __has_builtin(__builtin_elementwise_sqrt)
 #define MCSI_ELEMENTWISE_SQRT
@@ -172,7 +176,7 @@ MCS_FN float mcsi_sqrt(float x) {
 #if defined(MCSI_ELEMENTWISE_SQRT)
     return __builtin_elementwise_sqrt(x);
 #elif defined(MCSI_X86)
-    mcsi_x86_f v = {x, 0.0f, 0.0f, 0.0f};
+    mcsi_x86_f v = {x, x, x, x}; /* one shuffle; with zeros gcc goes through an integer register and back */
     v = __builtin_ia32_sqrtss(v);
     return v[0];
 #else
@@ -182,7 +186,7 @@ MCS_FN float mcsi_sqrt(float x) {
 
 MCS_FN double mcsi_sqrt_d(double x) {
 #if defined(MCSI_X86)
-    mcsi_x86_d v = {x, 0.0};
+    mcsi_x86_d v = {x, x};
     v = __builtin_ia32_sqrtsd(v);
     return v[0];
 #else
@@ -493,6 +497,9 @@ MCSI_CORE float mcsi_to_float(int32_t i) { return (float)i; }
 #define MCSI_LANE(x, k) (*(&(x) + (k)))
 #define MCSI_WIDEN(x) ((double)(x))
 #define MCSI_NARROW(x) ((float)(x))
+#define MCSI_INT_WIDEN(i) ((double)(i))
+#define MCSI_TRUNC_D(x) ((int32_t)(x))
+#define MCSI_MAX_D(x, y) ((x) > (y) ? (x) : (y))
 MCSI_CORE float mcsi_sel(int32_t m, float a, float b) { return m ? a : b; }
 MCSI_CORE float mcsi_max(float a, float b) { return a > b ? a : b; }
 MCSI_CORE float mcsi_min(float a, float b) { return a < b ? a : b; }
@@ -512,6 +519,9 @@ MCSI_CORE MCSI_F MCSI_(to_float)(MCSI_I i) { return __builtin_convertvector(i, M
 #define MCSI_LANE(x, k) ((x)[k])
 #define MCSI_WIDEN(x) __builtin_convertvector(x, MCSI_D) /* to double and back; macros, as no unit passes so wide a vector */
 #define MCSI_NARROW(x) __builtin_convertvector(x, MCSI_F)
+#define MCSI_INT_WIDEN(i) __builtin_convertvector(i, MCSI_D)
+#define MCSI_TRUNC_D(x) MCSI_(trunc)(MCSI_NARROW(x))
+#define MCSI_MAX_D(x, y) MCSI_WIDEN(MCSI_(max)(MCSI_NARROW(x), MCSI_(set)(y)))
 MCSI_CORE MCSI_F MCSI_(sel)(MCSI_I m, MCSI_F a, MCSI_F b) { return (MCSI_F)(((MCSI_I)a & m) | ((MCSI_I)b & ~m)); }
 #if defined(MCSI_X86) && MCSI_W == 4
 MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps(a, b); }
@@ -559,19 +569,32 @@ MCSI_CORE MCSI_F MCSI_(sqrt)(MCSI_F x) {
 MCSI_CORE MCSI_F MCSI_(blend)(MCSI_I m, MCSI_F a, MCSI_F b) {
     return MCSI_(from_bits)((MCSI_(bits)(a) & m) | (MCSI_(bits)(b) & ~m));
 }
+#if MCSI_W == 1 && defined(__GNUC__) && !defined(__TINYC__)
+MCSI_CORE float mcsi_abs(float x) { return __builtin_fabsf(x); }
+MCSI_CORE float mcsi_with_sign(float magnitude, float sign) { return __builtin_copysignf(magnitude, sign); }
+#else
 MCSI_CORE MCSI_F MCSI_(abs)(MCSI_F x) { return MCSI_(from_bits)(MCSI_(bits)(x) & 0x7fffffff); }
 MCSI_CORE MCSI_F MCSI_(with_sign)(MCSI_F magnitude, MCSI_F sign) {
     return MCSI_(from_bits)((MCSI_(bits)(magnitude) & 0x7fffffff) | (MCSI_(bits)(sign) & (-0x7fffffff - 1)));
 }
+#endif
 /* A random number made safe: its value clamped into [0, 1 - 2^-24], NaN to 0; *ok keeps only lanes that were in [0,1). */
 MCSI_CORE MCSI_F MCSI_(unit)(MCSI_F u, MCSI_I *ok) {
-    MCSI_F v = MCSI_(min)(MCSI_(max)(u, MCSI_(set)(0.0f)), MCSI_(set)(0.99999994f));
+    MCSI_F v;
+#if MCSI_W == 1
+    if (u > 0.0f && u < 1.0f) return u;
+#endif
+    v = MCSI_(min)(MCSI_(max)(u, MCSI_(set)(0.0f)), MCSI_(set)(0.99999994f));
     *ok = *ok & (v == u);
     return v;
 }
 /* A density or weight made safe: x where ok and x > 0 (so not NaN), at most FLT_MAX, else 0. */
 MCSI_CORE MCSI_F MCSI_(keep)(MCSI_I ok, MCSI_F x) {
+#if MCSI_W == 1
+    return ok && x > 0.0f ? mcsi_min(x, FLT_MAX) : 0.0f;
+#else
     return MCSI_(sel)(ok & (x > 0.0f), MCSI_(min)(x, MCSI_(set)(FLT_MAX)), MCSI_(set)(0.0f));
+#endif
 }
 /* A parameter made safe: x within [lo, hi] where x > 0 or x >= 0 holds as `ok` says, else `lo`. */
 MCSI_CORE MCSI_F MCSI_(within)(MCSI_I ok, MCSI_F x, float lo, float hi) {
@@ -586,13 +609,33 @@ MCSI_CORE MCSI_I MCSI_(always)(void) { return MCSI_(set)(0.0f) == MCSI_(set)(0.0
  * Errors in ulp are the largest found in dense sweeps of the whole range (tests/test_math.c). */
 
 /* clang-format off */
+/* x to the nearest multiple of step, ties to even, and *k, which multiple; |x| < 2^22 step. `big` is 1.5 * 2^23 step: the sum has room
+ * for nothing below step. Where compilers may take the difference for x itself it goes through *k. */
+MCSI_CORE MCSI_F MCSI_(to_grid)(MCSI_F x, float step, float big, MCSI_I *k) {
+    MCSI_F sum = x + big;
+    *k = MCSI_(bits)(sum) - MCSI_(bits)(MCSI_(set)(big));
+#if defined(MCSI_SUMS_MAY_MOVE) || FLT_EVAL_METHOD != 0
+    return step * MCSI_(to_float)(*k);
+#else
+    (void)step;
+    return sum - big;
+#endif
+}
+
+/* The same for doubles of either sign, and for those in [-151, 0] where the difference might be taken for x. */
+#if defined(MCSI_SUMS_MAY_MOVE) || FLT_EVAL_METHOD == 2
+#define MCSI_ROUND_D(x) MCSI_INT_WIDEN(MCSI_TRUNC_D(MCSI_MAX_D(x, -151.0) - 0.5))
+#else
+#define MCSI_ROUND_D(x) (((x) + 6755399441055744.0) - 6755399441055744.0)
+#endif
 /* (sin, cos)(2 pi t), t in [-1/8, 1]. The reduction to an eighth of a turn is exact. 1.4 ulp. *behind is set within an eighth of a
  * turn from half a turn, where *one_plus is 1 + cos without its cancellation. */
 MCSI_CORE void MCSI_(sincos_behind)(MCSI_F t, MCSI_F *sine, MCSI_F *cosine, MCSI_I *behind, MCSI_F *one_plus) {
-    MCSI_I k = MCSI_(trunc)(4.0f * t + 0.5f), swap = -(k & 1);
-    MCSI_F r = t - 0.25f * MCSI_(to_float)(k), z = r * r, zz = z * z;
+    MCSI_I k, swap;
+    MCSI_F r = t - MCSI_(to_grid)(t, 0.25f, 3145728.0f, &k), z = r * r, zz = z * z;
     MCSI_F s = r * (6.28318548f + ((-1.95191802e-07f + z * -41.3416634f) + zz * (81.5926895f + z * -75.4075546f)));
     MCSI_F less = z * ((-19.7392082f + z * 64.9391479f) + zz * (-85.4245148f + z * 58.6202126f)), c = 1.0f + less;
+    swap = -(k & 1);
     *sine = MCSI_(from_bits)(MCSI_(bits)(MCSI_(blend)(swap, c, s)) ^ (MCSI_I)((MCSI_U)(k & 2) << 30));
     *cosine = MCSI_(from_bits)(MCSI_(bits)(MCSI_(blend)(swap, s, c)) ^ (MCSI_I)((MCSI_U)((k + 1) & 2) << 30));
     *behind = k == 2, *one_plus = -less;
@@ -617,12 +660,12 @@ MCSI_CORE MCSI_F MCSI_(atan2_turns)(MCSI_F y, MCSI_F x) {
 
 /* ln(w + c) for w in [FLT_MIN, 1e38] and a correction |c| <= ulp(w). 1 ulp. */
 MCSI_CORE MCSI_F MCSI_(log_of_sum)(MCSI_F w, MCSI_F c) {
-    MCSI_I i = MCSI_(bits)(w), k = (i - 0x3f3504f3) >> 23;
-    MCSI_F m = MCSI_(from_bits)(i - (MCSI_I)((MCSI_U)k << 23)), e = MCSI_(to_float)(k);
-    MCSI_F f = (m - 1.0f) + c * MCSI_(from_bits)((127 - k) << 23), ff = f * f;
+    MCSI_I i = MCSI_(bits)(w), k = (i - 0x3f3504f3) & (-0x7fffffff - 1 + 0x7f800000); /* the exponent in its place: 2^23 of it */
+    MCSI_F m = MCSI_(from_bits)(i - k), e = MCSI_(to_float)(k);
+    MCSI_F f = (m - 1.0f) + c * MCSI_(from_bits)(0x3f800000 - k), ff = f * f;
     MCSI_F p = ((0.333333313f + f * -0.250008196f) + ff * (0.200012416f + f * -0.166234091f)) +
                ff * ff * ((0.142015815f + f * -0.131596133f) + ff * (0.127621993f + f * -0.0763639957f));
-    return e * 0.693145752f + (f + (e * 1.42860677e-06f + (f * ff * p - 0.5f * ff)));
+    return e * (0.693145752f / 8388608) + (f + (f * ff * p + (e * (1.42860677e-06f / 8388608) - 0.5f * ff)));
 }
 /* ln(x), normal x > 0. */
 MCSI_CORE MCSI_F MCSI_(log)(MCSI_F x) { return MCSI_(log_of_sum)(x, MCSI_(set)(0.0f)); }
@@ -631,23 +674,32 @@ MCSI_CORE MCSI_F MCSI_(log1p)(MCSI_F x) {
     MCSI_F w = 1.0f + x;
     return MCSI_(log_of_sum)(w, x - (w - 1.0f));
 }
+/* ln(1 - u), u in [0,1). */
+MCSI_CORE MCSI_F MCSI_(log1m)(MCSI_F u) {
+    MCSI_F w = 1.0f - u;
+    return MCSI_(log_of_sum)(w, (1.0f - w) - u);
+}
 
 /* The reduction of both exponentials, x in [-104, 0]: returns e^r - 1 for r = x - k ln 2, |r| <= ln(2)/2. */
 MCSI_CORE MCSI_F MCSI_(exp_reduced)(MCSI_F x, MCSI_I *k) {
-    MCSI_F e, r, rr;
-    *k = MCSI_(trunc)(x * 1.44269504f - 0.5f);
-    e = MCSI_(to_float)(*k);
+    MCSI_F e = MCSI_(to_grid)(x * 1.44269504f, 1.0f, 12582912.0f, k), r, rr;
     r = (x - e * 0.693145752f) - e * 1.42860677e-06f;
     rr = r * r;
     return r + rr * ((0.5f + r * 0.166666657f) +
                      rr * ((0.0416664928f + r * 0.00833354425f) + rr * (0.00139323424f + r * 0.00019763397f)));
 }
+/* x 2^k, x in [1/2, 2], k in [-190, 63], rounded once where the result is subnormal; 0 where not some, all bits of it. */
+MCSI_CORE MCSI_F MCSI_(times_2_to)(MCSI_F x, MCSI_I k, MCSI_I some) {
+#if MCSI_W == 1
+    if (k > -125) return x * mcsi_from_bits(((k + 127) << 23) & some);
+#endif
+    return x * MCSI_(from_bits)(((k + 191) << 23) & some) * 5.42101086e-20f;
+}
 /* e^min(x, 0), subnormal results included; NaN gives 0. 1 ulp. */
 MCSI_CORE MCSI_F MCSI_(exp_neg)(MCSI_F x) {
-    MCSI_I k, half;
+    MCSI_I k;
     MCSI_F q = MCSI_(exp_reduced)(MCSI_(min)(MCSI_(max)(x, MCSI_(set)(-104.0f)), MCSI_(set)(0.0f)), &k);
-    half = k >> 1;
-    return (1.0f + q) * MCSI_(from_bits)((half + 127) << 23) * MCSI_(from_bits)((k - half + 127) << 23);
+    return MCSI_(times_2_to)(1.0f + q, k, k | -1);
 }
 /* e^x and e^x - 1, x in [-80, 0]. 1 ulp. */
 MCSI_CORE MCSI_F MCSI_(exp_both)(MCSI_F x, MCSI_F *minus_one) {
@@ -657,30 +709,25 @@ MCSI_CORE MCSI_F MCSI_(exp_both)(MCSI_F x, MCSI_F *minus_one) {
     return (1.0f + q) * scale;
 }
 
-/* x^n, or x^(1/n) where root is set; x in [0,1], n in [0, 1e9 + 1] given as n - plus, plus 0 or 1. In double, so that the product
- * of exponent and logarithm loses nothing. 1 ulp. *over is x over the result, relatively accurate where both are subnormal too. */
+/* x^n, or x^(1/n) where root is set; x in [0,1], n in [0, 1e9 + 1] given as n - plus, plus 0 or 1. By binary logarithm, a series in
+ * (m - 1)/(m + 1), and 2^r = cosh + sinh. In double, so that the product of exponent and logarithm loses nothing. 1 ulp. *over, for
+ * roots, is x over the result, by 2^-r = cosh - sinh, relatively accurate where both are subnormal too. */
 MCSI_CORE MCSI_F MCSI_(pow_unit)(MCSI_F x, MCSI_F n, double plus, int root, MCSI_F *over) {
-    MCSI_I tiny = x < FLT_MIN, i, k, j;
-    MCSI_F v = MCSI_(sel)(tiny, x * 16777216.0f, x), shift = MCSI_(sel)(tiny, MCSI_(set)(24.0f), MCSI_(set)(0.0f));
-    MCSI_F low, q, head, tail;
-    MCSI_D m, s, ss, y, r, e = MCSI_WIDEN(n) + plus;
-    i = MCSI_(bits)(v);
-    k = (i - 0x3f3504f3) >> 23;
-    m = MCSI_WIDEN(MCSI_(from_bits)(i - (MCSI_I)((MCSI_U)k << 23)));
-    s = (m - 1.0) / (m + 1.0), ss = s * s;
-    y = 2.0 * s * (1.0 + ss * (1.0 / 3 + ss * (1.0 / 5 + ss * (1.0 / 7 + ss * (1.0 / 9 + ss * (1.0 / 11))))));
-    y = y + MCSI_WIDEN(MCSI_(to_float)(k) - shift) * 0.69314718055994531;
-    y = root ? y / e : y * e;
-    low = MCSI_NARROW(y);
-    j = MCSI_(trunc)(MCSI_(max)(low, MCSI_(set)(-104.0f)) * 1.44269504f - 0.5f);
-    r = y - MCSI_WIDEN(MCSI_(to_float)(j)) * 0.69314718055994531;
-    q = MCSI_NARROW(1.0 + r * (1.0 + r * (1.0 / 2 + r * (1.0 / 6 + r * (1.0 / 24 + r * (1.0 / 120 +
-                    r * (1.0 / 720 + r * (1.0 / 5040))))))));
-    k = j >> 1;
-    head = MCSI_(from_bits)((k + 127) << 23), tail = MCSI_(from_bits)((j - k + 127) << 23);
-    *over = v / (MCSI_(sel)(tiny, 16777216.0f * q, q) * head * tail);
-    q = q * head * tail;
-    q = MCSI_(sel)((low >= -104.0f) & (x > 0.0f), q, MCSI_(set)(0.0f));
+    MCSI_I i = MCSI_(bits)(x * 16777216.0f), exponent = (i - 0x3f3504f3) & (-0x7fffffff - 1 + 0x7f800000), some = -i >> 31, k, j;
+    MCSI_F head = MCSI_(from_bits)(i - exponent), q;
+    MCSI_D m = MCSI_WIDEN(head), e = MCSI_WIDEN(n) + plus, s = (m - 1.0) / (m + 1.0), z = s * s, y, r, whole, even, odd;
+    k = (exponent >> 23) - 24;
+    y = (MCSI_INT_WIDEN(k) + s * 2.885390081790086) +
+        s * z * ((0.9617966733414772 + z * 0.577083585037472) + z * z * (0.4116727148603131 + z * 0.3407301768542072));
+    y = root ? y * (1.0 / e) : y * e;
+    whole = MCSI_ROUND_D(y);
+    j = MCSI_TRUNC_D(root ? whole : MCSI_MAX_D(whole, -151.0));
+    r = y - whole, z = r * r;
+    even = (1.0 + z * 0.24022651084099645) + z * z * (0.009618030784745157 + z * 0.0001546973134150267);
+    odd = r * ((0.6931471805350843 + z * 0.05550410975949026) + z * z * (0.001333342276368949 + z * 1.531643601070646e-05));
+    q = MCSI_(times_2_to)(MCSI_NARROW(even + odd), j, some);
+    if (root) *over = MCSI_(times_2_to)(head * MCSI_NARROW(even - odd), k - j, some);
+    if (!root) q = MCSI_(sel)(MCSI_NARROW(y) > -151.0f, q, MCSI_(set)(0.0f));
     return plus > 0.0 ? q : MCSI_(sel)(n > 0.0f, q, MCSI_(set)(1.0f));
 }
 
@@ -696,12 +743,18 @@ MCSI_CORE MCSI_F MCSI_(normal_tail)(MCSI_F y) {
 }
 /* The quantile of the normal distribution, p in [2^-126, 1). 6 ulp. */
 MCSI_CORE MCSI_F MCSI_(normal_quantile)(MCSI_F p) {
-    MCSI_F q = p - 0.5f, z = q * q, tail = MCSI_(min)(p, 1.0f - p);
-    MCSI_F t = MCSI_(sqrt)(-2.0f * MCSI_(log)(MCSI_(min)(tail, MCSI_(set)(0.125f)))), v = 1.0f / (1.0f + 0.3f * t), x;
-    MCSI_F centre = q * (2.50662827f + z * (2.62494898f + z * (5.76870966f + z * (16.0235748f + z * (30.976078f + z * (553.157715f +
-                    z * (-5471.3335f + z * (53841.8203f + z * (-247008.5f + z * 567190.25f)))))))));
-    x = t - (0.0152368257f + v * (1.39166832f + v * (-1.32426488f + v * (3.72064948f + v * (-3.61969185f + v * (-1.00470293f +
-             v * (9.96816254f + v * (-12.2509031f + v * 5.70157146f))))))));
+    MCSI_F q = p - 0.5f, z = q * q, zz = z * z, t, v, vv, x;
+    MCSI_F high = (-5471.3335f + z * 53841.8203f) + zz * (-247008.5f + z * 567190.25f);
+    MCSI_F low = (5.76870966f + z * 16.0235748f) + zz * (30.976078f + z * 553.157715f);
+    MCSI_F centre = q * (2.50662827f + (z * 2.62494898f + zz * (low + zz * zz * high)));
+#if MCSI_W == 1
+    if (z <= 0.140625f) return centre;
+#endif
+    t = MCSI_(sqrt)(-2.0f * MCSI_(log)(MCSI_(min)(MCSI_(min)(p, 1.0f - p), MCSI_(set)(0.125f))));
+    v = 1.0f / (1.0f + 0.3f * t), vv = v * v;
+    high = (-3.61969185f + v * -1.00470293f) + vv * (9.96816254f + v * -12.2509031f + vv * 5.70157146f);
+    low = (0.0152368257f + v * 1.39166832f) + vv * (-1.32426488f + v * 3.72064948f);
+    x = t - (low + vv * vv * high);
     return MCSI_(sel)(z <= 0.140625f, centre, MCSI_(with_sign)(x, q));
 }
 
@@ -1033,40 +1086,42 @@ MCSI_CORE MCS_(sample1) MCSI_(sample1)(MCSI_I ok, MCSI_F x, MCSI_F pdf) {
     return s;
 }
 
-/* linear: weights a, b >= 0 scaled to a + b = 1. */
+/* linear: weights a, b >= 0 times a power of two that brings the larger one to 2^60 or, from below 2^-67, as near as it can:
+ * then neither square overflows, and the smaller one underflows only where it is below 2^-123 of the larger. */
 MCSI_CORE MCSI_I MCSI_(linear_ends)(MCSI_F *a, MCSI_F *b) {
-    MCSI_F top = MCSI_(max)(*a, *b), p, q;
+    MCSI_F top = MCSI_(max)(*a, *b), scale;
     MCSI_I ok = (*a >= 0.0f) & (*b >= 0.0f) & (top > 0.0f) & (top <= FLT_MAX);
     MCSI_REQUIRE(ok);
-    top = MCSI_(sel)(ok, top, MCSI_(set)(1.0f));
-    p = MCSI_(sel)(ok, *a, MCSI_(set)(1.0f)) / top, q = MCSI_(sel)(ok, *b, MCSI_(set)(1.0f)) / top;
-    *a = p / (p + q), *b = q / (p + q);
+    scale =
+        MCSI_(from_bits)((MCSI_I)(0x9d000000u - ((MCSI_U)MCSI_(bits)(MCSI_(max)(top, MCSI_(set)(6.77626358e-21f))) & 0x7f800000u)));
+    *a = *a * scale, *b = *b * scale;
     return ok;
 }
-MCSI_FN MCS_(sample1) MCS_(linear_sample)(MCSI_F a, MCSI_F b, MCSI_F u) {
+MCSI_CORE MCS_(sample1) MCS_(linear_sample)(MCSI_F a, MCSI_F b, MCSI_F u) {
     MCSI_I ok = MCSI_(linear_ends)(&a, &b);
     MCSI_F r;
     u = MCSI_(unit)(u, &ok);
     r = MCSI_(sqrt)((1.0f - u) * (a * a) + u * (b * b));
-    return MCSI_(sample1)(ok, MCSI_(min)(u / MCSI_(max)(a + r, MCSI_(set)(FLT_MIN)), MCSI_(set)(1.0f)), 2.0f * r);
+    return MCSI_(sample1)(ok, MCSI_(min)(u * (a + b) / MCSI_(max)(a + r, MCSI_(set)(FLT_MIN)), MCSI_(set)(1.0f)),
+                          r * (2.0f / (a + b)));
 }
 MCSI_FN MCSI_F MCS_(linear_pdf)(MCSI_F a, MCSI_F b, MCSI_F x) {
     MCSI_I ok = MCSI_(linear_ends)(&a, &b);
-    return MCSI_(keep)(ok & (x >= 0.0f) & (x <= 1.0f), 2.0f * ((1.0f - x) * a + x * b));
+    return MCSI_(keep)(ok & (x >= 0.0f) & (x <= 1.0f), 2.0f * (((1.0f - x) * a + x * b) / (a + b)));
 }
 MCSI_FN MCSI_F MCS_(linear_invert)(MCSI_F a, MCSI_F b, MCSI_F x) {
     MCSI_I ok = MCSI_(linear_ends)(&a, &b);
     x = MCSI_(min)(MCSI_(max)(x, MCSI_(set)(0.0f)), MCSI_(set)(1.0f));
-    return MCSI_(u_of)(ok, x * (a * (2.0f - x) + b * x));
+    return MCSI_(u_of)(ok, x * ((a * (2.0f - x) + b * x) / (a + b)));
 }
 
-MCSI_FN MCS_(sample1) MCS_(tent_sample)(MCSI_F r, MCSI_F u) {
+MCSI_CORE MCS_(sample1) MCS_(tent_sample)(MCSI_F r, MCSI_F u) {
     MCSI_I ok = MCSI_(scale_ok)(r);
     MCSI_F v, q;
     MCSI_REQUIRE(ok);
     u = MCSI_(unit)(u, &ok);
     v = 2.0f * MCSI_(min)(u, 1.0f - u), q = MCSI_(sqrt)(v);
-    return MCSI_(sample1)(ok, MCSI_(with_sign)(r * ((1.0f - v) / (1.0f + q)), u - 0.5f), q / r);
+    return MCSI_(sample1)(ok, MCSI_(with_sign)(r * (1.0f - q), u - 0.5f), q / r);
 }
 MCSI_FN MCSI_F MCS_(tent_pdf)(MCSI_F r, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(r);
@@ -1080,11 +1135,11 @@ MCSI_FN MCSI_F MCS_(tent_invert)(MCSI_F r, MCSI_F x) {
     return MCSI_(u_of)(ok, MCSI_(sel)(x < 0.0f, half, 1.0f - half));
 }
 
-MCSI_FN MCS_(sample1) MCS_(exponential_sample)(MCSI_F rate, MCSI_F u) {
+MCSI_CORE MCS_(sample1) MCS_(exponential_sample)(MCSI_F rate, MCSI_F u) {
     MCSI_I ok = MCSI_(scale_ok)(rate);
     MCSI_REQUIRE(ok);
     u = MCSI_(unit)(u, &ok);
-    return MCSI_(sample1)(ok, -MCSI_(log1p)(-u) / rate, rate * (1.0f - u));
+    return MCSI_(sample1)(ok, MCSI_(log1m)(u) / -rate, rate * (1.0f - u));
 }
 MCSI_FN MCSI_F MCS_(exponential_pdf)(MCSI_F rate, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(rate);
@@ -1102,22 +1157,21 @@ MCSI_FN MCSI_F MCS_(exponential_invert)(MCSI_F rate, MCSI_F x) {
 /* truncexp: rate m -> e^(-rate m) and its distance to 1; `flat` where the density is uniform to float precision. */
 MCSI_CORE MCSI_I MCSI_(truncexp_ends)(MCSI_F rate, MCSI_F m, MCSI_F *e, MCSI_F *one_minus_e, MCSI_I *flat) {
     MCSI_I ok = (rate >= 0.0f) & (rate <= 1e18f) & MCSI_(scale_ok)(m);
-    MCSI_F t = MCSI_(min)(MCSI_(max)(rate * m, MCSI_(set)(0.0f)), MCSI_(set)(80.0f));
+    MCSI_F t = rate * m;
     MCSI_REQUIRE(ok);
     *flat = t < 1e-8f;
-    *e = MCSI_(exp_both)(-t, one_minus_e);
-    *one_minus_e = MCSI_(sel)(*flat, MCSI_(set)(1.0f), -*one_minus_e);
+    *e = MCSI_(exp_both)(-MCSI_(sel)(ok & (t < 80.0f), t, MCSI_(set)(80.0f)), one_minus_e);
+    *one_minus_e = -*one_minus_e;
     return ok;
 }
-MCSI_FN MCS_(sample1) MCS_(truncexp_sample)(MCSI_F rate, MCSI_F m, MCSI_F u) {
-    MCSI_F e, d, p, w, c, x;
-    MCSI_I flat, ok = MCSI_(truncexp_ends)(rate, m, &e, &d, &flat), front;
+MCSI_CORE MCS_(sample1) MCS_(truncexp_sample)(MCSI_F rate, MCSI_F m, MCSI_F u) {
+    MCSI_F e, d, w, c, x;
+    MCSI_I flat, ok = MCSI_(truncexp_ends)(rate, m, &e, &d, &flat);
     u = MCSI_(unit)(u, &ok);
-    p = u * d, front = p < 0.5f; /* p = 1 - e^(-rate x): ln(1 - p) as log1p where p is small, from all-positive terms elsewhere */
-    w = MCSI_(sel)(front, 1.0f - p, (1.0f - u) + u * e);
-    c = MCSI_(sel)(front, (1.0f - w) - p, MCSI_(set)(0.0f));
-    x = MCSI_(min)(-MCSI_(log_of_sum)(w, c) / MCSI_(max)(rate, MCSI_(set)(FLT_MIN)), m);
-    return MCSI_(sample1)(ok, MCSI_(sel)(flat, u * m, x), MCSI_(sel)(flat, 1.0f / m, rate * w / d));
+    w = (1.0f - u) + u * e; /* 1 - u d = e^(-rate x); u d itself has more digits of it where it is small */
+    c = MCSI_(blend)((0x3effffff - MCSI_(bits)(w)) >> 31, (1.0f - w) - u * d, MCSI_(set)(0.0f)); /* where w >= 1/2 */
+    x = MCSI_(min)(MCSI_(log_of_sum)(w, c) / -rate, m);
+    return MCSI_(sample1)(ok, MCSI_(sel)(flat, u * m, x), MCSI_(sel)(flat, 1.0f / m, w * (rate / d)));
 }
 MCSI_FN MCSI_F MCS_(truncexp_pdf)(MCSI_F rate, MCSI_F m, MCSI_F x) {
     MCSI_F e, d;
@@ -1132,13 +1186,13 @@ MCSI_FN MCSI_F MCS_(truncexp_invert)(MCSI_F rate, MCSI_F m, MCSI_F x) {
     return MCSI_(u_of)(ok, MCSI_(sel)(flat, x / m, -p / d));
 }
 
-MCSI_FN MCS_(sample1) MCS_(normal_sample)(MCSI_F mean, MCSI_F sd, MCSI_F u) {
+MCSI_CORE MCS_(sample1) MCS_(normal_sample)(MCSI_F mean, MCSI_F sd, MCSI_F u) {
     MCSI_I ok = MCSI_(scale_ok)(sd) & (MCSI_(abs)(mean) <= 1e30f);
     MCSI_F z;
     MCSI_REQUIRE(ok);
     u = MCSI_(unit)(u, &ok);
     z = MCSI_(normal_quantile)(MCSI_(max)(u, MCSI_(set)(FLT_MIN)));
-    return MCSI_(sample1)(ok, mean + sd * z, 0.398942280f * MCSI_(exp_neg)(-0.5f * z * z) / sd);
+    return MCSI_(sample1)(ok, mean + sd * z, MCSI_(exp_neg)(-0.5f * z * z) * (0.398942280f / sd));
 }
 MCSI_FN MCSI_F MCS_(normal_pdf)(MCSI_F mean, MCSI_F sd, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(sd) & (MCSI_(abs)(mean) <= 1e30f);
@@ -1153,12 +1207,12 @@ MCSI_FN MCSI_F MCS_(normal_invert)(MCSI_F mean, MCSI_F sd, MCSI_F x) {
     return MCSI_(u_of)(ok & (z == z), MCSI_(sel)(z < 0.0f, tail, 1.0f - tail));
 }
 
-MCSI_FN MCS_(sample1) MCS_(logistic_sample)(MCSI_F mean, MCSI_F s, MCSI_F u) {
+MCSI_CORE MCS_(sample1) MCS_(logistic_sample)(MCSI_F mean, MCSI_F s, MCSI_F u) {
     MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
     MCSI_F v;
     MCSI_REQUIRE(ok);
     v = MCSI_(max)(MCSI_(unit)(u, &ok), MCSI_(set)(FLT_MIN)); /* 2v and 2(1-v) are near 1 where the logarithms nearly cancel */
-    return MCSI_(sample1)(ok, mean + s * (MCSI_(log)(2.0f * v) - MCSI_(log)(2.0f * (1.0f - v))), v * (1.0f - v) / s);
+    return MCSI_(sample1)(ok, mean + s * MCSI_(log)(v / (1.0f - v)), v * (1.0f - v) / s);
 }
 MCSI_FN MCSI_F MCS_(logistic_pdf)(MCSI_F mean, MCSI_F s, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
@@ -1177,18 +1231,15 @@ MCSI_CORE MCSI_I MCSI_(exponent_ok)(MCSI_F n) { return (n >= 0.0f) & (n <= 1e9f)
 /* v^(1/(n+1)) and the density (n+1) x^n = (n+1) v / x there. */
 MCSI_CORE MCSI_F MCSI_(root)(MCSI_F n, MCSI_F v, MCSI_F *density) {
     MCSI_F over, x = MCSI_(pow_unit)(v, n, 1.0, 1, &over);
-    *density = (n + 1.0f) * MCSI_(sel)(v > 0.0f, over, MCSI_(sel)(n > 0.0f, MCSI_(set)(0.0f), MCSI_(set)(1.0f)));
+    *density = MCSI_(sel)(n > 0.0f, (n + 1.0f) * over, MCSI_(set)(1.0f));
     return x;
 }
-MCSI_CORE MCSI_F MCSI_(power)(MCSI_F n, double plus, MCSI_F x) {
-    MCSI_F over;
-    return MCSI_(pow_unit)(x, n, plus, 0, &over);
-}
-MCSI_FN MCS_(sample1) MCS_(power_sample)(MCSI_F n, MCSI_F u) {
+MCSI_CORE MCSI_F MCSI_(power)(MCSI_F n, double plus, MCSI_F x) { return MCSI_(pow_unit)(x, n, plus, 0, NULL); }
+MCSI_CORE MCS_(sample1) MCS_(power_sample)(MCSI_F n, MCSI_F u) {
     MCSI_I ok = MCSI_(exponent_ok)(n);
     MCSI_F x, pdf;
     MCSI_REQUIRE(ok);
-    n = MCSI_(within)(ok, n, 0.0f, 1e9f), u = MCSI_(unit)(u, &ok);
+    n = MCSI_(sel)(ok, n, MCSI_(set)(0.0f)), u = MCSI_(unit)(u, &ok);
     x = MCSI_(root)(n, u, &pdf);
     return MCSI_(sample1)(ok, x, pdf);
 }
@@ -1203,11 +1254,11 @@ MCSI_FN MCSI_F MCS_(power_invert)(MCSI_F n, MCSI_F x) {
     return MCSI_(u_of)(ok, MCSI_(power)(n, 1.0, MCSI_(within)(ok, x, 0.0f, 1.0f)));
 }
 
-MCSI_FN MCS_(sample1) MCS_(evenpower_sample)(MCSI_F n, MCSI_F u) {
+MCSI_CORE MCS_(sample1) MCS_(evenpower_sample)(MCSI_F n, MCSI_F u) {
     MCSI_I ok = MCSI_(exponent_ok)(n);
     MCSI_F d, x, pdf;
     MCSI_REQUIRE(ok);
-    n = MCSI_(within)(ok, n, 0.0f, 1e9f), d = 2.0f * MCSI_(unit)(u, &ok) - 1.0f;
+    n = MCSI_(sel)(ok, n, MCSI_(set)(0.0f)), d = 2.0f * MCSI_(unit)(u, &ok) - 1.0f;
     x = MCSI_(root)(n, MCSI_(abs)(d), &pdf);
     return MCSI_(sample1)(ok, MCSI_(with_sign)(x, d), 0.5f * pdf);
 }
@@ -1277,7 +1328,7 @@ MCSI_CORE MCS_(vec2) MCSI_(uv)(MCSI_I ok, MCSI_F u1, MCSI_F u2) {
                        MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u2, zero), top), zero));
 }
 
-MCSI_FN MCS_(sample2) MCS_(disk_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(sample2) MCS_(disk_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
     return MCSI_(sample2)(ok, R, MCSI_(sqrt)(u1), u2);
@@ -1288,16 +1339,16 @@ MCSI_FN MCS_(vec2) MCS_(disk_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
     return MCSI_(uv)(MCSI_(scale_ok)(R) & (p * p + q * q < 4.0f), p * p + q * q, MCSI_(atan2_turns)(q, p));
 }
 
-MCSI_FN MCS_(sample2) MCS_(concentric_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(sample2) MCS_(concentric_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)(), wide;
-    MCSI_F a, b, r, q, turns;
+    MCSI_F a, b, r, q, axis;
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
     a = 2.0f * u1 - 1.0f, b = 2.0f * u2 - 1.0f;
     wide = MCSI_(abs)(a) > MCSI_(abs)(b);
-    r = MCSI_(sel)(wide, a, b);
-    q = 0.125f * (MCSI_(sel)(wide, b, a) / MCSI_(sel)(r == 0.0f, MCSI_(set)(1.0f), r));
-    turns = MCSI_(sel)(wide, q, 0.25f - q); /* the radius has a sign: angles stay within an eighth of a turn of +x or +y */
-    return MCSI_(sample2)(ok, R, r, turns);
+    r = MCSI_(sel)(wide, a, b), q = MCSI_(sel)(wide, b, -a);
+    axis = MCSI_(sel)(wide, MCSI_(set)(0.0f), MCSI_(set)(0.25f));
+    q = 0.125f * (q / MCSI_(sel)(r == 0.0f, MCSI_(set)(1.0f), r));
+    return MCSI_(sample2)(ok, R, r, axis + q); /* the radius has a sign: angles stay within an eighth of a turn of +x or +y */
 }
 MCSI_FN MCSI_F MCS_(concentric_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) { return MCSI_(disk_pdf)(R, x, y); }
 MCSI_FN MCS_(vec2) MCS_(concentric_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
@@ -1335,7 +1386,7 @@ MCSI_CORE MCSI_F MCSI_(one_minus_z)(MCS_(vec3) w) {
     return MCSI_(sel)(w.z > 0.0f, s / (1.0f + MCSI_(abs)(w.z)), 1.0f - w.z);
 }
 
-MCSI_FN MCS_(dir) MCS_(sphere_sample)(MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(dir) MCS_(sphere_sample)(MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
     return MCSI_(around_z)(ok, 2.0f * MCSI_(sqrt)(u1 * (1.0f - u1)), 1.0f - 2.0f * u1, u2, MCSI_(set)(MCSI_1_4PI));
@@ -1351,7 +1402,7 @@ MCSI_FN MCS_(vec2) MCS_(sphere_invert)(MCS_(vec3) w) {
     return MCSI_(uv)(ok, 0.5f * MCSI_(one_minus_z)(w), MCSI_(atan2_turns)(w.y, w.x));
 }
 
-MCSI_FN MCS_(dir) MCS_(hemisphere_sample)(MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(dir) MCS_(hemisphere_sample)(MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
     return MCSI_(around_z)(ok, MCSI_(sqrt)(u1 * (2.0f - u1)), 1.0f - u1, u2, MCSI_(set)(MCSI_1_2PI));
@@ -1367,7 +1418,7 @@ MCSI_FN MCS_(vec2) MCS_(hemisphere_invert)(MCS_(vec3) w) {
     return MCSI_(uv)(ok, MCSI_(one_minus_z)(w), MCSI_(atan2_turns)(w.y, w.x));
 }
 
-MCSI_FN MCS_(dir) MCS_(cosine_sample)(MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(dir) MCS_(cosine_sample)(MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F z;
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok), z = MCSI_(sqrt)(1.0f - u1);
@@ -1389,11 +1440,11 @@ MCSI_FN MCSI_F MCS_(cone_from_sin2)(MCSI_F sin2) {
     return s / (1.0f + MCSI_(sqrt)(1.0f - s));
 }
 MCSI_CORE MCSI_I MCSI_(cone_ok)(MCSI_F k) { return (k >= 1e-30f) & (k <= 2.0f); }
-MCSI_FN MCS_(dir) MCS_(cone_sample)(MCSI_F k, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(dir) MCS_(cone_sample)(MCSI_F k, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(cone_ok)(k);
     MCSI_F t;
     MCSI_REQUIRE(ok);
-    k = MCSI_(within)(ok, k, 1e-30f, 2.0f), u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok), t = k * u1;
+    k = MCSI_(sel)(ok, k, MCSI_(set)(1e-30f)), u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok), t = k * u1;
     return MCSI_(around_z)(ok, MCSI_(sqrt)(t * (2.0f - t)), 1.0f - t, u2, MCSI_1_2PI / k);
 }
 MCSI_FN MCSI_F MCS_(cone_pdf)(MCSI_F k, MCS_(vec3) w) {
@@ -3458,6 +3509,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_LANE
 #undef MCSI_WIDEN
 #undef MCSI_NARROW
+#undef MCSI_INT_WIDEN
+#undef MCSI_TRUNC_D
+#undef MCSI_MAX_D
+#undef MCSI_ROUND_D
 #undef MCSI_REQUIRE
 #undef MCSI_BATCH
 #undef MCSI_BATCH_AS
