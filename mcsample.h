@@ -93,6 +93,10 @@
  *              mcs_env_mean mcs_env_sample mcs_env_sample_bits mcs_env_pdf mcs_env_invert mcs_env_texel mcs_env_weight
  *              mcs_env_sample_n mcs_env_pdf_n mcs_env_window mcs_env_window_bytes mcs_env_window_build mcs_env_window_sample
  *              mcs_env_window_pdf mcs_env_window_sample_n
+ * [product]    directions per solid angle; memory of the caller
+ *              mcs_tiles mcs_tiles_bytes mcs_tiles_build mcs_tiles_direction mcs_reflection mcs_product mcs_product_bytes
+ *              mcs_product_build mcs_product_build_weights mcs_product_sample mcs_product_pdf mcs_product_sample_n
+ *              mcs_oneshot_sample mcs_oneshot_pdf
  * [estimator]  mcs_stat mcs_stat_add mcs_stat_merge mcs_stat_variance mcs_stat_error mcs_stat_ci
  * END OF INDEX */
 
@@ -482,6 +486,7 @@ typedef double mcsi_d;
 MCSI_CORE float mcsi_set(float x) { return x; }
 MCSI_CORE float mcsi_load(const float *p) { return *p; }
 MCSI_CORE void mcsi_store(float *p, float x) { *p = x; }
+MCSI_CORE void mcsi_store_int(uint32_t *p, int32_t i) { *p = (uint32_t)i; }
 MCSI_CORE int32_t mcsi_bits(float x) {
     int32_t i;
     memcpy(&i, &x, sizeof i);
@@ -512,6 +517,7 @@ MCSI_CORE MCSI_F MCSI_(set)(float x) {
 typedef float MCSI_(anywhere) __attribute__((vector_size(4 * MCSI_W), aligned(4), may_alias));
 MCSI_CORE MCSI_F MCSI_(load)(const float *p) { return *(const MCSI_(anywhere) *)(const void *)p; }
 MCSI_CORE void MCSI_(store)(float *p, MCSI_F v) { *(MCSI_(anywhere) *)(void *)p = v; }
+MCSI_CORE void MCSI_(store_int)(uint32_t *p, MCSI_I i) { *(MCSI_(anywhere) *)(void *)p = (MCSI_F)i; }
 MCSI_CORE MCSI_I MCSI_(bits)(MCSI_F x) { return (MCSI_I)x; }
 MCSI_CORE MCSI_F MCSI_(from_bits)(MCSI_I i) { return (MCSI_F)i; }
 MCSI_CORE MCSI_I MCSI_(trunc)(MCSI_F x) { return __builtin_convertvector(x, MCSI_I); }
@@ -1062,13 +1068,13 @@ MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed) 
  * domain u in [0,1); codomain and density per length as below; every map increases with u, so stratified u give stratified x.
  * `_invert` is the cumulative distribution, clamped into [0, 1 - 2^-24]. One random number each. Bad parameters: pdf 0, x 0.
  *
- *   linear(a, b)          2 lerp(a,b,x)/(a+b) on [0,1]          a, b >= 0, not both 0          1 sqrt, 3 div
+ *   linear(a, b)          2 lerp(a,b,x)/(a+b) on [0,1]          a, b >= 0, not both 0          1 sqrt, 2 div
  *   tent(r)               (1-|x|/r)/r on [-r,r]                 r in [1e-18, 1e18]             1 sqrt, 1 div
  *   exponential(rate)     rate e^(-rate x), x >= 0              rate in [1e-18, 1e18]          1 log, 1 div
  *   truncexp(rate, m)     the same cut off at m                 rate >= 0 (0: uniform), m in [1e-18, 1e18]; rate m up to 80
  *                         counts as is, above the cut is far below 2^-24 and left out          1 log, 1 exp, 2 div
  *   normal(mean, sd)      by inversion, u = 0 taken as 2^-126   sd in [1e-18, 1e18]            1 log, 1 sqrt, 1 div, 1 exp (pdf)
- *   logistic(mean, s)     e^-z/(s (1+e^-z)^2), z=(x-mean)/s     s in [1e-18, 1e18]             2 log, 1 div; u = 0 as 2^-126
+ *   logistic(mean, s)     e^-z/(s (1+e^-z)^2), z=(x-mean)/s     s in [1e-18, 1e18]             1 log, 2 div; u = 0 as 2^-126
  *   power(n)              (n+1) x^n on [0,1]                    n in [0, 1e9]                  1 pow, 1 div
  *   evenpower(n)          (n+1)/2 |x|^n on [-1,1]               n in [0, 1e9]                  1 pow, 1 div; signed root of 2u-1
  *
@@ -2806,6 +2812,13 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  * Cost: two cache misses; 4.4 bytes a texel. Source: Pharr, Jakob, Humphreys 2023, section 12.5. */
 
 #ifndef MCS_NO_TABLES
+#if MCSI_W == 1
+/* A number in [0, 2^31): integer and fraction. */
+typedef struct {
+    uint32_t i;
+    float f;
+} mcsi_fixed;
+#endif
 /* A point on its way: where it lies in its row's share of 2^31 and that share, where the row begins in 1 - cos(theta) from the
  * nearer pole and its height (negative when that is the southern one), and where it lies in its texel's share. */
 typedef struct {
@@ -2843,6 +2856,10 @@ MCSI_CORE MCS_(frame) MCSI_(spread_frame)(const mcs_frame *f) {
 #if MCSI_W == 1
 enum { MCSI_ENV_BLOCK = 64 };
 typedef struct {
+    const uint32_t *cdf[MCSI_ENV_BLOCK];
+    const uint16_t *guide[MCSI_ENV_BLOCK];
+    double scale[MCSI_ENV_BLOCK];
+    mcsi_fixed at[MCSI_ENV_BLOCK];
     float row_rest[MCSI_ENV_BLOCK], row_mass[MCSI_ENV_BLOCK], edge[MCSI_ENV_BLOCK], height[MCSI_ENV_BLOCK], col[MCSI_ENV_BLOCK],
         col_rest[MCSI_ENV_BLOCK], col_mass[MCSI_ENV_BLOCK], x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK], z[MCSI_ENV_BLOCK],
         pdf[MCSI_ENV_BLOCK];
@@ -3059,7 +3076,7 @@ MCS_FN float mcs_env_mean(const mcs_image *im) {
     for (y = 0; y < im->h; y++) {
         double row = 0.0;
         for (x = 0; x < im->w; x += n) {
-            n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : MCSI_ENV_CHUNK;
+            n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : (uint32_t)MCSI_ENV_CHUNK;
             mcsi_image_weights(&plain, y, x, n, v, &bad);
             for (k = 0; k < n; k++) row += (double)v[k];
         }
@@ -3075,7 +3092,7 @@ MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, u
     info->bad = 0;
     for (x = 0; x < im->w; x += n) {
         uint32_t lit = 0;
-        n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : MCSI_ENV_CHUNK;
+        n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : (uint32_t)MCSI_ENV_CHUNK;
         mcsi_image_weights(im, y, x, n, v, &info->bad);
         level = x ? level : v[0];
         for (k = 0; k < n; k++) lit = v[k] > 0.0f ? k + 1 : lit, same += v[k] == level;
@@ -3180,11 +3197,6 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
 
 /* ---- drawing ---- */
 
-/* A number in [0, 2^31): integer and fraction. */
-typedef struct {
-    uint32_t i;
-    float f;
-} mcsi_fixed;
 MCSI_CORE mcsi_fixed mcsi_fixed_u(float u, int32_t *ok) {
     float U = mcsi_unit(u, ok) * 2147483648.0f;
     int32_t i = (int32_t)U;
@@ -3264,7 +3276,8 @@ MCSI_CORE float mcsi_env_density(const mcs_env *e, const mcsi_env_view *v, uint3
     cdf = mcsi_env_cdf(e, row) + col;
     return (float)((cdf[1] - cdf[0]) * scale);
 }
-MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, mcsi_fixed u1, mcsi_fixed u2, int ok) {
+/* `part` of all draws come here. */
+MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, mcsi_fixed u1, mcsi_fixed u2, double part, int ok) {
     mcsi_env_point p;
     mcs_texel r;
     if (v->uniform) {
@@ -3273,7 +3286,7 @@ MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, mcsi
         r.w = mcsi_env_direction(&e->frame, &p, (float)e->w, (float)e->h);
         mcsi_env_locate(&e->frame, r.w, &off_pole, &polar, &turns);
         r.row = mcsi_env_row_at(e, off_pole, polar), r.col = mcsi_env_col_at(e, turns);
-        r.pdf = ok ? mcsi_env_uniform_pdf(e, v) : 0.0f;
+        r.pdf = ok ? (float)(part * (double)mcsi_env_uniform_pdf(e, v)) : 0.0f;
     } else {
         uint32_t i = mcsi_env_draw_row(v, u2, &p), mass;
         const uint16_t *guide;
@@ -3281,14 +3294,14 @@ MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, mcsi
         guide = mcsi_env_guide(e, r.row) + (u1.i >> e->at.col_shift);
         r.col = mcsi_env_draw_col(mcsi_env_cdf(e, r.row), e->w, guide[0], guide[1], u1, &p, &mass);
         r.w = mcsi_env_direction(&e->frame, &p, (float)e->w, (float)e->h);
-        r.pdf = ok ? (float)(mass * v->line[i].scale) : 0.0f;
+        r.pdf = ok ? (float)(mass * (part * v->line[i].scale)) : 0.0f;
     }
     return r;
 }
 MCSI_CORE mcs_texel mcsi_env_draw_u(const mcs_env *e, const mcsi_env_view *v, float u1, float u2) {
     int32_t ok = 1;
     mcsi_fixed U1 = mcsi_fixed_u(u1, &ok), U2 = mcsi_fixed_u(u2, &ok);
-    return mcsi_env_draw(e, v, U1, U2, ok);
+    return mcsi_env_draw(e, v, U1, U2, 1.0, ok);
 }
 MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, mcs_vec3 w) {
     float off_pole, polar, turns;
@@ -3303,47 +3316,60 @@ MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, m
 }
 #ifndef MCS_NO_BATCH
 /* Blocks of points, so that the misses of one stage (guide, cumulative sums) are under way together before the next one needs
- * them. */
+ * them: aim all of them, then land. */
+MCSI_CORE void mcsi_env_block_start(mcsi_env_block *b, size_t n) {
+    if (n < MCSI_ENV_BLOCK) memset(b, 0, sizeof *b); /* directions are computed by whole vectors */
+}
+MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi_env_block *b, size_t k, mcsi_fixed u1,
+                                  mcsi_fixed u2, double part, int ok) {
+    mcsi_env_point p;
+    b->cdf[k] = NULL, b->pdf[k] = ok ? 1.0f : 0.0f;
+    if (v->uniform) {
+        mcsi_env_draw_uniform(e, v, u1, u2, &p);
+        b->col[k] = p.col, b->col_rest[k] = p.col_rest, b->col_mass[k] = p.col_mass;
+        b->pdf[k] *= (float)(part * (double)mcsi_env_uniform_pdf(e, v));
+    } else {
+        uint32_t i = mcsi_env_draw_row(v, u2, &p);
+        b->at[k] = mcsi_env_within(&v->line[i], u1), b->scale[k] = part * v->line[i].scale;
+        b->cdf[k] = mcsi_env_cdf(e, v->row + i), b->guide[k] = mcsi_env_guide(e, v->row + i) + (b->at[k].i >> e->at.col_shift);
+        MCSI_PREFETCH(b->guide[k]);
+    }
+    b->row_rest[k] = p.row_rest, b->row_mass[k] = p.row_mass, b->edge[k] = p.edge, b->height[k] = p.height;
+}
+MCS_FN void mcsi_env_block_land(const mcs_env *e, mcsi_env_block *b, size_t n, float *x, float *y, float *z, float *pdf) {
+    uint32_t lo[MCSI_ENV_BLOCK], hi[MCSI_ENV_BLOCK], mass;
+    size_t k;
+    for (k = 0; k < n; k++) {
+        if (!b->cdf[k]) continue;
+        lo[k] = b->guide[k][0], hi[k] = b->guide[k][1];
+        MCSI_PREFETCH(b->cdf[k] + lo[k]), MCSI_PREFETCH(b->cdf[k] + hi[k] + 1);
+    }
+    for (k = 0; k < n; k++) {
+        mcsi_env_point p;
+        if (!b->cdf[k]) continue;
+        mcsi_env_draw_col(b->cdf[k], e->w, lo[k], hi[k], b->at[k], &p, &mass);
+        b->col[k] = p.col, b->col_rest[k] = p.col_rest, b->col_mass[k] = p.col_mass;
+        b->pdf[k] *= (float)(mass * b->scale[k]);
+    }
+    if (x || y || z) mcsi_env_directions_n(&e->frame, n, b, (float)e->w, (float)e->h);
+    if (x) memcpy(x, b->x, n * sizeof *x);
+    if (y) memcpy(y, b->y, n * sizeof *y);
+    if (z) memcpy(z, b->z, n * sizeof *z);
+    if (pdf) memcpy(pdf, b->pdf, n * sizeof *pdf);
+}
 MCS_FN void mcsi_env_draw_n(const mcs_env *e, const mcsi_env_view *v, size_t n, const float *u1, const float *u2, float *x,
                             float *y, float *z, float *pdf) {
     mcsi_env_block b;
-    mcsi_env_point p;
-    mcsi_fixed at[MCSI_ENV_BLOCK];
-    uint32_t line[MCSI_ENV_BLOCK], lo[MCSI_ENV_BLOCK], hi[MCSI_ENV_BLOCK], mass;
-    const uint32_t *cdf[MCSI_ENV_BLOCK];
-    const uint16_t *guide[MCSI_ENV_BLOCK];
     size_t i, k, m;
-    if (n < MCSI_ENV_BLOCK) memset(&b, 0, sizeof b);
+    mcsi_env_block_start(&b, n);
     for (i = 0; i < n; i += m) {
-        m = n - i < MCSI_ENV_BLOCK ? n - i : MCSI_ENV_BLOCK;
+        m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         for (k = 0; k < m; k++) {
             int32_t ok = 1;
             mcsi_fixed U1 = mcsi_fixed_u(u1[i + k], &ok), U2 = mcsi_fixed_u(u2[i + k], &ok);
-            b.pdf[k] = ok ? 1.0f : 0.0f;
-            if (v->uniform) {
-                mcsi_env_draw_uniform(e, v, U1, U2, &p);
-                b.col[k] = p.col, b.col_rest[k] = p.col_rest, b.col_mass[k] = p.col_mass, b.pdf[k] *= mcsi_env_uniform_pdf(e, v);
-            } else {
-                line[k] = mcsi_env_draw_row(v, U2, &p), at[k] = mcsi_env_within(&v->line[line[k]], U1);
-                guide[k] = mcsi_env_guide(e, v->row + line[k]) + (at[k].i >> e->at.col_shift);
-                MCSI_PREFETCH(guide[k]);
-            }
-            b.row_rest[k] = p.row_rest, b.row_mass[k] = p.row_mass, b.edge[k] = p.edge, b.height[k] = p.height;
+            mcsi_env_block_aim(e, v, &b, k, U1, U2, 1.0, ok);
         }
-        for (k = 0; k < m && !v->uniform; k++) {
-            cdf[k] = mcsi_env_cdf(e, v->row + line[k]), lo[k] = guide[k][0], hi[k] = guide[k][1];
-            MCSI_PREFETCH(cdf[k] + lo[k]), MCSI_PREFETCH(cdf[k] + hi[k] + 1);
-        }
-        for (k = 0; k < m && !v->uniform; k++) {
-            mcsi_env_draw_col(cdf[k], e->w, lo[k], hi[k], at[k], &p, &mass);
-            b.col[k] = p.col, b.col_rest[k] = p.col_rest, b.col_mass[k] = p.col_mass;
-            b.pdf[k] *= (float)(mass * v->line[line[k]].scale);
-        }
-        if (x || y || z) mcsi_env_directions_n(&e->frame, m, &b, (float)e->w, (float)e->h);
-        if (x) memcpy(x + i, b.x, m * sizeof *x);
-        if (y) memcpy(y + i, b.y, m * sizeof *y);
-        if (z) memcpy(z + i, b.z, m * sizeof *z);
-        if (pdf) memcpy(pdf + i, b.pdf, m * sizeof *pdf);
+        mcsi_env_block_land(e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL);
     }
 }
 MCS_FN void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
@@ -3357,7 +3383,7 @@ MCS_FN void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const floa
     uint32_t row[MCSI_ENV_BLOCK], col[MCSI_ENV_BLOCK];
     size_t i, k, m;
     for (i = 0; pdf && i < n; i += m) {
-        m = n - i < MCSI_ENV_BLOCK ? n - i : MCSI_ENV_BLOCK;
+        m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         mcsi_env_locate_n(&e->frame, m, x + i, y + i, z + i, off_pole, polar, turns);
         for (k = 0; k < m; k++) {
             row[k] = off_pole[k] < 4.0f ? mcsi_env_row_at(e, off_pole[k], polar[k]) : e->h, col[k] = mcsi_env_col_at(e, turns[k]);
@@ -3373,7 +3399,7 @@ MCS_FN mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2) {
 }
 MCS_FN mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2) {
     mcsi_env_view v = mcsi_env_whole(e);
-    return mcsi_env_draw(e, &v, mcsi_fixed_bits(b1), mcsi_fixed_bits(b2), 1);
+    return mcsi_env_draw(e, &v, mcsi_fixed_bits(b1), mcsi_fixed_bits(b2), 1.0, 1);
 }
 MCS_FN mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w) {
     mcsi_env_view v = mcsi_env_whole(e);
@@ -3467,6 +3493,529 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
 #endif
 #endif /* MCSI_W == 1 */
 #endif /* MCS_NO_TABLES */
+
+#if !defined(MCS_NO_TABLES) && !defined(MCS_NO_LOBES)
+/* ==== [product] environment times reflection times cosine ======================================================================
+ * Directions for direct lighting, drawn almost in proportion to the whole integrand L f cos (without occlusion) instead of to one
+ * of its factors. The map is cut into tiles (rows x 2 rows); a tile is drawn by its light times the reflection towards the light's
+ * mean direction in it, then a texel within the tile by its light. Domain (u1, u2), codomain unit world directions, density per
+ * solid angle, exact.
+ *
+ *   mcs_tiles_bytes(e, rows), mcs_tiles_build(t, bytes, e, rows)    once per map; rows 16, 32 or 64 (16: 11 degrees a tile)
+ *   mcs_reflection               what the surface does with light: frame (normal, tangent in world space), wo (local, to the eye),
+ *                                alpha_x, alpha_y of a GGX lobe like its own (Phong n: sqrt(2 / (n + 2))), matte: the matte
+ *                                part of its reflectance, 0 to 1. Only the variance depends on how like it is.
+ *   prepared form, for several samples at a point: about 7 KB for 16 rows
+ *     mcs_product_bytes(rows), mcs_product_build(p, bytes, t, e, &reflection)
+ *     mcs_product_build_weights(p, bytes, t, e, weight)             any reflection: weight[rows * 2 rows], one per tile, to be
+ *                                evaluated about mcs_tiles_direction(t, e, k); > 0 wherever the reflection may be
+ *     mcs_product_sample(p, u1, u2) -> mcs_texel, mcs_product_pdf(p, w), mcs_product_sample_n
+ *   one-shot form, for one sample at a point: no table, two levels of tiles
+ *     mcs_oneshot_sample(t, e, &reflection, u1, u2) -> mcs_texel, mcs_oneshot_pdf(t, e, &reflection, w)
+ *
+ * Support: every direction above the surface from which light comes can be drawn (tiles that the horizon may cross get at least a
+ * thousandth of the mean weight; decided by the distance of a tile's corners from its mean direction). Nothing else is drawn but
+ * parts below the horizon of tiles that it crosses. The tables keep pointers to t and e. Bad u or a bad direction give pdf 0, as
+ * does a surface that no light reaches (build returns MCS_UNIFORM).
+ * Lobes narrower than a tile: a share p->brdf_share of the samples is drawn from the visible normals of the lobe instead, m / (1 + m)
+ * where m is how many times wider than the lobe the tile is, less 0.15; the density is that of the mixture. For wide lobes it is 0
+ * and the maps are monotone: stratified u stay stratified.
+ * Tile weights: matte: E (c + r)^2 / (4 r), or E c where c >= r, c the cosine of the mean direction and r the radius of the tile; lobe:
+ * GGX at the mean direction with alpha^2 + s^2 / 4, s^2 the spread of the light's direction in the tile. Tile probabilities are
+ * integers over 2^24. Cost of a sample: that of the environment's and two short searches. Sources: Clarberg and Akenine-Moeller 2008,
+ * "Practical product importance sampling for direct illumination"; Cline et al. 2006, "Two stage importance sampling". */
+
+#if MCSI_W == 1
+/* What is known of tiles, column by column: light, mean direction and its length's inverse, spread, radius. */
+enum { MCSI_TILE_E, MCSI_TILE_X, MCSI_TILE_Y, MCSI_TILE_Z, MCSI_TILE_UNIT, MCSI_TILE_SPREAD, MCSI_TILE_RADIUS, MCSI_TILE_FIELDS };
+/* The reflection as seen from the map: axes of the surface in its frame. */
+typedef struct {
+    mcs_frame axes;
+    mcs_vec3 wo;
+    float ax2, ay2, matte;
+} mcsi_facing;
+#endif
+/* Weight of tiles, and what they weigh by their light alone where they may be above the horizon. */
+MCSI_CORE MCSI_F MCSI_(tile_weight)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride,
+                                    MCSI_F *above) {
+    MCSI_F energy = MCSI_(load)(tile), unit = MCSI_(load)(tile + MCSI_TILE_UNIT * stride),
+           r = MCSI_(load)(tile + MCSI_TILE_RADIUS * stride);
+    MCSI_F spread = MCSI_(load)(tile + MCSI_TILE_SPREAD * stride), zero = MCSI_(set)(0.0f);
+    MCS_(vec3)
+    m = MCSI_(vec3)(MCSI_(load)(tile + MCSI_TILE_X * stride), MCSI_(load)(tile + MCSI_TILE_Y * stride),
+                    MCSI_(load)(tile + MCSI_TILE_Z * stride));
+    MCSI_F c = MCSI_(dot)(axes->n, m), crossing = MCSI_(max)(c + r, zero);
+    MCSI_F cosine = MCSI_(sel)(c >= r, c, crossing * crossing / (4.0f * r)), x = MCSI_(dot)(axes->s, m) * unit,
+           y = MCSI_(dot)(axes->t, m) * unit;
+    MCSI_F z = MCSI_(max)(c * unit, cosine), ax2 = s->ax2 + 0.25f * spread, ay2 = s->ay2 + 0.25f * spread;
+    MCSI_F hx = x + s->wo.x, hy = y + s->wo.y, hz = z + s->wo.z, hh = hx * hx + hy * hy + hz * hz;
+    MCSI_F q = hx * hx * ay2 + hy * hy * ax2 + hz * hz * (ax2 * ay2), aa = ax2 * ay2;
+    MCSI_F shadow = s->wo.z * MCSI_(sqrt)(ax2 * x * x + ay2 * y * y + z * z) +
+                    z * MCSI_(sqrt)(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
+    MCSI_F root = MCSI_(sqrt)(aa), ratio = root * hh / q, lobe = 0.5f * MCSI_1_PI * root * ratio * ratio * z / shadow;
+    *above = MCSI_(sel)((crossing > 0.0f) & (energy > 0.0f), energy, zero);
+    return MCSI_(sel)(*above > 0.0f, energy * (s->matte * MCSI_1_PI * cosine + (1.0f - s->matte) * lobe), zero);
+}
+/* A grid of weights, column by column, as integers: cum[j][i] is the sum of row i's shares before column j, cum[cols][i] that of the
+ * whole row. Where there is light above the horizon a weight is raised by a thousandth of the mean. row[i] is the weight of a row. */
+MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *weight, const float *above, uint32_t *cum, float *row) {
+    float light[64], all = 0.0f, bright = 0.0f, floor;
+    size_t i, j;
+    for (i = 0; i < rows; i += MCSI_W) {
+        MCSI_F w = MCSI_(set)(0.0f), a = w;
+        for (j = 0; j < cols; j++) w = w + MCSI_(load)(weight + j * rows + i), a = a + MCSI_(load)(above + j * rows + i);
+        MCSI_(store)(row + i, w), MCSI_(store)(light + i, a);
+    }
+    for (i = 0; i < rows; i++) all += row[i], bright += light[i];
+    floor = all > 0.0f && bright > 0.0f ? 1e-3f * all / bright : 1.0f;
+    for (i = 0; i < rows; i += MCSI_W) {
+        MCSI_F sum = MCSI_(load)(row + i) + floor * MCSI_(load)(light + i);
+        MCSI_F scale = (16777216.0f - (float)cols) / MCSI_(max)(sum, MCSI_(set)(FLT_MIN));
+        MCSI_I at = MCSI_(trunc)(MCSI_(set)(0.0f));
+        MCSI_(store)(row + i, sum);
+        for (j = 0; j < cols; j++) {
+            MCSI_F w = MCSI_(load)(weight + j * rows + i) + floor * MCSI_(load)(above + j * rows + i);
+            MCSI_(store_int)(cum + j * rows + i, at);
+            at = at + MCSI_(trunc)(MCSI_(sel)(w > 0.0f, w * scale + 1.0f, MCSI_(set)(0.0f)));
+        }
+        MCSI_(store_int)(cum + cols * rows + i, at);
+    }
+}
+#ifndef MCS_NO_BATCH
+MCSI_BATCH_AS(mcsi_tile_weights_n, tile_weights_n,
+              (const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *weight, float *above),
+              (s, n, tile, stride, weight, above), {
+                  MCS_(frame) axes = MCSI_(spread_frame)(&s->axes);
+                  size_t i;
+                  for (i = 0; i < n; i += MCSI_W) {
+                      MCSI_F a;
+                      MCSI_(store)(weight + i, MCSI_(tile_weight)(&axes, s, tile + i, stride, &a));
+                      MCSI_(store)(above + i, a);
+                  }
+              })
+MCSI_BATCH_AS(mcsi_grid_rows_n, grid_rows_n,
+              (size_t rows, size_t cols, const float *weight, const float *above, uint32_t *cum, float *row),
+              (rows, cols, weight, above, cum, row), {
+                  MCSI_(grid_rows)
+                  (rows, cols, weight, above, cum, row);
+              })
+#endif
+
+#if MCSI_W == 1
+typedef struct {
+    uint32_t rows, cols, window_bytes,
+        unused; /* of tiles; then field[MCSI_TILE_FIELDS] of the tiles, the same of blocks of 4 x 4, windows */
+} mcs_tiles;
+typedef struct {
+    mcs_frame frame;
+    mcs_vec3 wo;
+    float alpha_x, alpha_y, matte;
+} mcs_reflection;
+typedef struct {
+    const mcs_tiles *t;
+    const mcs_env *e;
+    mcs_frame frame;
+    mcs_vec3 wo;
+    mcs_ggx lobe;
+    float brdf_share;
+    uint32_t lit;
+} mcs_product; /* then row_cum[rows + 1], cum[cols + 1][rows], weight[cols][rows], above[cols][rows] */
+
+enum { MCSI_TILE_BLOCK = 4, MCSI_TILES_MAX = 64 };
+MCSI_CORE const float *mcsi_tiles_fields(const mcs_tiles *t) { return (const float *)(const void *)(t + 1); }
+MCSI_CORE const float *mcsi_tiles_blocks(const mcs_tiles *t) {
+    return mcsi_tiles_fields(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols;
+}
+MCSI_CORE const mcs_env_window *mcsi_tiles_window(const mcs_tiles *t, uint32_t row, uint32_t col) {
+    size_t n = (size_t)t->rows * t->cols;
+    const char *p = (const char *)(mcsi_tiles_fields(t) + MCSI_TILE_FIELDS * (n + n / (MCSI_TILE_BLOCK * MCSI_TILE_BLOCK)));
+    return (const mcs_env_window *)(const void *)(p + ((size_t)col * t->rows + row) * t->window_bytes);
+}
+MCS_FN int mcsi_tiles_ok(uint32_t rows) { return rows == 16 || rows == 32 || rows == MCSI_TILES_MAX; }
+MCS_FN size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows) {
+    size_t n = 2 * (size_t)rows * rows;
+    if (!e || !mcsi_tiles_ok(rows)) return 0;
+    return sizeof(mcs_tiles) + MCSI_TILE_FIELDS * (n + n / 16) * sizeof(float) + n * mcs_env_window_bytes(e->h / rows + 1);
+}
+/* First texel row or column of a tile, and the tile of a texel. */
+MCSI_CORE uint32_t mcsi_tile_begin(uint32_t tile, uint32_t tiles, uint32_t texels) {
+    return (uint32_t)((uint64_t)tile * texels / tiles);
+}
+MCSI_CORE uint32_t mcsi_tile_of(uint32_t texel, uint32_t tiles, uint32_t texels) {
+    return (uint32_t)((((uint64_t)texel + 1) * tiles - 1) / texels);
+}
+/* Light, first and second moments of its direction, and the corners of the rectangle that holds it. */
+typedef struct {
+    double e, x, y, z;
+    uint32_t row0, row1, col0, col1;
+} mcsi_patch;
+MCS_FN void mcsi_patch_corner(const mcs_env *e, uint32_t row, uint32_t col, mcs_vec3 *w) {
+    double t = mcsi_env_top(e, row);
+    float s, c, sine = mcsi_sqrt((float)(t * (2.0 - t)));
+    mcsi_sincos_turns((float)((double)col / e->w), &s, &c);
+    *w = mcsi_vec3(sine * c, sine * s, (float)(1.0 - t));
+}
+MCS_FN void mcsi_patch_store(const mcs_env *e, const mcsi_patch *p, float *field, size_t stride) {
+    double d = mcsi_sqrt_d(p->x * p->x + p->y * p->y + p->z * p->z), r2 = 0.0;
+    mcs_vec3 m, corner;
+    int k;
+    if (d > 0.0) {
+        m = mcsi_vec3((float)(p->x / d), (float)(p->y / d), (float)(p->z / d));
+    } else {
+        mcsi_patch_corner(e, (p->row0 + p->row1) / 2, (p->col0 + p->col1) / 2, &m);
+    }
+    for (k = 0; k < 4; k++) {
+        double x, y, z, far2;
+        mcsi_patch_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0, &corner);
+        x = (double)corner.x - m.x, y = (double)corner.y - m.y, z = (double)corner.z - m.z, far2 = x * x + y * y + z * z;
+        r2 = far2 > r2 ? far2 : r2;
+    }
+    d = p->e > 0.0 && d > 0.0 ? d / p->e : 1.0;
+    d = d < 1.0 ? d : 1.0;
+    field[MCSI_TILE_E * stride] = (float)p->e;
+    field[MCSI_TILE_X * stride] = m.x * (float)d, field[MCSI_TILE_Y * stride] = m.y * (float)d;
+    field[MCSI_TILE_Z * stride] = m.z * (float)d, field[MCSI_TILE_UNIT * stride] = (float)(1.0 / d);
+    field[MCSI_TILE_SPREAD * stride] = (float)(1.0 - d * d);
+    field[MCSI_TILE_RADIUS * stride] = (float)mcsi_sqrt_d(r2) + 1e-6f;
+}
+/* Light of a tile: of row y, the texels of a window's columns. */
+MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_env_view *all, uint32_t y, mcsi_patch *p) {
+    double t = 0.5 * (mcsi_env_top(e, y) + mcsi_env_top(e, y + 1)), sine = mcsi_sqrt_d(t * (2.0 - t)), row = 0.0, cx = 0.0,
+           cy = 0.0;
+    uint32_t mass = all->rows[y + 1] - all->rows[y], x;
+    const uint32_t *cdf = mcsi_env_cdf(e, y);
+    if (!e->uniform && mass == 0) return;
+    for (x = p->col0; x < p->col1; x++) {
+        float s, c;
+        double w = e->uniform ? (double)MCSI_ONE / e->w : cdf[x + 1] - cdf[x];
+        if (!(w > 0.0)) continue;
+        mcsi_sincos_turns((float)((x + 0.5) / e->w), &s, &c);
+        row += w, cx += w * c, cy += w * s;
+    }
+    t = (e->uniform ? 0.5 * mcsi_env_height(y, e->h) : mass / (double)MCSI_ONE) / MCSI_ONE;
+    p->e += t * row, p->x += t * sine * cx, p->y += t * sine * cy;
+    p->z += t * row * (1.0 - 0.5 * (mcsi_env_top(e, y) + mcsi_env_top(e, y + 1)));
+}
+MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows) {
+    mcsi_env_view all;
+    mcsi_patch block;
+    uint32_t I, J, k, n = 2 * rows * rows;
+    float *field;
+    if (!t || !e || ((uintptr_t)t & 7u)) return MCS_ERR_ARG;
+    if (!mcsi_tiles_ok(rows)) return MCS_ERR_SIZE;
+    if (bytes < mcs_tiles_bytes(e, rows)) return MCS_ERR_MEMORY;
+    all = mcsi_env_whole(e), field = (float *)(void *)(t + 1);
+    t->rows = rows, t->cols = 2 * rows, t->window_bytes = (uint32_t)mcs_env_window_bytes(e->h / rows + 1), t->unused = 0;
+    for (J = 0; J < t->cols / MCSI_TILE_BLOCK; J++)
+        for (I = 0; I < rows / MCSI_TILE_BLOCK; I++) {
+            memset(&block, 0, sizeof block);
+            for (k = 0; k < MCSI_TILE_BLOCK * MCSI_TILE_BLOCK; k++) {
+                uint32_t i = I * MCSI_TILE_BLOCK + k % MCSI_TILE_BLOCK, j = J * MCSI_TILE_BLOCK + k / MCSI_TILE_BLOCK, y;
+                mcs_env_window *m = (mcs_env_window *)(void *)((char *)(uintptr_t)mcsi_tiles_window(t, i, j));
+                mcsi_patch p;
+                memset(&p, 0, sizeof p);
+                p.row0 = mcsi_tile_begin(i, rows, e->h), p.row1 = mcsi_tile_begin(i + 1, rows, e->h);
+                p.col0 = mcsi_tile_begin(j, t->cols, e->w), p.col1 = mcsi_tile_begin(j + 1, t->cols, e->w);
+                for (y = p.row0; y < p.row1; y++) mcsi_patch_add_row(e, &all, y, &p);
+                if (p.e > 0.0) mcs_env_window_build(m, t->window_bytes, e, p.row0, p.row1 - p.row0, p.col0, p.col1 - p.col0);
+                mcsi_patch_store(e, &p, field + (size_t)j * rows + i, n);
+                block.e += p.e, block.x += p.x, block.y += p.y, block.z += p.z;
+                if (k == 0) block.row0 = p.row0, block.col0 = p.col0;
+                block.row1 = p.row1, block.col1 = p.col1;
+            }
+            mcsi_patch_store(e, &block, field + MCSI_TILE_FIELDS * (size_t)n + J * (rows / MCSI_TILE_BLOCK) + I, n / 16);
+        }
+    return e->total > 0.0 ? MCS_OK : MCS_UNIFORM;
+}
+/* World direction in which the light of tile k (column by column) lies. */
+MCS_FN mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k) {
+    size_t n = (size_t)t->rows * t->cols;
+    const float *f = mcsi_tiles_fields(t) + (k < n ? k : n - 1);
+    float unit = f[MCSI_TILE_UNIT * n];
+    return mcsi_to_world(&e->frame, mcsi_vec3(f[MCSI_TILE_X * n] * unit, f[MCSI_TILE_Y * n] * unit, f[MCSI_TILE_Z * n] * unit));
+}
+
+/* Integer shares of a list, at least 1 unless it is zero. Returns their sum. */
+MCSI_CORE uint32_t mcsi_shares(uint32_t *cum, const float *weight, uint32_t n) {
+    float sum = 0.0f, scale;
+    uint32_t i, at = 0;
+    for (i = 0; i < n; i++) sum += weight[i];
+    scale = (16777216.0f - (float)n) / mcsi_max(sum, FLT_MIN);
+    for (i = 0; i < n; i++) {
+        cum[i] = at;
+        at += weight[i] > 0.0f ? (uint32_t)(weight[i] * scale + 1.0f) : 0;
+    }
+    return cum[n] = at;
+}
+/* The last of n (a power of two) cumulative sums, `stride` apart, that is not above U. */
+MCSI_CORE uint32_t mcsi_shares_find(const uint32_t *cum, uint32_t n, uint32_t stride, uint32_t U) {
+    uint32_t i = 0, half;
+    for (half = n / 2; half; half /= 2) i += (cum[(i + half) * stride] <= U) * half;
+    return i;
+}
+/* The share that u falls on; its part of all; u within it. */
+MCSI_CORE uint32_t mcsi_shares_pick(const uint32_t *cum, uint32_t n, uint32_t stride, mcsi_fixed *u, double *part) {
+    uint32_t total = cum[n * stride], i, share;
+    double U = ((double)u->i + (double)u->f) * (total * (1.0 / MCSI_ONE)), rest;
+    i = mcsi_shares_find(cum, n, stride, (uint32_t)U), share = cum[(i + 1) * stride] - cum[i * stride];
+    rest = (U - cum[i * stride]) / share * MCSI_ONE;
+    *part *= (double)share / total;
+    u->i = (uint32_t)rest < MCSI_ONE ? (uint32_t)rest : MCSI_ONE - 1;
+    u->f = (float)(rest - u->i) < 1.0f ? (float)(rest - u->i) : 0.0f;
+    return i;
+}
+MCSI_CORE double mcsi_shares_part(const uint32_t *cum, uint32_t n, uint32_t stride, uint32_t i) {
+    return (double)(cum[(i + 1) * stride] - cum[i * stride]) / cum[n * stride];
+}
+
+/* 0 where nothing is reflected. */
+MCS_FN int mcsi_facing_make(const mcs_env *e, const mcs_reflection *r, mcsi_facing *s) {
+    int32_t ok = 1;
+    float ax = mcsi_within(r->alpha_x >= 0.0f, r->alpha_x, 1e-4f, 1e4f),
+          ay = mcsi_within(r->alpha_y >= 0.0f, r->alpha_y, 1e-4f, 1e4f);
+    s->wo = mcsi_above(r->wo, &ok);
+    s->axes.s = mcs_to_local(&e->frame, r->frame.s), s->axes.t = mcs_to_local(&e->frame, r->frame.t);
+    s->axes.n = mcs_to_local(&e->frame, r->frame.n);
+    s->ax2 = ax * ax, s->ay2 = ay * ay, s->matte = mcsi_within(r->matte >= 0.0f, r->matte, 0.0f, 1.0f);
+    return ok;
+}
+
+/* ---- prepared form ---- */
+
+MCS_FN size_t mcs_product_bytes(uint32_t rows) {
+    size_t n = 2 * (size_t)rows * rows;
+    return mcsi_tiles_ok(rows)
+               ? sizeof(mcs_product) + (2 * n + rows) * sizeof(float) + (n + 2 * (size_t)rows + 2) * sizeof(uint32_t)
+               : 0;
+}
+/* Where a product keeps its parts; the first two are what drawing needs. */
+MCSI_CORE uint32_t *mcsi_product_rows(const mcs_product *p) { return (uint32_t *)(uintptr_t)(p + 1); }
+MCSI_CORE uint32_t *mcsi_product_cum(const mcs_product *p) { return mcsi_product_rows(p) + p->t->rows + 2; }
+MCSI_CORE float *mcsi_product_weights(const mcs_product *p) {
+    return (float *)(void *)(mcsi_product_cum(p) + (size_t)p->t->rows * (p->t->cols + 1));
+}
+MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e) {
+    if (!p || !t || !e || ((uintptr_t)p & 7u)) return MCS_ERR_ARG;
+    if (bytes < mcs_product_bytes(t->rows)) return MCS_ERR_MEMORY;
+    memset(p, 0, sizeof *p);
+    p->t = t, p->e = e;
+    return MCS_OK;
+}
+MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
+    size_t n = (size_t)p->t->rows * p->t->cols;
+    float *weight = mcsi_product_weights(p), *above = weight + n, *row = above + n;
+#ifndef MCS_NO_BATCH
+    mcsi_grid_rows_n(p->t->rows, p->t->cols, weight, above, mcsi_product_cum(p), row);
+#else
+    mcsi_grid_rows(p->t->rows, p->t->cols, weight, above, mcsi_product_cum(p), row);
+#endif
+    p->lit = mcsi_shares(mcsi_product_rows(p), row, p->t->rows);
+    return p->lit ? MCS_OK : MCS_UNIFORM;
+}
+MCSI_CORE void mcsi_tiles_weigh(const mcsi_facing *s, size_t n, const float *fields, size_t stride, float *weight, float *above) {
+#ifndef MCS_NO_BATCH
+    mcsi_tile_weights_n(s, n, fields, stride, weight, above);
+#else
+    size_t i;
+    for (i = 0; i < n; i++) weight[i] = mcsi_tile_weight(&s->axes, s, fields + i, stride, above + i);
+#endif
+}
+/* The part of the samples that a lobe narrower than the tiles gets for itself. */
+MCS_FN float mcsi_brdf_share(const mcsi_facing *s, size_t tiles) {
+    float m = 1.0f / ((float)tiles * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z) - 0.1f;
+    return m > 0.0f ? (1.0f - s->matte) * mcsi_min(m / (1.0f + m), 0.95f) : 0.0f;
+}
+MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
+    mcs_status status = mcsi_product_start(p, bytes, t, e);
+    mcsi_facing s;
+    size_t n;
+    float *weight;
+    if (status) return status;
+    if (!r || !mcsi_facing_make(e, r, &s)) return r ? MCS_UNIFORM : MCS_ERR_ARG;
+    n = (size_t)t->rows * t->cols, weight = mcsi_product_weights(p);
+    p->frame = r->frame, p->wo = s.wo, p->lobe = mcs_ggx_make(mcsi_sqrt(s.ax2), mcsi_sqrt(s.ay2)),
+    p->brdf_share = mcsi_brdf_share(&s, n);
+    mcsi_tiles_weigh(&s, n, mcsi_tiles_fields(t), n, weight, weight + n);
+    return mcsi_product_finish(p);
+}
+MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+                                            const float *weight) {
+    mcs_status status = mcsi_product_start(p, bytes, t, e);
+    size_t n, k;
+    uint32_t bad = 0;
+    float *w;
+    if (status) return status;
+    if (!weight) return MCS_ERR_ARG;
+    n = (size_t)t->rows * t->cols, w = mcsi_product_weights(p);
+    for (k = 0; k < n; k++) {
+        float light = mcsi_tiles_fields(t)[k];
+        w[k] = light * mcsi_min(mcsi_clean(weight[k], &bad), 1e30f);
+        w[n + k] = weight[k] > 0.0f ? light : 0.0f;
+    }
+    return mcsi_product_finish(p);
+}
+/* Density of the tiles alone. */
+MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, uint32_t i, uint32_t j, uint32_t row,
+                                   uint32_t col) {
+    mcsi_env_view v = mcsi_env_part(mcsi_tiles_window(t, i, j));
+    const uint32_t *cdf;
+    double scale;
+    if (v.uniform) return (float)(part * (double)mcsi_env_uniform_pdf(e, &v));
+    scale = part * v.line[row - v.row].scale;
+    cdf = mcsi_env_cdf(e, row) + col;
+    return scale > 0.0 ? (float)((cdf[1] - cdf[0]) * scale) : 0.0f;
+}
+MCSI_CORE float mcsi_product_density(const mcs_product *p, uint32_t row, uint32_t col) {
+    const mcs_tiles *t = p->t;
+    uint32_t i = mcsi_tile_of(row, t->rows, p->e->h), j = mcsi_tile_of(col, t->cols, p->e->w);
+    const uint32_t *rows = mcsi_product_rows(p), *cum = mcsi_product_cum(p) + i;
+    if (rows[i + 1] == rows[i] || cum[(j + 1) * t->rows] == cum[j * t->rows]) return 0.0f;
+    return mcsi_tiled_density(t, p->e, mcsi_shares_part(rows, t->rows, 1, i) * mcsi_shares_part(cum, t->cols, t->rows, j), i, j,
+                              row, col);
+}
+/* The same for a direction, with the lobe's share. */
+MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
+    mcs_texel r = mcs_env_texel(p->e, w);
+    int32_t ok = 1;
+    mcsi_direction(w, &ok);
+    r.pdf = ok && p->lit ? mcsi_product_density(p, r.row, r.col) : 0.0f;
+    if (ok && p->brdf_share > 0.0f)
+        r.pdf = mcs_mix_pdf(p->brdf_share, mcs_ggx_vndf_pdf(&p->lobe, p->wo, mcs_to_local(&p->frame, w)), r.pdf);
+    return r;
+}
+MCS_FN float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
+/* Tile, and the point within its window. */
+MCSI_CORE const mcs_env_window *mcsi_product_pick(const mcs_product *p, mcsi_fixed *u1, mcsi_fixed *u2, double *part) {
+    const mcs_tiles *t = p->t;
+    uint32_t i = mcsi_shares_pick(mcsi_product_rows(p), t->rows, 1, u2, part);
+    return mcsi_tiles_window(t, i, mcsi_shares_pick(mcsi_product_cum(p) + i, t->cols, t->rows, u1, part));
+}
+MCSI_CORE mcs_texel mcsi_nothing(const mcs_env *e) {
+    mcs_texel r;
+    r.w = e->frame.n, r.pdf = 0.0f, r.col = r.row = 0;
+    return r;
+}
+MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, mcsi_fixed u1, mcsi_fixed u2, double part, int ok) {
+    mcsi_env_view v = mcsi_env_part(m);
+    return mcsi_env_draw(e, &v, u1, u2, part, ok);
+}
+MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
+    int32_t ok = 1;
+    double part = 1.0;
+    mcsi_fixed U1, U2;
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    if (u1 < p->brdf_share) {
+        mcs_brdf b = mcs_ggx_vndf_sample(&p->lobe, p->wo, mcsi_min(u1 / p->brdf_share, 0.99999994f), u2);
+        mcs_texel r = mcsi_product_look_up(p, mcsi_to_world(&p->frame, b.wi));
+        r.pdf = ok && b.pdf > 0.0f ? r.pdf : 0.0f;
+        return r;
+    }
+    if (!p->lit) return mcsi_nothing(p->e);
+    if (p->brdf_share > 0.0f) u1 = mcsi_min((u1 - p->brdf_share) / (1.0f - p->brdf_share), 0.99999994f);
+    U1 = mcsi_fixed_u(u1, &ok), U2 = mcsi_fixed_u(u2, &ok);
+    {
+        const mcs_env_window *m = mcsi_product_pick(p, &U1, &U2, &part);
+        mcs_texel r = mcsi_tiled_draw(p->e, m, U1, U2, part, ok);
+        if (p->brdf_share > 0.0f)
+            r.pdf = ok ? mcs_mix_pdf(p->brdf_share, mcs_ggx_vndf_pdf(&p->lobe, p->wo, mcs_to_local(&p->frame, r.w)), r.pdf) : 0.0f;
+        return r;
+    }
+}
+#ifndef MCS_NO_BATCH
+MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                 float *pdf) {
+    mcsi_env_block b;
+    size_t i, k, m;
+    if (p->brdf_share > 0.0f || !p->lit) {
+        for (i = 0; i < n; i++) {
+            mcs_texel r = mcs_product_sample(p, u1[i], u2[i]);
+            if (x) x[i] = r.w.x;
+            if (y) y[i] = r.w.y;
+            if (z) z[i] = r.w.z;
+            if (pdf) pdf[i] = r.pdf;
+        }
+        return;
+    }
+    mcsi_env_block_start(&b, n);
+    for (i = 0; i < n; i += m) {
+        m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
+        for (k = 0; k < m; k++) {
+            int32_t ok = 1;
+            double part = 1.0;
+            mcsi_fixed U1 = mcsi_fixed_u(u1[i + k], &ok), U2 = mcsi_fixed_u(u2[i + k], &ok);
+            mcsi_env_view v = mcsi_env_part(mcsi_product_pick(p, &U1, &U2, &part));
+            mcsi_env_block_aim(p->e, &v, &b, k, U1, U2, part, ok);
+        }
+        mcsi_env_block_land(p->e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL);
+    }
+}
+#endif
+
+/* ---- one-shot form: blocks of 4 x 4 tiles, then the tiles of one ---- */
+
+enum { MCSI_BLOCKS_MAX = MCSI_TILES_MAX * MCSI_TILES_MAX / 8 };
+typedef struct {
+    float weight[MCSI_BLOCKS_MAX], above[MCSI_BLOCKS_MAX], row[MCSI_TILES_MAX];
+    uint32_t rows[MCSI_TILES_MAX + 1], cum[MCSI_BLOCKS_MAX + MCSI_TILES_MAX];
+} mcsi_level;
+/* Shares of a grid of tiles; 0 when there is nothing to draw. */
+MCSI_CORE int mcsi_level_make(mcsi_level *l, const mcsi_facing *s, uint32_t rows, uint32_t cols, const float *fields) {
+    mcsi_tiles_weigh(s, (size_t)rows * cols, fields, (size_t)rows * cols, l->weight, l->above);
+    mcsi_grid_rows(rows, cols, l->weight, l->above, l->cum, l->row);
+    return mcsi_shares(l->rows, l->row, rows) > 0;
+}
+MCSI_CORE int mcsi_level_blocks(mcsi_level *l, const mcsi_facing *s, const mcs_tiles *t) {
+    return mcsi_level_make(l, s, t->rows / MCSI_TILE_BLOCK, t->cols / MCSI_TILE_BLOCK, mcsi_tiles_blocks(t));
+}
+MCSI_CORE int mcsi_level_tiles(mcsi_level *l, const mcsi_facing *s, const mcs_tiles *t, uint32_t i, uint32_t j) {
+    float fields[MCSI_TILE_FIELDS * MCSI_TILE_BLOCK * MCSI_TILE_BLOCK];
+    const float *from = mcsi_tiles_fields(t) + (size_t)j * MCSI_TILE_BLOCK * t->rows + (size_t)i * MCSI_TILE_BLOCK;
+    size_t k, c, n = (size_t)t->rows * t->cols;
+    for (k = 0; k < MCSI_TILE_FIELDS; k++)
+        for (c = 0; c < MCSI_TILE_BLOCK; c++)
+            memcpy(fields + (k * MCSI_TILE_BLOCK + c) * MCSI_TILE_BLOCK, from + k * n + c * t->rows,
+                   MCSI_TILE_BLOCK * sizeof(float));
+    if (mcsi_level_make(l, s, MCSI_TILE_BLOCK, MCSI_TILE_BLOCK, fields)) return 1;
+    memcpy(l->weight, fields, MCSI_TILE_BLOCK * MCSI_TILE_BLOCK * sizeof(float)); /* all below the horizon that the block crosses */
+    mcsi_grid_rows(MCSI_TILE_BLOCK, MCSI_TILE_BLOCK, l->weight, l->above, l->cum, l->row);
+    return mcsi_shares(l->rows, l->row, MCSI_TILE_BLOCK) > 0;
+}
+MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2) {
+    int32_t ok = 1;
+    double part = 1.0;
+    mcsi_fixed U1 = mcsi_fixed_u(u1, &ok), U2 = mcsi_fixed_u(u2, &ok);
+    mcsi_facing s;
+    mcsi_level l;
+    uint32_t i, j, rows = t->rows / MCSI_TILE_BLOCK, cols = t->cols / MCSI_TILE_BLOCK;
+    if (!mcsi_facing_make(e, r, &s) || !mcsi_level_blocks(&l, &s, t)) return mcsi_nothing(e);
+    i = mcsi_shares_pick(l.rows, rows, 1, &U2, &part), j = mcsi_shares_pick(l.cum + i, cols, rows, &U1, &part);
+    if (!mcsi_level_tiles(&l, &s, t, i, j)) return mcsi_nothing(e);
+    i = i * MCSI_TILE_BLOCK, j = j * MCSI_TILE_BLOCK;
+    rows = mcsi_shares_pick(l.rows, MCSI_TILE_BLOCK, 1, &U2, &part);
+    cols = mcsi_shares_pick(l.cum + rows, MCSI_TILE_BLOCK, MCSI_TILE_BLOCK, &U1, &part);
+    return mcsi_tiled_draw(e, mcsi_tiles_window(t, i + rows, j + cols), U1, U2, part, ok);
+}
+MCS_FN float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w) {
+    mcs_texel at = mcs_env_texel(e, w);
+    int32_t ok = 1;
+    double part;
+    mcsi_facing s;
+    mcsi_level l;
+    uint32_t i = mcsi_tile_of(at.row, t->rows, e->h), j = mcsi_tile_of(at.col, t->cols, e->w), I = i / MCSI_TILE_BLOCK,
+             J = j / MCSI_TILE_BLOCK, rows = t->rows / MCSI_TILE_BLOCK, cols = t->cols / MCSI_TILE_BLOCK;
+    mcsi_direction(w, &ok);
+    if (!ok || !mcsi_facing_make(e, r, &s) || !mcsi_level_blocks(&l, &s, t)) return 0.0f;
+    part = mcsi_shares_part(l.rows, rows, 1, I);
+    if (!(part > 0.0)) return 0.0f;
+    part *= mcsi_shares_part(l.cum + I, cols, rows, J);
+    if (!(part > 0.0) || !mcsi_level_tiles(&l, &s, t, I, J)) return 0.0f;
+    i -= I * MCSI_TILE_BLOCK, j -= J * MCSI_TILE_BLOCK, part *= mcsi_shares_part(l.rows, MCSI_TILE_BLOCK, 1, i);
+    if (!(part > 0.0)) return 0.0f;
+    part *= mcsi_shares_part(l.cum + i, MCSI_TILE_BLOCK, MCSI_TILE_BLOCK, j);
+    return part > 0.0 ? mcsi_tiled_density(t, e, part, I * MCSI_TILE_BLOCK + i, J * MCSI_TILE_BLOCK + j, at.row, at.col) : 0.0f;
+}
+#endif /* MCSI_W == 1 */
+#endif
 
 #if MCSI_W == 1
 /* ==== [estimator] running mean, variance, standard error =======================================================================
