@@ -1596,12 +1596,53 @@ MCSI_CORE MCS_(brdf) MCSI_(brdf)(MCSI_I ok, MCS_(vec3) wi, MCSI_F pdf, MCSI_F we
     s.weight = MCSI_(keep)(s.pdf > 0.0f, weight);
     return s;
 }
-/* Mirrors wo at the half-vector p of any length; *d = p.wo and *p2 = |p|^2 come with it. */
-MCSI_CORE MCS_(vec3) MCSI_(mirror)(MCS_(vec3) wo, MCS_(vec3) p, MCSI_F *d, MCSI_F *p2) {
-    MCSI_F s;
-    *d = MCSI_(dot)(p, wo), *p2 = MCSI_(dot)(p, p), s = 2.0f * *d / *p2;
+/* wo mirrored at a half-vector p; s = 2 (p.wo)/|p|^2. */
+MCSI_CORE MCS_(vec3) MCSI_(mirror)(MCS_(vec3) wo, MCS_(vec3) p, MCSI_F s) {
     return MCSI_(to_unit)(MCSI_(vec3)(s * p.x - wo.x, s * p.y - wo.y, s * p.z - wo.z));
 }
+
+/* Is any lane of a mask set? For detours that few samples need; compilers are told so, as the detours would cost registers. */
+MCSI_CORE int MCSI_(rarely)(MCSI_I m) {
+#if MCSI_W == 1 && defined(__GNUC__)
+    return (int)__builtin_expect(m, 0);
+#elif MCSI_W == 1
+    return m;
+#elif defined(MCSI_X86) && MCSI_W == 4
+    return (int)__builtin_expect(__builtin_ia32_movmskps((MCSI_F)m), 0);
+#elif defined(MCSI_AVX)
+    return (int)__builtin_expect(__builtin_ia32_movmskps256((MCSI_F)m), 0);
+#elif defined(MCSI_AVX512) && !defined(__clang__)
+    return (int)__builtin_expect(__builtin_ia32_ptestmd512(m, m, 0xffff), 0);
+#else
+    uint64_t part[MCSI_W / 2], all = 0;
+    int k;
+    memcpy(part, &m, sizeof m);
+    for (k = 0; k < MCSI_W / 2; k++) all |= part[k];
+    return (int)__builtin_expect(all != 0, 0);
+#endif
+}
+#if MCSI_W == 1
+/* (sin, cos)(2 pi t), t in [0,1], in double, to 1e-9. The detours take their lanes one by one: all widths share this code. */
+MCS_FN void mcsi_sincos_d(double t, double *sine, double *cosine) {
+    int k = (int)(4.0 * t + 0.5);
+    double x = 6.283185307179586 * (t - 0.25 * k), z = x * x;
+    double s = 1.0 - z * (1.0 / 42) * (1.0 - z * (1.0 / 72) * (1.0 - z * (1.0 / 110)));
+    double c = 1.0 - z * (1.0 / 30) * (1.0 - z * (1.0 / 56) * (1.0 - z * (1.0 / 90)));
+    s = x * (1.0 - z * (1.0 / 6) * (1.0 - z * (1.0 / 20) * s)), c = 1.0 - z * (1.0 / 2) * (1.0 - z * (1.0 / 12) * c);
+    *sine = k & 1 ? c : s, *cosine = k & 1 ? s : c;
+    if (k & 2) *sine = -*sine;
+    if ((k + 1) & 2) *cosine = -*cosine;
+}
+/* a cos(2 pi t) + b sin(2 pi t), accurate where it cancels. */
+MCS_FN float mcsi_project(double a, double b, float t) {
+    double s, c;
+    mcsi_sincos_d((double)t, &s, &c);
+    return (float)(a * c + b * s);
+}
+#endif
+/* Where wo.h needs a detour: a density has it as divisor, and below 1/8 its terms cancel too much. d = p.wo of a half-vector p
+ * with p2 = |p|^2; lanes that reflect below the surface are lost in any case. No wo.z above 1/4 gets here. */
+MCSI_CORE MCSI_I MCSI_(cancelled)(MCSI_F wo_z, MCSI_F d, MCSI_F p2) { return (2.0f * d > wo_z * p2) & (64.0f * d * d < p2); }
 
 #ifndef MCS_NO_BATCH
 /* clang-format off */
@@ -1685,7 +1726,7 @@ MCSI_CORE MCSI_F MCSI_(cos_power)(MCSI_F n, MCSI_F tan2) {
     return MCSI_(exp_neg)(-0.5f * n * MCSI_(log1p)(MCSI_(min)(tan2, MCSI_(set)(1e37f))));
 }
 
-MCSI_FN MCS_(dir) MCS_(phong_lobe_sample)(const MCS_(phong) * m, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(dir) MCS_(phong_lobe_sample)(const MCS_(phong) * m, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F c, d;
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
@@ -1706,7 +1747,7 @@ MCSI_FN MCS_(vec2) MCS_(phong_lobe_invert)(const MCS_(phong) * m, MCS_(vec3) w) 
     return MCSI_(uv)(ok, -d, MCSI_(atan2_turns)(w.y, w.x));
 }
 
-MCSI_FN MCS_(brdf) MCS_(phong_sample)(const MCS_(phong) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(brdf) MCS_(phong_sample)(const MCS_(phong) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCS_(frame) f;
     MCS_(dir) l;
@@ -1783,10 +1824,13 @@ MCSI_CORE MCS_(vec3) MCSI_(slope_vector)(const MCSI_(slopes) * m, MCSI_F r, MCSI
     MCSI_(sincos_turns)(turns, &s, &c);
     return MCSI_(vec3)(m->ax * (r * c), m->ay * (r * s), MCSI_(set)(1.0f));
 }
-/* The half-vector of slopes p with density g / cos^3 per solid angle. */
-MCSI_CORE MCS_(dir) MCSI_(slope_dir)(MCSI_I ok, MCS_(vec3) p, MCSI_F g) {
+/* The half-vector of slopes of radius r with density g / cos^3 per solid angle. */
+MCSI_CORE MCS_(dir) MCSI_(slope_dir)(const MCSI_(slopes) * m, MCSI_I ok, MCSI_F r, MCSI_F g, MCSI_F u2) {
     MCS_(dir) d;
-    MCSI_F p2 = MCSI_(dot)(p, p), length = MCSI_(sqrt)(p2), c = 1.0f / length;
+    MCS_(vec3) p;
+    MCSI_F p2, length, c;
+    u2 = MCSI_(unit)(u2, &ok), p = MCSI_(slope_vector)(m, r, u2);
+    p2 = MCSI_(dot)(p, p), length = MCSI_(sqrt)(p2), c = 1.0f / length;
     d.w = MCSI_(vec3)(p.x * c, p.y * c, c);
     d.pdf = MCSI_(keep)(ok, g * (p2 * length));
     return d;
@@ -1796,10 +1840,27 @@ MCSI_CORE MCSI_F MCSI_(slope_square)(const MCSI_(slopes) * m, MCS_(vec3) h) {
     MCSI_F x = h.x * m->inv_ax / h.z, y = h.y * m->inv_ay / h.z;
     return x * x + y * y;
 }
-/* The BRDF sample that reflects wo at slopes p with density g / cos^3 of the half-vector; *d = p.wo. */
-MCSI_CORE MCS_(brdf) MCSI_(slope_brdf)(MCSI_I ok, MCS_(vec3) wo, MCS_(vec3) p, MCSI_F g, MCSI_F *d, MCSI_F *p2) {
-    MCS_(vec3) wi = MCSI_(mirror)(wo, p, d, p2);
-    return MCSI_(brdf)(ok & (*d > 0.0f), wi, g * (*p2 * *p2) / (4.0f * *d), MCSI_(set)(1.0f));
+/* p.wo of the lanes `off` again: by value, as a vector that is indexed cannot stay in a register. */
+MCSI_CORE MCSI_F MCSI_(slope_cosine)(MCSI_(slopes) m, MCS_(vec3) wo, MCSI_F r, MCSI_F turns, MCSI_I off, MCSI_F d) {
+    int k;
+    for (k = 0; k < MCSI_W; k++) {
+        double a = (double)MCSI_LANE(m.ax, k) * (double)MCSI_LANE(wo.x, k);
+        double b = (double)MCSI_LANE(m.ay, k) * (double)MCSI_LANE(wo.y, k);
+        if (MCSI_LANE(off, k)) MCSI_LANE(d, k) = MCSI_LANE(wo.z, k) + MCSI_LANE(r, k) * mcsi_project(a, b, MCSI_LANE(turns, k));
+    }
+    return d;
+}
+/* The BRDF sample that reflects wo at slopes p of radius r with density g / cos^3 of the half-vector; *d = p.wo, *p2 = |p|^2. */
+MCSI_CORE MCS_(brdf)
+    MCSI_(slope_brdf)(const MCSI_(slopes) * m, MCSI_I ok, MCS_(vec3) wo, MCSI_F r, MCSI_F g, MCSI_F u2, MCSI_F *d, MCSI_F *p2) {
+    MCS_(vec3) p;
+    u2 = MCSI_(unit)(u2, &ok), p = MCSI_(slope_vector)(m, r, u2);
+    *d = MCSI_(dot)(p, wo), *p2 = MCSI_(dot)(p, p);
+    if (MCSI_(rarely)(wo.z < 0.25f)) {
+        MCSI_I off = MCSI_(cancelled)(wo.z, *d, *p2);
+        if (MCSI_(rarely)(off)) *d = MCSI_(slope_cosine)(*m, wo, r, u2, off, *d);
+    }
+    return MCSI_(brdf)(ok & (*d > 0.0f), MCSI_(mirror)(wo, p, 2.0f * *d / *p2), g * (*p2 * *p2) / (4.0f * *d), MCSI_(set)(1.0f));
 }
 MCSI_CORE MCS_(vec2) MCSI_(slope_invert)(const MCSI_(slopes) * m, MCSI_I ok, MCS_(vec3) h, MCSI_F u1) {
     return MCSI_(uv)(ok & (m->norm > 0.0f), u1, MCSI_(atan2_turns)(h.y * m->inv_ay, h.x * m->inv_ax));
@@ -1829,17 +1890,16 @@ MCSI_FN MCS_(ward) MCS_(ward_make)(MCSI_F ax, MCSI_F ay, mcs_ward_model model) {
     m.model = model;
     return m;
 }
-/* Slopes of a Gaussian; *g is the density times cos^3. */
-MCSI_CORE MCS_(vec3) MCSI_(gauss_slopes)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_F u2, MCSI_I *ok, MCSI_F *g) {
-    u1 = MCSI_(unit)(u1, ok), u2 = MCSI_(unit)(u2, ok);
+/* Radius of a Gaussian's slopes; *g is the density times cos^3. */
+MCSI_CORE MCSI_F MCSI_(gauss_radius)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_I *ok, MCSI_F *g) {
+    u1 = MCSI_(unit)(u1, ok);
     *g = m->norm * (1.0f - u1);
-    return MCSI_(slope_vector)(m, MCSI_(sqrt)(-MCSI_(log1p)(-u1)), u2);
+    return MCSI_(sqrt)(-MCSI_(log1p)(-u1));
 }
 MCSI_CORE MCS_(dir) MCSI_(gauss_h_sample)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
-    MCSI_F g;
-    MCS_(vec3) p = MCSI_(gauss_slopes)(m, u1, u2, &ok, &g);
-    return MCSI_(slope_dir)(ok, p, g);
+    MCSI_F g, r = MCSI_(gauss_radius)(m, u1, &ok, &g);
+    return MCSI_(slope_dir)(m, ok, r, g, u2);
 }
 MCSI_CORE MCSI_F MCSI_(gauss_h_pdf)(const MCSI_(slopes) * m, MCS_(vec3) h) {
     MCSI_I ok = MCSI_(always)();
@@ -1862,17 +1922,15 @@ MCSI_CORE MCSI_F MCSI_(gauss_pdf)(const MCSI_(slopes) * m, MCS_(vec3) wo, MCS_(v
     return MCSI_(keep)(ok, m->norm * MCSI_(exp_neg)(-MCSI_(slope_square)(m, h)) * (MCSI_(dot)(h, h) / (h.z * h.z)) / (2.0f * h.z));
 }
 
-MCSI_FN MCS_(dir) MCS_(ward_h_sample)(const MCS_(ward) * m, MCSI_F u1, MCSI_F u2) { return MCSI_(gauss_h_sample)(&m->s, u1, u2); }
+MCSI_CORE MCS_(dir) MCS_(ward_h_sample)(const MCS_(ward) * m, MCSI_F u1, MCSI_F u2) { return MCSI_(gauss_h_sample)(&m->s, u1, u2); }
 MCSI_FN MCSI_F MCS_(ward_h_pdf)(const MCS_(ward) * m, MCS_(vec3) h) { return MCSI_(gauss_h_pdf)(&m->s, h); }
 MCSI_FN MCS_(vec2) MCS_(ward_h_invert)(const MCS_(ward) * m, MCS_(vec3) h) { return MCSI_(gauss_h_invert)(&m->s, h); }
-MCSI_FN MCS_(brdf) MCS_(ward_sample)(const MCS_(ward) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(brdf) MCS_(ward_sample)(const MCS_(ward) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
-    MCSI_F g, d, p2;
-    MCS_(vec3) p;
+    MCSI_F g, d, p2, r = MCSI_(gauss_radius)(&m->s, u1, &ok, &g);
     MCS_(brdf) s;
     wo = MCSI_(above)(wo, &ok);
-    p = MCSI_(gauss_slopes)(&m->s, u1, u2, &ok, &g);
-    s = MCSI_(slope_brdf)(ok, wo, p, g, &d, &p2);
+    s = MCSI_(slope_brdf)(&m->s, ok, wo, r, g, u2, &d, &p2);
     if (m->model == MCS_WARD_GMD) g = 2.0f * s.wi.z / (wo.z + s.wi.z);
     else if (m->model == MCS_WARD_DUER) g = d / (p2 * p2 * wo.z);
     else g = d / (p2 * p2) * MCSI_(sqrt)(MCSI_(abs)(s.wi.z) / wo.z);
@@ -1936,19 +1994,17 @@ MCSI_CORE MCSI_F MCSI_(beckmann_shadow)(const MCSI_(slopes) * m, MCS_(vec3) w) {
     MCSI_F l = t * 0.282094792f * MCSI_(exp_neg)(-a * a) - w.z * MCSI_(normal_tail)(a * 1.41421356f);
     return MCSI_(max)(l, MCSI_(set)(0.0f));
 }
-MCSI_FN MCS_(dir) MCS_(beckmann_h_sample)(const MCS_(beckmann) * m, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(dir) MCS_(beckmann_h_sample)(const MCS_(beckmann) * m, MCSI_F u1, MCSI_F u2) {
     return MCSI_(gauss_h_sample)(&m->s, u1, u2);
 }
 MCSI_FN MCSI_F MCS_(beckmann_h_pdf)(const MCS_(beckmann) * m, MCS_(vec3) h) { return MCSI_(gauss_h_pdf)(&m->s, h); }
 MCSI_FN MCS_(vec2) MCS_(beckmann_h_invert)(const MCS_(beckmann) * m, MCS_(vec3) h) { return MCSI_(gauss_h_invert)(&m->s, h); }
-MCSI_FN MCS_(brdf) MCS_(beckmann_sample)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(brdf) MCS_(beckmann_sample)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
-    MCSI_F g, d, p2, lo, li;
-    MCS_(vec3) p;
+    MCSI_F g, d, p2, lo, li, r = MCSI_(gauss_radius)(&m->s, u1, &ok, &g);
     MCS_(brdf) s;
     wo = MCSI_(above)(wo, &ok);
-    p = MCSI_(gauss_slopes)(&m->s, u1, u2, &ok, &g);
-    s = MCSI_(slope_brdf)(ok, wo, p, g, &d, &p2);
+    s = MCSI_(slope_brdf)(&m->s, ok, wo, r, g, u2, &d, &p2);
     lo = MCSI_(beckmann_shadow)(&m->s, wo), li = MCSI_(beckmann_shadow)(&m->s, s.wi);
     s.weight = MCSI_(keep)(s.pdf > 0.0f, s.wi.z * d / (wo.z * s.wi.z + s.wi.z * lo + wo.z * li));
     return s;
@@ -1996,8 +2052,8 @@ MCSI_BATCH_VALUE(beckmann_eval, beckmann)
  * mcs_ggx_d, _g1, _g2   D(h); Smith G1 = 2z/(z+t); height-correlated G2 = 2 zo zi/(zo ti + zi to)
  * domain             (u1, u2); vndf and bounded: u1 turns around wo's azimuth in the stretched frame, u2 from the top down
  * parameters         ax, ay > 0, taken within [1e-7, 1e4]; mcs_is_mirror tells alphas that are below it: use a mirror
- * cost               h: 2 sqrt, 3 div, 1 sincos. vndf, bounded: 2 sqrt, 3 div, 1 sincos beyond what is constant per wo (2-3 sqrt,
- *                    4-5 div)
+ * cost               h: 2 sqrt, 2 div, 1 sincos; ggx: 1 sqrt, 3 div, 1 sincos, and 2 sqrt, 1 div for the weight. vndf, bounded: 1
+ *                    sqrt, 1 div, 1 sincos, and 1 sqrt, 1 div for the weight, beyond what is constant per wo (2-3 sqrt, 5-6 div)
  * accuracy           h: pdf of u 0.4 E, of h 0.6 E; vndf, bounded: pdf of u 0.7 E, of h or wi 0.6 E; eval 0.6 E, weight 0.4 E; |h|,
  *                    |wi| 4 ulp: at grazing incidence too, since the azimuth counts from wo's (visible_half below)
  * source             Trowbridge and Reitz 1975; Walter et al. 2007; Heitz 2014, 2018; Dupuy and Benyoub 2023, "Sampling visible GGX
@@ -2005,10 +2061,14 @@ MCSI_BATCH_VALUE(beckmann_eval, beckmann)
 
 typedef struct {
     MCSI_(slopes) s;
+    MCSI_F wide; /* 1/16 of the larger alpha squared where that is more than the least square of (ax x, ay y, z) unit, else 0 */
 } MCS_(ggx);
 MCSI_FN MCS_(ggx) MCS_(ggx_make)(MCSI_F ax, MCSI_F ay) {
     MCS_(ggx) m;
+    MCSI_F wide, least;
     m.s = MCSI_(slopes_make)(ax, ay);
+    wide = 0.25f * MCSI_(max)(m.s.ax, m.s.ay), least = MCSI_(min)(MCSI_(min)(m.s.ax, m.s.ay), MCSI_(set)(1.0f));
+    m.wide = MCSI_(sel)(wide > least, wide * wide, MCSI_(set)(0.0f));
     return m;
 }
 MCSI_FN MCSI_I MCS_(is_mirror)(MCSI_F ax, MCSI_F ay) { return (ax < 1e-7f) & (ay < 1e-7f); }
@@ -2037,17 +2097,16 @@ MCSI_FN MCSI_F MCS_(ggx_g2)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
     return MCSI_(keep)(ok, 2.0f * wo.z * wi.z / (wo.z * MCSI_(ggx_t)(&m->s, wi) + wi.z * MCSI_(ggx_t)(&m->s, wo)));
 }
 
-MCSI_CORE MCS_(vec3) MCSI_(ggx_slopes)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_F u2, MCSI_I *ok, MCSI_F *g) {
+MCSI_CORE MCSI_F MCSI_(ggx_radius)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_I *ok, MCSI_F *g) {
     MCSI_F v;
-    u1 = MCSI_(unit)(u1, ok), u2 = MCSI_(unit)(u2, ok), v = 1.0f - u1;
+    u1 = MCSI_(unit)(u1, ok), v = 1.0f - u1;
     *g = m->norm * (v * v);
-    return MCSI_(slope_vector)(m, MCSI_(sqrt)(u1 / v), u2);
+    return MCSI_(sqrt)(u1 / v);
 }
-MCSI_FN MCS_(dir) MCS_(ggx_h_sample)(const MCS_(ggx) * m, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(dir) MCS_(ggx_h_sample)(const MCS_(ggx) * m, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
-    MCSI_F g;
-    MCS_(vec3) p = MCSI_(ggx_slopes)(&m->s, u1, u2, &ok, &g);
-    return MCSI_(slope_dir)(ok, p, g);
+    MCSI_F g, r = MCSI_(ggx_radius)(&m->s, u1, &ok, &g);
+    return MCSI_(slope_dir)(&m->s, ok, r, g, u2);
 }
 MCSI_FN MCSI_F MCS_(ggx_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) h) {
     MCSI_I ok = MCSI_(always)();
@@ -2060,14 +2119,12 @@ MCSI_FN MCS_(vec2) MCS_(ggx_h_invert)(const MCS_(ggx) * m, MCS_(vec3) h) {
     h = MCSI_(above)(h, &ok), e = MCSI_(min)(MCSI_(slope_square)(&m->s, h), MCSI_(set)(1e30f));
     return MCSI_(slope_invert)(&m->s, ok, h, e / (1.0f + e));
 }
-MCSI_FN MCS_(brdf) MCS_(ggx_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(brdf) MCS_(ggx_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
-    MCSI_F g, d, p2, to, ti;
-    MCS_(vec3) p;
+    MCSI_F g, d, p2, to, ti, r = MCSI_(ggx_radius)(&m->s, u1, &ok, &g);
     MCS_(brdf) s;
     wo = MCSI_(above)(wo, &ok);
-    p = MCSI_(ggx_slopes)(&m->s, u1, u2, &ok, &g);
-    s = MCSI_(slope_brdf)(ok, wo, p, g, &d, &p2);
+    s = MCSI_(slope_brdf)(&m->s, ok, wo, r, g, u2, &d, &p2);
     to = MCSI_(ggx_t)(&m->s, wo), ti = MCSI_(ggx_t)(&m->s, s.wi);
     s.weight = MCSI_(keep)(s.pdf > 0.0f, 2.0f * s.wi.z * d / (wo.z * ti + s.wi.z * to));
     return s;
@@ -2114,32 +2171,79 @@ MCSI_CORE MCSI_(visible) MCSI_(visible_make)(const MCSI_(slopes) * m, MCS_(vec3)
     v.cap = 1.0f + (1.0f - less) * v.i_z, v.lift = less * v.i_z, v.denominator = (1.0f - less) * wo.z + v.t;
     return v;
 }
-/* The unnormalised half-vector p, with |p|^2 and, in the stretched frame, *n2 = |c + i|^2. The azimuth is measured from i's; where
- * c nearly cancels i, the mirror at grazing incidence, 1 + cos(phi) and i_sin - s enter, so c + i stays accurate. */
-MCSI_CORE MCS_(vec3)
-    MCSI_(visible_half)(const MCSI_(slopes) * m, const MCSI_(visible) * v, MCSI_F u1, MCSI_F u2, MCSI_F *p2, MCSI_F *n2) {
+#if MCSI_W == 1
+/* The unnormalised half-vector p in double, with |p|^2 and, in the stretched frame, |c + i|^2. */
+MCS_FN void mcsi_visible_d(double ax, double ay, double x, double y, double z, double u1, double u2, int bounded, double p[5]) {
+    double rim = 1.0 + mcsi_sqrt_d(x * x + y * y), a = ax < ay ? ax : ay, less = 0.0, t, sine, cosine, q, s;
+    a = a < 1.0 ? a : 1.0;
+    if (bounded) less = a * a * (rim * rim + z * z) / (rim * rim + a * a * z * z);
+    x = ax * x, y = ay * y, t = mcsi_sqrt_d(x * x + y * y + z * z), x = x / t, y = y / t, z = z / t;
+    t = mcsi_sqrt_d(x * x + y * y);
+    q = u2 * (1.0 + (1.0 - less) * z), p[2] = (1.0 - u2) * (1.0 + (1.0 - less) * z) + less * z;
+    s = mcsi_sqrt_d(q * (t * t / (1.0 + z) + p[2]));
+    mcsi_sincos_d(u1, &sine, &cosine);
+    s = t > 0.0 ? s / t : s, cosine = s * cosine, sine = s * sine;
+    if (t > 0.0) s = x + (cosine * x - sine * y), y = y + (cosine * y + sine * x), x = s;
+    else x = cosine, y = sine;
+    p[4] = x * x + y * y + p[2] * p[2], p[0] = ax * x, p[1] = ay * y, p[3] = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+}
+#endif
+/* The unnormalised half-vector p, p2 = |p|^2 and, in the stretched frame, n2 = scale^2 |c + i|^2; p is `scale` times too long. */
+typedef struct {
     MCS_(vec3) p;
+    MCSI_F p2, n2, scale;
+} MCSI_(visible_half);
+/* The lanes `off` again. */
+MCSI_CORE MCSI_(visible_half)
+    MCSI_(visible_detour)(MCSI_(slopes) m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded, MCSI_I off, MCSI_(visible_half) h) {
+    double p[5];
+    int k;
+    for (k = 0; k < MCSI_W; k++) {
+        if (!MCSI_LANE(off, k)) continue;
+        mcsi_visible_d((double)MCSI_LANE(m.ax, k), (double)MCSI_LANE(m.ay, k), (double)MCSI_LANE(wo.x, k),
+                       (double)MCSI_LANE(wo.y, k), (double)MCSI_LANE(wo.z, k), (double)MCSI_LANE(u1, k), (double)MCSI_LANE(u2, k),
+                       bounded, p);
+        MCSI_LANE(h.p.x, k) = (float)p[0], MCSI_LANE(h.p.y, k) = (float)p[1], MCSI_LANE(h.p.z, k) = (float)p[2];
+        MCSI_LANE(h.p2, k) = (float)p[3], MCSI_LANE(h.n2, k) = (float)p[4], MCSI_LANE(h.scale, k) = 1.0f;
+    }
+    return h;
+}
+/* The azimuth is measured from i's; where c nearly cancels i, the mirror at grazing incidence, 1 + cos(phi) and i_sin - s enter,
+ * the latter as (i_sin^2 - s^2)/(i_sin + s) with the divisor left to the scale, so c + i stays accurate. Where the larger alpha
+ * magnifies the rounding of c + i more than 4 times, p comes from the detour. */
+MCSI_CORE MCSI_(visible_half)
+    MCSI_(visible_draw)(const MCS_(ggx) * m, const MCSI_(visible) * v, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded) {
+    MCSI_(visible_half) h;
     MCSI_I behind;
     MCSI_F sine, cosine, one_plus, q = u2 * v->cap, hz = v->cap * (1.0f - u2) + v->lift;
-    MCSI_F s = MCSI_(sqrt)(q * (v->one_minus_iz + hz)), along, across;                       /* sin^2 = (1 - c.z) (1 + c.z) */
-    MCSI_F gap = (v->one_minus_iz - q) * hz / MCSI_(max)(v->i_sin + s, MCSI_(set)(FLT_MIN)); /* i_sin - s */
+    MCSI_F s = MCSI_(sqrt)(q * (v->one_minus_iz + hz)), r, along, across; /* sin^2 = (1 - c.z) (1 + c.z) */
     MCSI_(sincos_behind)(u1, &sine, &cosine, &behind, &one_plus);
-    along = MCSI_(sel)(behind, s * one_plus + gap, s * cosine + v->i_sin), across = s * sine;
-    *n2 = along * along + across * across + hz * hz;
-    p = MCSI_(vec3)(m->ax * (along * v->x_dir - across * v->y_dir), m->ay * (along * v->y_dir + across * v->x_dir), hz);
-    *p2 = MCSI_(dot)(p, p);
-    return p;
+    behind = behind & (hz < 1.0f);
+    h.scale = MCSI_(sel)(behind, v->i_sin + s, MCSI_(set)(1.0f));
+    r = s * h.scale;
+    along = MCSI_(sel)(behind, r * one_plus + (v->one_minus_iz - q) * hz, s * cosine + v->i_sin);
+    across = r * sine, hz = hz * h.scale;
+    h.n2 = along * along + across * across + hz * hz;
+    h.p = MCSI_(vec3)(m->s.ax * (along * v->x_dir - across * v->y_dir), m->s.ay * (along * v->y_dir + across * v->x_dir), hz);
+    h.p2 = MCSI_(dot)(h.p, h.p);
+    if (MCSI_(rarely)(m->wide > 0.0f)) {
+        MCSI_I off = m->wide * h.n2 > h.p2;
+        if (MCSI_(rarely)(off)) h = MCSI_(visible_detour)(m->s, wo, u1, u2, bounded, off, h);
+    }
+    return h;
 }
 MCSI_CORE MCS_(brdf) MCSI_(visible_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded) {
     MCSI_I ok = MCSI_(always)();
     MCSI_(visible) v;
-    MCS_(vec3) p, wi;
-    MCSI_F p2, n2, inv, q, s;
+    MCSI_(visible_half) h;
+    MCS_(vec3) wi;
+    MCSI_F inv, q, s;
     wo = MCSI_(above)(wo, &ok), v = MCSI_(visible_make)(&m->s, wo, bounded);
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    p = MCSI_(visible_half)(&m->s, &v, u1, u2, &p2, &n2);
-    inv = 1.0f / (p2 * n2), q = p2 * p2 * inv, s = v.t * (n2 * n2 * inv); /* q = p2/n2; as p.wo = t n2/2, s = 2 (p.wo)/p2 */
-    wi = MCSI_(to_unit)(MCSI_(vec3)(s * p.x - wo.x, s * p.y - wo.y, s * p.z - wo.z));
+    h = MCSI_(visible_draw)(m, &v, wo, u1, u2, bounded);
+    /* q = p2/n2, and s = 2 (p.wo)/p2 as p.wo = t n2/2, where scale is 1 */
+    inv = 1.0f / (h.p2 * (h.n2 * h.scale)), q = h.p2 * h.scale * (h.p2 * inv), s = v.t * h.n2 * h.n2 * inv;
+    wi = MCSI_(mirror)(wo, h.p, s);
     return MCSI_(brdf)(ok, wi, m->s.norm / (2.0f * v.denominator) * (q * q),
                        wi.z * v.denominator / (v.t * wi.z + MCSI_(ggx_t)(&m->s, wi) * wo.z));
 }
@@ -2158,14 +2262,15 @@ MCSI_CORE MCSI_F MCSI_(visible_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(
 MCSI_CORE MCS_(dir) MCSI_(visible_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded) {
     MCSI_I ok = MCSI_(always)();
     MCSI_(visible) v;
+    MCSI_(visible_half) h;
     MCS_(dir) d;
-    MCSI_F p2, n2, q, c;
+    MCSI_F q, c;
     wo = MCSI_(above)(wo, &ok), v = MCSI_(visible_make)(&m->s, wo, bounded);
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    d.w = MCSI_(visible_half)(&m->s, &v, u1, u2, &p2, &n2);
-    q = p2 / n2, c = 1.0f / MCSI_(sqrt)(p2);
-    d.w = MCSI_(vec3)(d.w.x * c, d.w.y * c, d.w.z * c);
-    d.pdf = MCSI_(keep)(ok, m->s.norm / v.denominator * (q * q) * (v.t * n2 * c));
+    h = MCSI_(visible_draw)(m, &v, wo, u1, u2, bounded);
+    q = h.p2 / (h.n2 * h.scale), c = 1.0f / MCSI_(sqrt)(h.p2); /* p2/n2, wo.h = t n2 c/2 where scale is 1 */
+    d.w = MCSI_(vec3)(h.p.x * c, h.p.y * c, h.p.z * c);
+    d.pdf = MCSI_(keep)(ok, m->s.norm * v.t / v.denominator * (h.p2 * c * q));
     return d;
 }
 MCSI_CORE MCSI_F MCSI_(visible_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h, int bounded) {
@@ -2190,21 +2295,21 @@ MCSI_CORE MCS_(vec2) MCSI_(visible_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo,
                      MCSI_(one_minus_z)(c) / v.cap);
 }
 
-MCSI_FN MCS_(dir) MCS_(ggx_vndf_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(dir) MCS_(ggx_vndf_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     return MCSI_(visible_h_sample)(m, wo, u1, u2, 0);
 }
 MCSI_FN MCSI_F MCS_(ggx_vndf_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) { return MCSI_(visible_h_pdf)(m, wo, h, 0); }
 MCSI_FN MCS_(vec2) MCS_(ggx_vndf_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) {
     return MCSI_(visible_h_invert)(m, wo, h, 0);
 }
-MCSI_FN MCS_(brdf) MCS_(ggx_vndf_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(brdf) MCS_(ggx_vndf_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     return MCSI_(visible_sample)(m, wo, u1, u2, 0);
 }
 MCSI_FN MCSI_F MCS_(ggx_vndf_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) { return MCSI_(visible_pdf)(m, wo, wi, 0); }
 MCSI_FN MCSI_F MCS_(ggx_vndf_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
     return MCSI_(visible_weight)(m, wo, wi, 0);
 }
-MCSI_FN MCS_(dir) MCS_(ggx_bounded_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(dir) MCS_(ggx_bounded_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     return MCSI_(visible_h_sample)(m, wo, u1, u2, 1);
 }
 MCSI_FN MCSI_F MCS_(ggx_bounded_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) {
@@ -2213,7 +2318,7 @@ MCSI_FN MCSI_F MCS_(ggx_bounded_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(
 MCSI_FN MCS_(vec2) MCS_(ggx_bounded_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) {
     return MCSI_(visible_h_invert)(m, wo, h, 1);
 }
-MCSI_FN MCS_(brdf) MCS_(ggx_bounded_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_CORE MCS_(brdf) MCS_(ggx_bounded_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     return MCSI_(visible_sample)(m, wo, u1, u2, 1);
 }
 MCSI_FN MCSI_F MCS_(ggx_bounded_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) { return MCSI_(visible_pdf)(m, wo, wi, 1); }
@@ -2223,7 +2328,7 @@ MCSI_FN MCSI_F MCS_(ggx_bounded_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_
 #ifndef MCS_NO_BATCH
 MCSI_CORE MCS_(ggx) MCSI_(ggx_spread)(const mcs_ggx *m) {
     MCS_(ggx) all;
-    all.s = MCSI_(slopes_spread)(&m->s);
+    all.s = MCSI_(slopes_spread)(&m->s), all.wide = MCSI_(set)(m->wide);
     return all;
 }
 #endif
@@ -2245,22 +2350,19 @@ MCSI_BATCH_VALUE(ggx_bounded_pdf, ggx)
  * mcs_ashikhmin_*    the specular BRDF f = sqrt((nu+1)(nv+1))/(8 pi) cos_h^s/((wo.h) max(wo.z, wi.z)) with Fresnel factor 1;
  *                    weight wi.z/max(wo.z, wi.z) <= 1
  * parameters         nu, nv in [0, 1e9]; negative or NaN is bad, larger count as 1e9
- * cost               1 log1p, 1 exp, 1 sincos, 1 sqrt, 3 div; pdf of a direction 1 log1p, 1 exp, 1 sqrt, 3 div
+ * cost               1 log1p, 1 exp, 1 sincos, 1 sqrt, 2 div, weight 1 div; pdf of a direction 1 log1p, 1 exp, 1 sqrt, 3 div
  * accuracy           pdf of u, h, wi 0.3 E, eval 0.3 E, weight 0.1 E, |h|, |wi| 4 ulp
  * source             Ashikhmin and Shirley 2000, "An anisotropic Phong BRDF model", equations 4, 6, 8, 10 */
 
 typedef struct {
-    MCSI_F nu, nv, width_u, width_v, least, more, norm; /* widths 1/sqrt(n+1); the smaller 1/(n+1), and what the other has more */
+    MCSI_F nu, nv, u, v, stretch, norm; /* 1/(nu+1), 1/(nv+1), sqrt(v/u) */
 } MCS_(ashikhmin);
 MCSI_FN MCS_(ashikhmin) MCS_(ashikhmin_make)(MCSI_F nu, MCSI_F nv) {
     MCS_(ashikhmin) m;
-    MCSI_F u, v;
     MCSI_I ok = (nu >= 0.0f) & (nv >= 0.0f);
     MCSI_REQUIRE(ok);
     m.nu = MCSI_(within)(ok, nu, 0.0f, 1e9f), m.nv = MCSI_(within)(ok, nv, 0.0f, 1e9f);
-    u = 1.0f / (m.nu + 1.0f), v = 1.0f / (m.nv + 1.0f);
-    m.width_u = MCSI_(sqrt)(u), m.width_v = MCSI_(sqrt)(v);
-    m.least = MCSI_(min)(u, v), m.more = MCSI_(max)(u, v) - m.least;
+    m.u = 1.0f / (m.nu + 1.0f), m.v = 1.0f / (m.nv + 1.0f), m.stretch = MCSI_(sqrt)((m.nu + 1.0f) / (m.nv + 1.0f));
     m.norm = MCSI_(sel)(ok, MCSI_(sqrt)(m.nu + 1.0f) * MCSI_(sqrt)(m.nv + 1.0f) * MCSI_1_2PI, MCSI_(set)(0.0f));
     return m;
 }
@@ -2270,18 +2372,24 @@ MCSI_CORE MCSI_F MCSI_(ashikhmin_exponent)(const MCS_(ashikhmin) * m, MCS_(vec3)
 }
 MCSI_CORE MCSI_F MCSI_(tan2)(MCS_(vec3) h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
 
-MCSI_FN MCS_(dir) MCS_(ashikhmin_h_sample)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2) {
+/* The half-vector; *p is the density times its cosine. Its azimuth is that of (c, stretch s), which *scale brings to its sine;
+ * n = 1/(exponent + 1), from the nearer axis, as a large ln(1-u1) shows its rounding. All exact when isotropic. */
+MCSI_CORE MCS_(vec3) MCSI_(ashikhmin_half)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2, MCSI_F *p, MCSI_F *scale) {
+    MCSI_F s, c, s2, c2, n, cosine, d;
+    MCSI_(sincos_turns)(u2, &s, &c);
+    s2 = s * s, c2 = c * c;
+    n = MCSI_(blend)(MCSI_(bits)(s2 - c2) >> 31, m->u + (m->v - m->u) * s2, m->v + (m->u - m->v) * c2);
+    cosine = MCSI_(exp_both)(n * MCSI_(log1p)(-u1), &d);
+    *scale = MCSI_(sqrt)(-d * (2.0f + d) * (m->u / n)), *p = m->norm * (1.0f - u1);
+    return MCSI_(vec3)(*scale * c, *scale * (m->stretch * s), cosine);
+}
+MCSI_CORE MCS_(dir) MCS_(ashikhmin_h_sample)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCS_(dir) h;
-    MCSI_F s, c, x, y, n, cosine, d, r;
+    MCSI_F p, scale;
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    MCSI_(sincos_turns)(u2, &s, &c);
-    x = c * m->width_u, y = s * m->width_v;
-    n = MCSI_(sel)(m->nu < m->nv, c, s), n = m->least + m->more * (n * n); /* x^2 + y^2 = 1/(s+1), exact when isotropic */
-    cosine = MCSI_(exp_both)(n * MCSI_(log1p)(-u1), &d);
-    r = MCSI_(sqrt)(-d * (2.0f + d) / n);
-    h.w = MCSI_(vec3)(r * x, r * y, cosine);
-    h.pdf = MCSI_(keep)(ok, m->norm * (1.0f - u1) / cosine);
+    h.w = MCSI_(ashikhmin_half)(m, u1, u2, &p, &scale);
+    h.pdf = MCSI_(keep)(ok, p / h.w.z);
     return h;
 }
 MCSI_FN MCSI_F MCS_(ashikhmin_h_pdf)(const MCS_(ashikhmin) * m, MCS_(vec3) h) {
@@ -2295,17 +2403,33 @@ MCSI_FN MCS_(vec2) MCS_(ashikhmin_h_invert)(const MCS_(ashikhmin) * m, MCS_(vec3
     h = MCSI_(above)(h, &ok);
     l = MCSI_(log1p)(MCSI_(min)(MCSI_(tan2)(h), MCSI_(set)(1e37f)));
     MCSI_(exp_both)(MCSI_(max)(-0.5f * (MCSI_(ashikhmin_exponent)(m, h) + 1.0f) * l, MCSI_(set)(-80.0f)), &d);
-    return MCSI_(uv)(ok, -d, MCSI_(atan2_turns)(h.y * m->width_u, h.x * m->width_v));
+    return MCSI_(uv)(ok, -d, MCSI_(atan2_turns)(h.y, h.x * m->stretch));
 }
-MCSI_FN MCS_(brdf) MCS_(ashikhmin_sample)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+/* h.wo of the lanes `off` again. */
+MCSI_CORE MCSI_F MCSI_(ashikhmin_cosine)(MCS_(ashikhmin) m, MCS_(vec3) wo, MCSI_F hz, MCSI_F scale, MCSI_F turns, MCSI_I off,
+                                         MCSI_F d) {
+    int k;
+    for (k = 0; k < MCSI_W; k++) {
+        double stretch = mcsi_sqrt_d(((double)MCSI_LANE(m.nu, k) + 1.0) / ((double)MCSI_LANE(m.nv, k) + 1.0));
+        if (MCSI_LANE(off, k))
+            MCSI_LANE(d, k) = MCSI_LANE(wo.z, k) * MCSI_LANE(hz, k) +
+                              MCSI_LANE(scale, k) * mcsi_project((double)MCSI_LANE(wo.x, k), stretch * (double)MCSI_LANE(wo.y, k),
+                                                                 MCSI_LANE(turns, k));
+    }
+    return d;
+}
+MCSI_CORE MCS_(brdf) MCS_(ashikhmin_sample)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
-    MCS_(dir) h;
-    MCS_(vec3) wi;
-    MCSI_F d, p2;
-    wo = MCSI_(above)(wo, &ok);
-    h = MCS_(ashikhmin_h_sample)(m, u1, u2);
-    wi = MCSI_(mirror)(wo, h.w, &d, &p2);
-    return MCSI_(brdf)(ok & (d > 0.0f), wi, h.pdf / (4.0f * d), wi.z / MCSI_(max)(wo.z, wi.z));
+    MCS_(vec3) h, wi;
+    MCSI_F p, scale, d;
+    wo = MCSI_(above)(wo, &ok), u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
+    h = MCSI_(ashikhmin_half)(m, u1, u2, &p, &scale), d = MCSI_(dot)(h, wo);
+    if (MCSI_(rarely)(wo.z < 0.25f)) {
+        MCSI_I off = MCSI_(cancelled)(wo.z, d, MCSI_(set)(1.0f));
+        if (MCSI_(rarely)(off)) d = MCSI_(ashikhmin_cosine)(*m, wo, h.z, scale, u2, off, d);
+    }
+    wi = MCSI_(mirror)(wo, h, 2.0f * d * (2.0f - MCSI_(dot)(h, h))); /* 1/|h|^2 near 1 */
+    return MCSI_(brdf)(ok & (d > 0.0f), wi, p / (4.0f * (h.z * d)), wi.z / MCSI_(max)(wo.z, wi.z));
 }
 MCSI_FN MCSI_F MCS_(ashikhmin_pdf)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
     MCSI_I ok = MCSI_(always)();
@@ -2327,8 +2451,7 @@ MCSI_FN MCSI_F MCS_(ashikhmin_weight)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, 
 MCSI_CORE MCS_(ashikhmin) MCSI_(ashikhmin_spread)(const mcs_ashikhmin *m) {
     MCS_(ashikhmin) all;
     all.nu = MCSI_(set)(m->nu), all.nv = MCSI_(set)(m->nv), all.norm = MCSI_(set)(m->norm);
-    all.width_u = MCSI_(set)(m->width_u), all.width_v = MCSI_(set)(m->width_v);
-    all.least = MCSI_(set)(m->least), all.more = MCSI_(set)(m->more);
+    all.u = MCSI_(set)(m->u), all.v = MCSI_(set)(m->v), all.stretch = MCSI_(set)(m->stretch);
     return all;
 }
 #endif
