@@ -17,6 +17,16 @@ LIBS = -lm
 TESTS = $(sort $(wildcard tests/test_*.c))
 EXAMPLES = $(sort $(wildcard examples/[0-9][0-9]_*.c))
 TEST_BINS = $(TESTS:%.c=$(BUILD)/%)
+# Stress programs: at full size by `make stress`, part by part; a small cut of each with every full `make test`. The oracle of
+# extremes is __float128, which takes gcc and its libquadmath.
+STRESS_ALL = floats deep hostile fuzz extremes
+STRESS = $(if $(QUADMATH),$(STRESS_ALL),$(filter-out extremes,$(STRESS_ALL)))
+STRESS_BINS = $(STRESS:%=$(BUILD)/tests/stress/%)
+# Parts of make stress: program-filter, + for a space and . for a slash in the filter.
+STRESS_PARTS = hostile fuzz $(filter extremes,$(STRESS)) floats-vector+maths floats-u+to+x floats-u+to+radius floats-any+float \
+	$(addprefix deep-,linear tent exponential truncexp normal logistic power disk concentric sphere cosine cone phong ward \
+	beckmann ggx. ggx_h. ggx_vndf ggx_bounded ashikhmin)
+STRESS_CUT = $(if $(filter-out $(TESTS),$(sort $(wildcard tests/test_*.c))),,$(STRESS_BINS))
 EXAMPLE_BINS = $(EXAMPLES:%.c=$(BUILD)/%)
 RENDER = $(BUILD)/examples/render
 
@@ -28,10 +38,28 @@ SUBMAKE = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j2)
 OPENMP = $(shell mkdir -p $(BUILD) && printf '\043include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n' | \
 	$(CC) -fopenmp -x c - -o $(BUILD)/openmp.probe 2>/dev/null && echo -fopenmp)
 
+QUADMATH = $(shell mkdir -p $(BUILD) && printf '\043include <quadmath.h>\nint main(void) { return sqrtq(4) != 2; }\n' | \
+	$(CC) -x c - -o $(BUILD)/quadmath.probe -lquadmath 2>/dev/null && echo -lquadmath)
+
 test: ## build and run every tests/test_*.c (the default); FILTER=text and SEED=number narrow it down
 	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS) $(EXACT)'
 	+@$(SUBMAKE) test-binaries
-	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS)
+	@$(if $(STRESS_CUT),$(if $(QUADMATH),,echo 'SKIPPED: tests/stress/extremes.c: $(CC) has no libquadmath'))
+	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS) $(STRESS_CUT)
+
+stress: ## every float, deep statistics, extremes, hostile input at full size: half an hour; parts that passed are not run again
+	@$(if $(QUADMATH),,echo 'SKIPPED: tests/stress/extremes.c: $(CC) has no libquadmath')
+	+@$(SUBMAKE) $(STRESS_BINS)
+	+@$(SUBMAKE) --keep-going $(STRESS_PARTS:%=$(BUILD)/stress/%.ok)
+	@cat $(STRESS_PARTS:%=$(BUILD)/stress/%.txt)
+	@cat $(STRESS_PARTS:%=$(BUILD)/stress/%.txt) | awk '/^[0-9]+ passed, [0-9]+ failed$$/ { p += $$1; f += $$3 } \
+		END { print p + 0 " passed, " f + 0 " failed"; exit f != 0 || p == 0 }'
+
+cross: ## the same bits on other machines: cross compilers and qemu-user where installed; ONLY=name picks one
+	@BUILD='$(BUILD)' sh tests/cross.sh $(ONLY)
+
+analyze: ## valgrind, memory sanitizer, -fanalyzer, clang-tidy, cppcheck, where installed; ONLY=name picks one
+	@BUILD='$(BUILD)' sh tests/analyze.sh $(ONLY)
 
 examples: ## build the renderer, build and run every numbered example
 	@echo '$(CC): $(FLAGS)'
@@ -67,7 +95,7 @@ help: ## this list
 clean: ## remove everything that was built
 	rm -rf $(BUILD)
 
-test-binaries: $(TEST_BINS)
+test-binaries: $(TEST_BINS) $(STRESS_CUT)
 example-binaries: $(EXAMPLE_BINS)
 
 # Rewritten only when the compiler or a flag changes, so that such a change rebuilds everything and nothing else does.
@@ -83,7 +111,17 @@ $(RENDER): examples/render.c mcsample.h $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(FLAGS) $(OPENMP) $< -o $@ $(LIBS)
 
-$(TEST_BINS): CONTRACT = $(EXACT)
+$(TEST_BINS) $(STRESS_BINS): CONTRACT = $(EXACT)
+$(STRESS_BINS): $(wildcard tests/stress/*.h)
+$(STRESS_BINS): FLAGS += -Itests/stress
+$(BUILD)/tests/stress/extremes: LIBS = $(QUADMATH) -lm
+$(BUILD)/tests/stress/fuzz: FLAGS += -DMCS_FUZZ_MAIN
+
+$(STRESS_PARTS:%=$(BUILD)/stress/%.ok): $(BUILD)/stress/%.ok: $(STRESS_BINS)
+	@mkdir -p $(@D)
+	@echo 'stress: $* ...'
+	@$(BUILD)/tests/stress/$(firstword $(subst -, ,$*)) $(if $(findstring -,$*),--filter '$(subst .,/,$(subst +, ,$(word 2,$(subst -, ,$*))))') \
+		> $(@:.ok=.txt); status=$$?; cat $(@:.ok=.txt); test $$status = 0 && touch $@
 
 # ---- benchmarks: what a user's build gives, -O2 without -march. Everything below $(BUILD)/bench.
 BENCH = $(BUILD)/bench
@@ -127,4 +165,4 @@ $(BENCH)/%: tests/bench/%.c $(BENCH_HEADERS)
 	$(CC) $(BENCH_FLAGS) $< -o $@ $(LIBS)
 
 FORCE:
-.PHONY: test examples demo hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries
+.PHONY: test stress cross analyze examples demo hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries

@@ -525,7 +525,7 @@ MCSI_CORE MCSI_F MCSI_(to_float)(MCSI_I i) { return __builtin_convertvector(i, M
 #define MCSI_LANE(x, k) ((x)[k])
 #define MCSI_WIDEN(x) __builtin_convertvector(x, MCSI_D) /* to double and back; macros, as no unit passes so wide a vector */
 #define MCSI_NARROW(x) __builtin_convertvector(x, MCSI_F)
-#define MCSI_INT_WIDEN(i) __builtin_convertvector(i, MCSI_D)
+#define MCSI_INT_WIDEN(i) MCSI_WIDEN(MCSI_(to_float)(i)) /* |i| < 2^24; straight to double gcc 12 fails at -O0 */
 #define MCSI_TRUNC_D(x) MCSI_(trunc)(MCSI_NARROW(x))
 #define MCSI_MAX_D(x, y) MCSI_WIDEN(MCSI_(max)(MCSI_NARROW(x), MCSI_(set)(y)))
 MCSI_CORE MCSI_F MCSI_(sel)(MCSI_I m, MCSI_F a, MCSI_F b) { return (MCSI_F)(((MCSI_I)a & m) | ((MCSI_I)b & ~m)); }
@@ -1533,9 +1533,11 @@ MCSI_CORE MCS_(vec3) MCSI_(to_world)(const MCS_(frame) * f, MCS_(vec3) v) {
 MCSI_FN MCS_(vec3) MCS_(to_world)(const MCS_(frame) * f, MCS_(vec3) v) {
     return MCSI_(to_world)(f, MCSI_(vec3)(MCSI_(finite)(v.x), MCSI_(finite)(v.y), MCSI_(finite)(v.z)));
 }
-MCSI_FN MCS_(vec3) MCS_(to_local)(const MCS_(frame) * f, MCS_(vec3) v) {
-    v = MCSI_(vec3)(MCSI_(finite)(v.x), MCSI_(finite)(v.y), MCSI_(finite)(v.z));
+MCSI_CORE MCS_(vec3) MCSI_(to_local)(const MCS_(frame) * f, MCS_(vec3) v) {
     return MCSI_(vec3)(MCSI_(dot)(f->s, v), MCSI_(dot)(f->t, v), MCSI_(dot)(f->n, v));
+}
+MCSI_FN MCS_(vec3) MCS_(to_local)(const MCS_(frame) * f, MCS_(vec3) v) {
+    return MCSI_(to_local)(f, MCSI_(vec3)(MCSI_(finite)(v.x), MCSI_(finite)(v.y), MCSI_(finite)(v.z)));
 }
 
 #ifndef MCS_NO_LOBES
@@ -2614,23 +2616,21 @@ MCS_FN uint32_t mcsi_guide_shift(uint32_t n, uint32_t cells_per_entry) {
 /* The cell that holds U: the last i in [lo, hi] with cdf[i] <= U, one that is known to be there. Without branches where the guide
  * leaves few cells, as nothing could predict them. */
 MCSI_CORE uint32_t mcsi_cdf_search(const uint32_t *cdf, uint32_t n, uint32_t lo, uint32_t hi, uint32_t U) {
-    if (hi - lo < 32 && n >= 32) {
-        if (hi - lo >= 4) {
-            lo = lo < n - 32 ? lo : n - 32;
-            lo += (uint32_t)(cdf[lo + 16] <= U) << 4;
-            lo += (uint32_t)(cdf[lo + 8] <= U) << 3;
-            lo += (uint32_t)(cdf[lo + 4] <= U) << 2;
-        } else {
-            lo = lo < n - 4 ? lo : n - 4;
-        }
+    uint32_t left = hi - lo + 1;
+    if (left <= 4 && n >= 4) {
+        lo = lo < n - 4 ? lo : n - 4;
         lo += (uint32_t)(cdf[lo + 2] <= U) << 1;
         return lo + (uint32_t)(cdf[lo + 1] <= U);
     }
-    while (lo < hi) {
-        uint32_t mid = lo + (hi - lo + 1) / 2;
-        if (cdf[mid] <= U) lo = mid;
-        else hi = mid - 1;
+    if (left <= 32 && n >= 32) {
+        lo = lo < n - 32 ? lo : n - 32;
+        lo += (uint32_t)(cdf[lo + 16] <= U) << 4;
+        lo += (uint32_t)(cdf[lo + 8] <= U) << 3;
+        lo += (uint32_t)(cdf[lo + 4] <= U) << 2;
+        lo += (uint32_t)(cdf[lo + 2] <= U) << 1;
+        return lo + (uint32_t)(cdf[lo + 1] <= U);
     }
+    for (; left > 1; left -= left / 2) lo += (left / 2) * (uint32_t)(cdf[lo + left / 2] <= U);
     return lo;
 }
 /* A number in [0,1) as float, never rounded up to 1. */
@@ -2935,13 +2935,6 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  * Cost: two cache misses; 4.4 bytes a texel. Source: Pharr, Jakob, Humphreys 2023, section 12.5. */
 
 #ifndef MCS_NO_TABLES
-#if MCSI_W == 1
-/* A number in [0, 2^31): integer and fraction. */
-typedef struct {
-    uint32_t i;
-    float f;
-} mcsi_fixed;
-#endif
 /* A point on its way: where it lies in its row's share of 2^31 and that share, where the row begins in 1 - cos(theta) from the
  * nearer pole and its height (negative when that is the southern one), and where it lies in its texel's share. */
 typedef struct {
@@ -2964,7 +2957,7 @@ MCSI_CORE MCS_(vec3) MCSI_(env_direction)(const MCS_(frame) * f, const MCSI_(env
 MCSI_CORE void MCSI_(env_locate)(const MCS_(frame) * f, MCS_(vec3) w, MCSI_F *off_pole, MCSI_F *polar, MCSI_F *turns) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F sine2, up;
-    w = MCS_(to_local)(f, MCSI_(direction)(w, &ok));
+    w = MCSI_(to_local)(f, MCSI_(direction)(w, &ok));
     sine2 = w.x * w.x + w.y * w.y, up = MCSI_(abs)(w.z);
     *off_pole = MCSI_(sel)(ok, MCSI_(with_sign)(sine2 / (1.0f + up), w.z), MCSI_(set)(4.0f));
     *polar = MCSI_(atan2_turns)(MCSI_(sqrt)(sine2), up);
@@ -2981,8 +2974,7 @@ enum { MCSI_ENV_BLOCK = 64 };
 typedef struct {
     const uint32_t *cdf[MCSI_ENV_BLOCK];
     const uint16_t *guide[MCSI_ENV_BLOCK];
-    double scale[MCSI_ENV_BLOCK];
-    mcsi_fixed at[MCSI_ENV_BLOCK];
+    double scale[MCSI_ENV_BLOCK], at[MCSI_ENV_BLOCK];
     float row_rest[MCSI_ENV_BLOCK], row_mass[MCSI_ENV_BLOCK], edge[MCSI_ENV_BLOCK], height[MCSI_ENV_BLOCK], col[MCSI_ENV_BLOCK],
         col_rest[MCSI_ENV_BLOCK], col_mass[MCSI_ENV_BLOCK], x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK], z[MCSI_ENV_BLOCK],
         pdf[MCSI_ENV_BLOCK];
@@ -3294,6 +3286,11 @@ MCS_FN int mcsi_cdf_ok(const uint32_t *cdf, uint32_t n, const uint16_t *guide, u
         if (guide[g] >= n || cdf[guide[g]] > g << shift || cdf[guide[g] + 1] <= g << shift) return 0;
     return guide[end] < n && cdf[guide[end]] < MCSI_ONE && cdf[guide[end] + 1] == MCSI_ONE;
 }
+/* Equal but for the compilers' freedom to contract a*b + c. */
+MCS_FN int mcsi_same(double a, double b, double relative) {
+    double slack = relative * (b < 0.0 ? -b : b);
+    return a - b <= slack && b - a <= slack;
+}
 MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     mcsi_env_parts at;
     mcsi_env_view v;
@@ -3306,13 +3303,17 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     if (bytes < at.bytes) return MCS_ERR_MEMORY;
     v = mcsi_env_whole(e);
     for (y = 0; y <= (e->h + 1) / 2; y++)
-        if (!(mcsi_env_edge(e)[y] >= 0.0 && mcsi_env_edge(e)[y] <= 2.0)) return MCS_ERR_FORMAT;
+        if (!mcsi_same(mcsi_env_edge(e)[y], mcsi_one_minus_cos_pi((double)y / e->h), 1e-14)) return MCS_ERR_FORMAT;
     if (e->uniform) return MCS_OK;
     if (!mcsi_cdf_ok(v.rows, e->h, v.guide, v.shift)) return MCS_ERR_FORMAT;
     for (y = 0; y < e->h; y++) {
-        int lit = v.rows[y + 1] > v.rows[y];
-        if (v.line[y].begin != 0 || v.line[y].mass != MCSI_ONE || lit != (v.line[y].scale > 0.0) || !(v.line[y].scale <= 1e30) ||
-            (lit && !mcsi_cdf_ok(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.col_shift)))
+        const mcsi_env_line *line = v.line + y;
+        mcsi_env_line want;
+        mcsi_env_set_line(&want, (v.rows[y + 1] - v.rows[y]) / (double)MCSI_ONE, 0, MCSI_ONE, y, e->w, e->h);
+        if (line->begin != 0 || line->mass != MCSI_ONE || !mcsi_same(line->scale, want.scale, 1e-12) ||
+            !mcsi_same((double)line->edge, (double)want.edge, 1.2e-7) ||
+            !mcsi_same((double)line->height, (double)want.height, 1.2e-7) ||
+            (want.scale > 0.0 && !mcsi_cdf_ok(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.col_shift)))
             return MCS_ERR_FORMAT;
     }
     return MCS_OK;
@@ -3320,40 +3321,28 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
 
 /* ---- drawing ---- */
 
-MCSI_CORE mcsi_fixed mcsi_fixed_u(float u, int32_t *ok) {
-    float U = mcsi_unit(u, ok) * 2147483648.0f;
-    int32_t i = (int32_t)U;
-    mcsi_fixed r;
-    r.i = (uint32_t)i, r.f = U - (float)i;
-    return r;
-}
-MCSI_CORE mcsi_fixed mcsi_fixed_bits(uint32_t bits) {
-    mcsi_fixed r;
-    r.i = bits >> 1, r.f = 0.5f * (float)(bits & 1u);
-    return r;
-}
-/* The place of u in the part of a row that a window has. */
-MCSI_CORE mcsi_fixed mcsi_env_within(const mcsi_env_line *line, mcsi_fixed u) {
-    double P;
-    if (line->mass == MCSI_ONE) return u;
-    P = line->begin + ((double)u.i + (double)u.f) * (line->mass * (1.0 / MCSI_ONE));
-    P = P < MCSI_ONE ? P : P - MCSI_ONE;
-    u.i = (uint32_t)P, u.f = (float)(P - u.i);
-    return u;
+/* A random number times 2^31. */
+MCSI_CORE double mcsi_times_one(float u, int32_t *ok) { return (double)mcsi_unit(u, ok) * MCSI_ONE; }
+/* The place of U in the part of a row that a window has. */
+MCSI_CORE double mcsi_env_within(const mcsi_env_line *line, double U) {
+    if (line->mass == MCSI_ONE && line->begin == 0) return U;
+    U = line->begin + U * (line->mass * (1.0 / MCSI_ONE));
+    return U < MCSI_ONE ? U : U - MCSI_ONE;
 }
 /* Row of the view. */
-MCSI_CORE uint32_t mcsi_env_draw_row(const mcsi_env_view *v, mcsi_fixed u2, mcsi_env_point *p) {
-    const uint16_t *guide = v->guide + (u2.i >> v->shift);
-    uint32_t i = mcsi_cdf_search(v->rows, v->count, guide[0], guide[1], u2.i);
-    p->row_rest = (float)(u2.i - v->rows[i]) + u2.f, p->row_mass = (float)(v->rows[i + 1] - v->rows[i]);
+MCSI_CORE uint32_t mcsi_env_draw_row(const mcsi_env_view *v, double U2, mcsi_env_point *p) {
+    uint32_t U = (uint32_t)(int32_t)U2, i;
+    const uint16_t *guide = v->guide + (U >> v->shift);
+    i = mcsi_cdf_search(v->rows, v->count, guide[0], guide[1], U);
+    p->row_rest = (float)(U2 - (int32_t)v->rows[i]), p->row_mass = (float)(v->rows[i + 1] - v->rows[i]);
     p->edge = v->line[i].edge, p->height = v->line[i].height;
     return i;
 }
-MCSI_CORE uint32_t mcsi_env_draw_col(const uint32_t *cdf, uint32_t w, uint32_t lo, uint32_t hi, mcsi_fixed u1, mcsi_env_point *p,
+MCSI_CORE uint32_t mcsi_env_draw_col(const uint32_t *cdf, uint32_t w, uint32_t lo, uint32_t hi, double U1, mcsi_env_point *p,
                                      uint32_t *mass) {
-    uint32_t c = mcsi_cdf_search(cdf, w, lo, hi, u1.i);
+    uint32_t c = mcsi_cdf_search(cdf, w, lo, hi, (uint32_t)(int32_t)U1);
     *mass = cdf[c + 1] - cdf[c];
-    p->col = (float)c, p->col_rest = (float)(u1.i - cdf[c]) + u1.f, p->col_mass = (float)*mass;
+    p->col = (float)(int32_t)c, p->col_rest = (float)(U1 - (int32_t)cdf[c]), p->col_mass = (float)*mass;
     return c;
 }
 /* Row of a direction that mcsi_env_locate has placed. */
@@ -3378,11 +3367,11 @@ MCSI_CORE float mcsi_env_uniform_pdf(const mcs_env *e, const mcsi_env_view *v) {
     double height = mcsi_env_top(e, v->row + v->count) - mcsi_env_top(e, v->row);
     return (float)(1.0 / (6.2831853071795865 * height * v->cols / e->w));
 }
-MCSI_CORE void mcsi_env_draw_uniform(const mcs_env *e, const mcsi_env_view *v, mcsi_fixed u1, mcsi_fixed u2, mcsi_env_point *p) {
-    double a = mcsi_env_top(e, v->row), b = mcsi_env_top(e, v->row + v->count), margin = 2.384185791015625e-07;
-    double t = a + (margin + (1.0 - 2.0 * margin) * ((u2.i + (double)u2.f) / MCSI_ONE)) * (b - a);
-    double at = v->col + (u1.i + (double)u1.f) / MCSI_ONE * v->cols;
-    at = at < e->w ? at : at - e->w;
+MCSI_CORE void mcsi_env_draw_uniform(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, mcsi_env_point *p) {
+    double a = mcsi_env_top(e, v->row), b = mcsi_env_top(e, v->row + v->count), margin = 2.384185791015625e-07 * e->h, t;
+    double at = v->col + U1 / MCSI_ONE * v->cols;
+    a += (mcsi_env_top(e, v->row + 1) - a) * margin, b -= (b - mcsi_env_top(e, v->row + v->count - 1)) * margin;
+    t = a + (b - a) * (U2 / MCSI_ONE), at = at < e->w ? at : at - e->w;
     p->row_rest = 0.5f, p->row_mass = 1.0f, p->edge = (float)(t < 1.0 ? t : 2.0 - t), p->height = t < 1.0 ? 0.0f : -0.0f;
     p->col = (float)(uint32_t)at, p->col_rest = (float)(at - (uint32_t)at), p->col_mass = 1.0f;
 }
@@ -3400,22 +3389,22 @@ MCSI_CORE float mcsi_env_density(const mcs_env *e, const mcsi_env_view *v, uint3
     return (float)((cdf[1] - cdf[0]) * scale);
 }
 /* `part` of all draws come here. */
-MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, mcsi_fixed u1, mcsi_fixed u2, double part, int ok) {
+MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, int ok) {
     mcsi_env_point p;
     mcs_texel r;
     if (v->uniform) {
         float off_pole, polar, turns;
-        mcsi_env_draw_uniform(e, v, u1, u2, &p);
+        mcsi_env_draw_uniform(e, v, U1, U2, &p);
         r.w = mcsi_env_direction(&e->frame, &p, (float)e->w, (float)e->h);
         mcsi_env_locate(&e->frame, r.w, &off_pole, &polar, &turns);
         r.row = mcsi_env_row_at(e, off_pole, polar), r.col = mcsi_env_col_at(e, turns);
         r.pdf = ok ? (float)(part * (double)mcsi_env_uniform_pdf(e, v)) : 0.0f;
     } else {
-        uint32_t i = mcsi_env_draw_row(v, u2, &p), mass;
+        uint32_t i = mcsi_env_draw_row(v, U2, &p), mass;
         const uint16_t *guide;
-        r.row = v->row + i, u1 = mcsi_env_within(&v->line[i], u1);
-        guide = mcsi_env_guide(e, r.row) + (u1.i >> e->at.col_shift);
-        r.col = mcsi_env_draw_col(mcsi_env_cdf(e, r.row), e->w, guide[0], guide[1], u1, &p, &mass);
+        r.row = v->row + i, U1 = mcsi_env_within(&v->line[i], U1);
+        guide = mcsi_env_guide(e, r.row) + ((uint32_t)(int32_t)U1 >> e->at.col_shift);
+        r.col = mcsi_env_draw_col(mcsi_env_cdf(e, r.row), e->w, guide[0], guide[1], U1, &p, &mass);
         r.w = mcsi_env_direction(&e->frame, &p, (float)e->w, (float)e->h);
         r.pdf = ok ? (float)(mass * (part * v->line[i].scale)) : 0.0f;
     }
@@ -3423,7 +3412,7 @@ MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, mcsi
 }
 MCSI_CORE mcs_texel mcsi_env_draw_u(const mcs_env *e, const mcsi_env_view *v, float u1, float u2) {
     int32_t ok = 1;
-    mcsi_fixed U1 = mcsi_fixed_u(u1, &ok), U2 = mcsi_fixed_u(u2, &ok);
+    double U1 = mcsi_times_one(u1, &ok), U2 = mcsi_times_one(u2, &ok);
     return mcsi_env_draw(e, v, U1, U2, 1.0, ok);
 }
 MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, mcs_vec3 w) {
@@ -3443,18 +3432,19 @@ MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, m
 MCSI_CORE void mcsi_env_block_start(mcsi_env_block *b, size_t n) {
     if (n < MCSI_ENV_BLOCK) memset(b, 0, sizeof *b); /* directions are computed by whole vectors */
 }
-MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi_env_block *b, size_t k, mcsi_fixed u1,
-                                  mcsi_fixed u2, double part, int ok) {
+MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi_env_block *b, size_t k, double U1, double U2,
+                                  double part, int ok) {
     mcsi_env_point p;
     b->cdf[k] = NULL, b->pdf[k] = ok ? 1.0f : 0.0f;
     if (v->uniform) {
-        mcsi_env_draw_uniform(e, v, u1, u2, &p);
+        mcsi_env_draw_uniform(e, v, U1, U2, &p);
         b->col[k] = p.col, b->col_rest[k] = p.col_rest, b->col_mass[k] = p.col_mass;
         b->pdf[k] *= (float)(part * (double)mcsi_env_uniform_pdf(e, v));
     } else {
-        uint32_t i = mcsi_env_draw_row(v, u2, &p);
-        b->at[k] = mcsi_env_within(&v->line[i], u1), b->scale[k] = part * v->line[i].scale;
-        b->cdf[k] = mcsi_env_cdf(e, v->row + i), b->guide[k] = mcsi_env_guide(e, v->row + i) + (b->at[k].i >> e->at.col_shift);
+        uint32_t i = mcsi_env_draw_row(v, U2, &p);
+        b->at[k] = mcsi_env_within(&v->line[i], U1), b->scale[k] = part * v->line[i].scale;
+        b->cdf[k] = mcsi_env_cdf(e, v->row + i),
+        b->guide[k] = mcsi_env_guide(e, v->row + i) + ((uint32_t)(int32_t)b->at[k] >> e->at.col_shift);
         MCSI_PREFETCH(b->guide[k]);
     }
     b->row_rest[k] = p.row_rest, b->row_mass[k] = p.row_mass, b->edge[k] = p.edge, b->height[k] = p.height;
@@ -3489,7 +3479,7 @@ MCS_FN void mcsi_env_draw_n(const mcs_env *e, const mcsi_env_view *v, size_t n, 
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         for (k = 0; k < m; k++) {
             int32_t ok = 1;
-            mcsi_fixed U1 = mcsi_fixed_u(u1[i + k], &ok), U2 = mcsi_fixed_u(u2[i + k], &ok);
+            double U1 = mcsi_times_one(u1[i + k], &ok), U2 = mcsi_times_one(u2[i + k], &ok);
             mcsi_env_block_aim(e, v, &b, k, U1, U2, 1.0, ok);
         }
         mcsi_env_block_land(e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL);
@@ -3522,7 +3512,7 @@ MCS_FN mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2) {
 }
 MCS_FN mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2) {
     mcsi_env_view v = mcsi_env_whole(e);
-    return mcsi_env_draw(e, &v, mcsi_fixed_bits(b1), mcsi_fixed_bits(b2), 1.0, 1);
+    return mcsi_env_draw(e, &v, 0.5 * b1, 0.5 * b2, 1.0, 1);
 }
 MCS_FN mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w) {
     mcsi_env_view v = mcsi_env_whole(e);
@@ -3536,7 +3526,7 @@ MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
     uint32_t row, m;
     mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
     if (!(off_pole < 4.0f)) return mcsi_vec2(0.0f, 0.0f);
-    t = (double)mcsi_abs(off_pole);
+    t = (double)mcsi_min(mcsi_abs(off_pole), 2.0f);
     if (v.uniform) {
         u1 = (double)turns * MCSI_ONE, u2 = 0.5 * (mcsi_bits(off_pole) < 0 ? 2.0 - t : t) * MCSI_ONE;
     } else {
@@ -3544,6 +3534,7 @@ MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
         uint32_t col = mcsi_env_col_at(e, turns);
         row = mcsi_env_row_at(e, off_pole, polar), m = mcsi_env_from_pole(row, e->h), cdf = mcsi_env_cdf(e, row) + col;
         place = (t - mcsi_env_edge(e)[m]) / (mcsi_env_edge(e)[m + 1] - mcsi_env_edge(e)[m]);
+        place = place < 0.0 ? 0.0 : place > 1.0 ? 1.0 : place;
         place = mcsi_bits(off_pole) < 0 ? 1.0 - place : place;
         u1 = v.line[row].scale > 0.0 ? cdf[0] + ((double)turns * e->w - col) * (cdf[1] - cdf[0]) : 0.0;
         u2 = v.rows[row] + place * (v.rows[row + 1] - v.rows[row]);
@@ -3597,7 +3588,7 @@ MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mc
     MCSI_GUIDE_BUILD(guide, uint16_t, m->shift, cdf, rows);
     for (i = 0; i < rows; i++)
         mcsi_env_set_line(&line[i], (cdf[i + 1] - cdf[i]) / (double)MCSI_ONE, line[i].begin, line[i].mass, row + i, e->w, e->h);
-    return m->uniform && !e->uniform ? MCS_UNIFORM : MCS_OK;
+    return m->uniform && !(e->uniform && e->total > 0.0) ? MCS_UNIFORM : MCS_OK;
 }
 MCS_FN mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2) {
     mcsi_env_view v = mcsi_env_part(m);
@@ -3658,26 +3649,31 @@ typedef struct {
     float ax2, ay2, matte;
 } mcsi_facing;
 #endif
+/* GGX towards the light of a tile whose direction spreads. */
+MCSI_CORE MCSI_F MCSI_(tile_lobe)(const mcsi_facing *s, MCS_(vec3) w, MCSI_F spread) {
+    MCSI_F ax2 = s->ax2 + 0.25f * spread, ay2 = s->ay2 + 0.25f * spread, aa = ax2 * ay2, root = MCSI_(sqrt)(aa);
+    MCSI_F hx = w.x + s->wo.x, hy = w.y + s->wo.y, hz = w.z + s->wo.z, hh = hx * hx + hy * hy + hz * hz;
+    MCSI_F ratio = root * hh / (hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa);
+    MCSI_F shadow = s->wo.z * MCSI_(sqrt)(ax2 * w.x * w.x + ay2 * w.y * w.y + w.z * w.z) +
+                    w.z * MCSI_(sqrt)(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
+    return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / shadow;
+}
 /* Weight of tiles, and what they weigh by their light alone where they may be above the horizon. */
 MCSI_CORE MCSI_F MCSI_(tile_weight)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride,
                                     MCSI_F *above) {
-    MCSI_F energy = MCSI_(load)(tile), unit = MCSI_(load)(tile + MCSI_TILE_UNIT * stride),
-           r = MCSI_(load)(tile + MCSI_TILE_RADIUS * stride);
-    MCSI_F spread = MCSI_(load)(tile + MCSI_TILE_SPREAD * stride), zero = MCSI_(set)(0.0f);
+    MCSI_F energy = MCSI_(load)(tile), r = MCSI_(load)(tile + MCSI_TILE_RADIUS * stride), zero = MCSI_(set)(0.0f);
     MCS_(vec3)
     m = MCSI_(vec3)(MCSI_(load)(tile + MCSI_TILE_X * stride), MCSI_(load)(tile + MCSI_TILE_Y * stride),
                     MCSI_(load)(tile + MCSI_TILE_Z * stride));
     MCSI_F c = MCSI_(dot)(axes->n, m), crossing = MCSI_(max)(c + r, zero);
-    MCSI_F cosine = MCSI_(sel)(c >= r, c, crossing * crossing / (4.0f * r)), x = MCSI_(dot)(axes->s, m) * unit,
-           y = MCSI_(dot)(axes->t, m) * unit;
-    MCSI_F z = MCSI_(max)(c * unit, cosine), ax2 = s->ax2 + 0.25f * spread, ay2 = s->ay2 + 0.25f * spread;
-    MCSI_F hx = x + s->wo.x, hy = y + s->wo.y, hz = z + s->wo.z, hh = hx * hx + hy * hy + hz * hz;
-    MCSI_F q = hx * hx * ay2 + hy * hy * ax2 + hz * hz * (ax2 * ay2), aa = ax2 * ay2;
-    MCSI_F shadow = s->wo.z * MCSI_(sqrt)(ax2 * x * x + ay2 * y * y + z * z) +
-                    z * MCSI_(sqrt)(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
-    MCSI_F root = MCSI_(sqrt)(aa), ratio = root * hh / q, lobe = 0.5f * MCSI_1_PI * root * ratio * ratio * z / shadow;
+    MCSI_F cosine = MCSI_(sel)(c >= r, c, crossing * crossing / (4.0f * r)), f = MCSI_1_PI * cosine;
+    if (s->matte < 1.0f) {
+        MCSI_F unit = MCSI_(load)(tile + MCSI_TILE_UNIT * stride);
+        MCS_(vec3) w = MCSI_(vec3)(MCSI_(dot)(axes->s, m) * unit, MCSI_(dot)(axes->t, m) * unit, MCSI_(max)(c * unit, cosine));
+        f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCSI_(load)(tile + MCSI_TILE_SPREAD * stride));
+    }
     *above = MCSI_(sel)((crossing > 0.0f) & (energy > 0.0f), energy, zero);
-    return MCSI_(sel)(*above > 0.0f, energy * (s->matte * MCSI_1_PI * cosine + (1.0f - s->matte) * lobe), zero);
+    return MCSI_(sel)(*above > 0.0f, energy * f, zero);
 }
 /* A grid of weights, column by column, as integers: cum[j][i] is the sum of row i's shares before column j, cum[cols][i] that of the
  * whole row. Where there is light above the horizon a weight is raised by a thousandth of the mean. row[i] is the weight of a row. */
@@ -3866,39 +3862,29 @@ MCSI_CORE uint32_t mcsi_shares(uint32_t *cum, const float *weight, uint32_t n) {
     scale = (16777216.0f - (float)n) / mcsi_max(sum, FLT_MIN);
     for (i = 0; i < n; i++) {
         cum[i] = at;
-        at += weight[i] > 0.0f ? (uint32_t)(weight[i] * scale + 1.0f) : 0;
+        at += (uint32_t)(int32_t)(weight[i] * scale) + (uint32_t)(weight[i] > 0.0f);
     }
     return cum[n] = at;
 }
 /* The last of n (a power of two) cumulative sums, `stride` apart, that is not above U. */
 MCSI_CORE uint32_t mcsi_shares_find(const uint32_t *cum, uint32_t n, uint32_t stride, uint32_t U) {
     uint32_t i = 0, half;
-    for (half = n / 2; half; half /= 2) i += (cum[(i + half) * stride] <= U) * half;
+    for (half = n / 2; half; half /= 2) i += (uint32_t)(cum[(i + half) * stride] <= U) * half;
     return i;
 }
-/* The share that u falls on; its part of all; u within it. */
-MCSI_CORE uint32_t mcsi_shares_pick(const uint32_t *cum, uint32_t n, uint32_t stride, mcsi_fixed *u, double *part) {
-    uint32_t total = cum[n * stride], i, share;
-    double U = ((double)u->i + (double)u->f) * (total * (1.0 / MCSI_ONE)), rest;
-    i = mcsi_shares_find(cum, n, stride, (uint32_t)U), share = cum[(i + 1) * stride] - cum[i * stride];
-    rest = (U - cum[i * stride]) / share * MCSI_ONE;
-    *part *= (double)share / total;
-    u->i = (uint32_t)rest < MCSI_ONE ? (uint32_t)rest : MCSI_ONE - 1;
-    u->f = (float)(rest - u->i) < 1.0f ? (float)(rest - u->i) : 0.0f;
-    return i;
+/* The place of U in [0, 2^31) within a share that begins at `begin` of `total`. */
+MCSI_CORE double mcsi_shares_rest(double V, uint32_t begin, uint32_t share) {
+    double rest = (V - (int32_t)begin) * ((double)MCSI_ONE / (int32_t)share);
+    return rest < 2147483647.5 ? rest : 2147483647.5;
 }
-MCSI_CORE double mcsi_shares_part(const uint32_t *cum, uint32_t n, uint32_t stride, uint32_t i) {
-    return (double)(cum[(i + 1) * stride] - cum[i * stride]) / cum[n * stride];
-}
-
 /* 0 where nothing is reflected. */
 MCS_FN int mcsi_facing_make(const mcs_env *e, const mcs_reflection *r, mcsi_facing *s) {
     int32_t ok = 1;
     float ax = mcsi_within(r->alpha_x >= 0.0f, r->alpha_x, 1e-4f, 1e4f),
           ay = mcsi_within(r->alpha_y >= 0.0f, r->alpha_y, 1e-4f, 1e4f);
     s->wo = mcsi_above(r->wo, &ok);
-    s->axes.s = mcs_to_local(&e->frame, r->frame.s), s->axes.t = mcs_to_local(&e->frame, r->frame.t);
-    s->axes.n = mcs_to_local(&e->frame, r->frame.n);
+    s->axes.s = mcsi_to_local(&e->frame, r->frame.s), s->axes.t = mcsi_to_local(&e->frame, r->frame.t);
+    s->axes.n = mcsi_to_local(&e->frame, r->frame.n);
     s->ax2 = ax * ax, s->ay2 = ay * ay, s->matte = mcsi_within(r->matte >= 0.0f, r->matte, 0.0f, 1.0f);
     return ok;
 }
@@ -3907,12 +3893,14 @@ MCS_FN int mcsi_facing_make(const mcs_env *e, const mcs_reflection *r, mcsi_faci
 
 MCS_FN size_t mcs_product_bytes(uint32_t rows) {
     size_t n = 2 * (size_t)rows * rows;
-    return mcsi_tiles_ok(rows)
-               ? sizeof(mcs_product) + (2 * n + rows) * sizeof(float) + (n + 2 * (size_t)rows + 2) * sizeof(uint32_t)
-               : 0;
+    if (!mcsi_tiles_ok(rows)) return 0;
+    return sizeof(mcs_product) + rows * sizeof(double) + (n + 2 * (size_t)rows + 2) * sizeof(uint32_t) +
+           (2 * n + rows) * sizeof(float);
 }
-/* Where a product keeps its parts; the first two are what drawing needs. */
-MCSI_CORE uint32_t *mcsi_product_rows(const mcs_product *p) { return (uint32_t *)(uintptr_t)(p + 1); }
+/* Where a product keeps its parts: of each row the density of a unit of its shares; shares of rows; of the columns of each row;
+ * weights, which drawing does not need. */
+MCSI_CORE double *mcsi_product_units(const mcs_product *p) { return (double *)(uintptr_t)(p + 1); }
+MCSI_CORE uint32_t *mcsi_product_rows(const mcs_product *p) { return (uint32_t *)(void *)(mcsi_product_units(p) + p->t->rows); }
 MCSI_CORE uint32_t *mcsi_product_cum(const mcs_product *p) { return mcsi_product_rows(p) + p->t->rows + 2; }
 MCSI_CORE float *mcsi_product_weights(const mcs_product *p) {
     return (float *)(void *)(mcsi_product_cum(p) + (size_t)p->t->rows * (p->t->cols + 1));
@@ -3927,12 +3915,16 @@ MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_til
 MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
     size_t n = (size_t)p->t->rows * p->t->cols;
     float *weight = mcsi_product_weights(p), *above = weight + n, *row = above + n;
+    uint32_t *rows, i;
 #ifndef MCS_NO_BATCH
     mcsi_grid_rows_n(p->t->rows, p->t->cols, weight, above, mcsi_product_cum(p), row);
 #else
     mcsi_grid_rows(p->t->rows, p->t->cols, weight, above, mcsi_product_cum(p), row);
 #endif
-    p->lit = mcsi_shares(mcsi_product_rows(p), row, p->t->rows);
+    rows = mcsi_product_rows(p), p->lit = mcsi_shares(rows, row, p->t->rows);
+    for (i = 0; i < p->t->rows; i++)
+        mcsi_product_units(p)[i] =
+            rows[i + 1] > rows[i] ? (rows[i + 1] - rows[i]) / ((double)p->lit * mcsi_product_cum(p)[n + i]) : 0.0;
     return p->lit ? MCS_OK : MCS_UNIFORM;
 }
 MCSI_CORE void mcsi_tiles_weigh(const mcsi_facing *s, size_t n, const float *fields, size_t stride, float *weight, float *above) {
@@ -3991,10 +3983,9 @@ MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double 
 MCSI_CORE float mcsi_product_density(const mcs_product *p, uint32_t row, uint32_t col) {
     const mcs_tiles *t = p->t;
     uint32_t i = mcsi_tile_of(row, t->rows, p->e->h), j = mcsi_tile_of(col, t->cols, p->e->w);
-    const uint32_t *rows = mcsi_product_rows(p), *cum = mcsi_product_cum(p) + i;
-    if (rows[i + 1] == rows[i] || cum[(j + 1) * t->rows] == cum[j * t->rows]) return 0.0f;
-    return mcsi_tiled_density(t, p->e, mcsi_shares_part(rows, t->rows, 1, i) * mcsi_shares_part(cum, t->cols, t->rows, j), i, j,
-                              row, col);
+    const uint32_t *cum = mcsi_product_cum(p) + j * t->rows + i;
+    double part = mcsi_product_units(p)[i] * (int32_t)(cum[t->rows] - cum[0]);
+    return part > 0.0 ? mcsi_tiled_density(t, p->e, part, i, j, row, col) : 0.0f;
 }
 /* The same for a direction, with the lobe's share. */
 MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
@@ -4007,25 +3998,36 @@ MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
     return r;
 }
 MCS_FN float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
-/* Tile, and the point within its window. */
-MCSI_CORE const mcs_env_window *mcsi_product_pick(const mcs_product *p, mcsi_fixed *u1, mcsi_fixed *u2, double *part) {
+/* Tile row, then column; U2 and U1 become the place in it. */
+MCSI_CORE uint32_t mcsi_product_row(const mcs_product *p, double *U2) {
+    const uint32_t *rows = mcsi_product_rows(p);
+    uint32_t i;
+    *U2 *= (int32_t)p->lit * (1.0 / MCSI_ONE), i = mcsi_shares_find(rows, p->t->rows, 1, (uint32_t)(int32_t)*U2);
+    *U2 = mcsi_shares_rest(*U2, rows[i], rows[i + 1] - rows[i]);
+    return i;
+}
+MCSI_CORE const mcs_env_window *mcsi_product_col(const mcs_product *p, uint32_t i, double *U1, double *part) {
     const mcs_tiles *t = p->t;
-    uint32_t i = mcsi_shares_pick(mcsi_product_rows(p), t->rows, 1, u2, part);
-    return mcsi_tiles_window(t, i, mcsi_shares_pick(mcsi_product_cum(p) + i, t->cols, t->rows, u1, part));
+    const uint32_t *cum = mcsi_product_cum(p) + i;
+    uint32_t n = t->rows, j;
+    *U1 *= (int32_t)cum[t->cols * n] * (1.0 / MCSI_ONE), j = mcsi_shares_find(cum, t->cols, n, (uint32_t)(int32_t)*U1),
+                                                         cum += j * n;
+    *U1 = mcsi_shares_rest(*U1, cum[0], cum[n] - cum[0]), *part = mcsi_product_units(p)[i] * (int32_t)(cum[n] - cum[0]);
+    return mcsi_tiles_window(t, i, j);
 }
 MCSI_CORE mcs_texel mcsi_nothing(const mcs_env *e) {
     mcs_texel r;
     r.w = e->frame.n, r.pdf = 0.0f, r.col = r.row = 0;
     return r;
 }
-MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, mcsi_fixed u1, mcsi_fixed u2, double part, int ok) {
+MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, double U1, double U2, double part, int ok) {
     mcsi_env_view v = mcsi_env_part(m);
-    return mcsi_env_draw(e, &v, u1, u2, part, ok);
+    return mcsi_env_draw(e, &v, U1, U2, part, ok);
 }
 MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
     int32_t ok = 1;
     double part = 1.0;
-    mcsi_fixed U1, U2;
+    double U1, U2;
     u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
     if (u1 < p->brdf_share) {
         mcs_brdf b = mcs_ggx_vndf_sample(&p->lobe, p->wo, mcsi_min(u1 / p->brdf_share, 0.99999994f), u2);
@@ -4035,9 +4037,9 @@ MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
     }
     if (!p->lit) return mcsi_nothing(p->e);
     if (p->brdf_share > 0.0f) u1 = mcsi_min((u1 - p->brdf_share) / (1.0f - p->brdf_share), 0.99999994f);
-    U1 = mcsi_fixed_u(u1, &ok), U2 = mcsi_fixed_u(u2, &ok);
+    U1 = mcsi_times_one(u1, &ok), U2 = mcsi_times_one(u2, &ok);
     {
-        const mcs_env_window *m = mcsi_product_pick(p, &U1, &U2, &part);
+        const mcs_env_window *m = mcsi_product_col(p, mcsi_product_row(p, &U2), &U1, &part);
         mcs_texel r = mcsi_tiled_draw(p->e, m, U1, U2, part, ok);
         if (p->brdf_share > 0.0f)
             r.pdf = ok ? mcs_mix_pdf(p->brdf_share, mcs_ggx_vndf_pdf(&p->lobe, p->wo, mcs_to_local(&p->frame, r.w)), r.pdf) : 0.0f;
@@ -4048,6 +4050,10 @@ MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
 MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
                                  float *pdf) {
     mcsi_env_block b;
+    double U1[MCSI_ENV_BLOCK], U2[MCSI_ENV_BLOCK], part[MCSI_ENV_BLOCK];
+    const mcs_env_window *window[MCSI_ENV_BLOCK];
+    uint32_t row[MCSI_ENV_BLOCK];
+    int32_t ok[MCSI_ENV_BLOCK];
     size_t i, k, m;
     if (p->brdf_share > 0.0f || !p->lit) {
         for (i = 0; i < n; i++) {
@@ -4060,14 +4066,16 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
         return;
     }
     mcsi_env_block_start(&b, n);
-    for (i = 0; i < n; i += m) {
+    for (i = 0; i < n; i += m) { /* by stages, as each of them is a long chain of operations */
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         for (k = 0; k < m; k++) {
-            int32_t ok = 1;
-            double part = 1.0;
-            mcsi_fixed U1 = mcsi_fixed_u(u1[i + k], &ok), U2 = mcsi_fixed_u(u2[i + k], &ok);
-            mcsi_env_view v = mcsi_env_part(mcsi_product_pick(p, &U1, &U2, &part));
-            mcsi_env_block_aim(p->e, &v, &b, k, U1, U2, part, ok);
+            ok[k] = 1, U1[k] = mcsi_times_one(u1[i + k], &ok[k]), U2[k] = mcsi_times_one(u2[i + k], &ok[k]);
+            row[k] = mcsi_product_row(p, &U2[k]);
+        }
+        for (k = 0; k < m; k++) window[k] = mcsi_product_col(p, row[k], &U1[k], &part[k]);
+        for (k = 0; k < m; k++) {
+            mcsi_env_view v = mcsi_env_part(window[k]);
+            mcsi_env_block_aim(p->e, &v, &b, k, U1[k], U2[k], part[k], ok[k]);
         }
         mcsi_env_block_land(p->e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL);
     }
@@ -4077,65 +4085,79 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
 /* ---- one-shot form: blocks of 4 x 4 tiles, then the tiles of one ---- */
 
 enum { MCSI_BLOCKS_MAX = MCSI_TILES_MAX * MCSI_TILES_MAX / 8 };
-typedef struct {
-    float weight[MCSI_BLOCKS_MAX], above[MCSI_BLOCKS_MAX], row[MCSI_TILES_MAX];
-    uint32_t rows[MCSI_TILES_MAX + 1], cum[MCSI_BLOCKS_MAX + MCSI_TILES_MAX];
-} mcsi_level;
-/* Shares of a grid of tiles; 0 when there is nothing to draw. */
-MCSI_CORE int mcsi_level_make(mcsi_level *l, const mcsi_facing *s, uint32_t rows, uint32_t cols, const float *fields) {
-    mcsi_tiles_weigh(s, (size_t)rows * cols, fields, (size_t)rows * cols, l->weight, l->above);
-    mcsi_grid_rows(rows, cols, l->weight, l->above, l->cum, l->row);
-    return mcsi_shares(l->rows, l->row, rows) > 0;
+/* A draw from a list of weights as integer shares, or the part of entry *k when there is nothing to draw (U < 0). */
+MCSI_CORE int mcsi_list_draw(const float *weight, uint32_t n, double *U, uint32_t *k, double *part) {
+    uint32_t cum[MCSI_TILES_MAX + 1], total = mcsi_shares(cum, weight, n);
+    if (total == 0) return 0;
+    if (*U >= 0.0) {
+        double V = *U * (total * (1.0 / MCSI_ONE));
+        *k = mcsi_shares_find(cum, n, 1, (uint32_t)V);
+        *U = mcsi_shares_rest(V, cum[*k], cum[*k + 1] - cum[*k]);
+    }
+    *part *= (double)(cum[*k + 1] - cum[*k]) / total;
+    return *part > 0.0;
 }
-MCSI_CORE int mcsi_level_blocks(mcsi_level *l, const mcsi_facing *s, const mcs_tiles *t) {
-    return mcsi_level_make(l, s, t->rows / MCSI_TILE_BLOCK, t->cols / MCSI_TILE_BLOCK, mcsi_tiles_blocks(t));
+/* The same from a grid of tiles, as mcsi_grid_rows has it; from their light alone when all are below the horizon. */
+MCSI_CORE int mcsi_level_draw(const mcsi_facing *s, uint32_t rows, uint32_t cols, const float *fields, double *U1, double *U2,
+                              uint32_t *i, uint32_t *j, double *part) {
+    float weight[MCSI_BLOCKS_MAX], above[MCSI_BLOCKS_MAX], list[MCSI_TILES_MAX], light[MCSI_TILES_MAX], all = 0.0f, bright = 0.0f,
+                                                                                                        floor;
+    uint32_t n = rows * cols, k, m;
+    const float *w = weight;
+    mcsi_tiles_weigh(s, n, fields, n, weight, above);
+    for (k = 0; k < rows; k++) {
+        float sum = 0.0f, sky = 0.0f;
+        for (m = k; m < n; m += rows) sum += weight[m], sky += above[m];
+        list[k] = sum, light[k] = sky, all += sum, bright += sky;
+    }
+    floor = all > 0.0f && bright > 0.0f ? 1e-3f * all / bright : 1.0f;
+    if (!(bright > 0.0f)) {
+        w = fields;
+        for (m = 0; m < n; m += rows)
+            for (k = 0; k < rows; k++) list[k] += fields[m + k];
+    }
+    for (k = 0; k < rows; k++) list[k] += floor * light[k];
+    if (!mcsi_list_draw(list, rows, U2, i, part)) return 0;
+    for (k = 0; k < cols; k++) list[k] = w[k * rows + *i] + floor * above[k * rows + *i];
+    return mcsi_list_draw(list, cols, U1, j, part);
 }
-MCSI_CORE int mcsi_level_tiles(mcsi_level *l, const mcsi_facing *s, const mcs_tiles *t, uint32_t i, uint32_t j) {
-    float fields[MCSI_TILE_FIELDS * MCSI_TILE_BLOCK * MCSI_TILE_BLOCK];
-    const float *from = mcsi_tiles_fields(t) + (size_t)j * MCSI_TILE_BLOCK * t->rows + (size_t)i * MCSI_TILE_BLOCK;
+/* Down both levels to tile (i, j) and the place in it; with U1, U2 < 0, the part of all draws that tile (i, j) gets. */
+MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, double *U1, double *U2, uint32_t *i,
+                                uint32_t *j, double *part) {
+    enum { B = MCSI_TILE_BLOCK };
+    float fields[MCSI_TILE_FIELDS * B * B];
+    uint32_t I = *i / B, J = *j / B;
+    const float *from;
     size_t k, c, n = (size_t)t->rows * t->cols;
+    mcsi_facing s;
+    if (!mcsi_facing_make(e, r, &s) || !mcsi_level_draw(&s, t->rows / B, t->cols / B, mcsi_tiles_blocks(t), U1, U2, &I, &J, part))
+        return 0;
+    from = mcsi_tiles_fields(t) + (size_t)J * B * t->rows + (size_t)I * B;
     for (k = 0; k < MCSI_TILE_FIELDS; k++)
-        for (c = 0; c < MCSI_TILE_BLOCK; c++)
-            memcpy(fields + (k * MCSI_TILE_BLOCK + c) * MCSI_TILE_BLOCK, from + k * n + c * t->rows,
-                   MCSI_TILE_BLOCK * sizeof(float));
-    if (mcsi_level_make(l, s, MCSI_TILE_BLOCK, MCSI_TILE_BLOCK, fields)) return 1;
-    memcpy(l->weight, fields, MCSI_TILE_BLOCK * MCSI_TILE_BLOCK * sizeof(float)); /* all below the horizon that the block crosses */
-    mcsi_grid_rows(MCSI_TILE_BLOCK, MCSI_TILE_BLOCK, l->weight, l->above, l->cum, l->row);
-    return mcsi_shares(l->rows, l->row, MCSI_TILE_BLOCK) > 0;
+        for (c = 0; c < B; c++) {
+            const float *column = from + k * n + c * t->rows;
+            float *to = fields + (k * B + c) * B;
+            to[0] = column[0], to[1] = column[1], to[2] = column[2], to[3] = column[3];
+        }
+    *i %= B, *j %= B;
+    if (!mcsi_level_draw(&s, B, B, fields, U1, U2, i, j, part)) return 0;
+    *i += I * B, *j += J * B;
+    return 1;
 }
 MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2) {
     int32_t ok = 1;
-    double part = 1.0;
-    mcsi_fixed U1 = mcsi_fixed_u(u1, &ok), U2 = mcsi_fixed_u(u2, &ok);
-    mcsi_facing s;
-    mcsi_level l;
-    uint32_t i, j, rows = t->rows / MCSI_TILE_BLOCK, cols = t->cols / MCSI_TILE_BLOCK;
-    if (!mcsi_facing_make(e, r, &s) || !mcsi_level_blocks(&l, &s, t)) return mcsi_nothing(e);
-    i = mcsi_shares_pick(l.rows, rows, 1, &U2, &part), j = mcsi_shares_pick(l.cum + i, cols, rows, &U1, &part);
-    if (!mcsi_level_tiles(&l, &s, t, i, j)) return mcsi_nothing(e);
-    i = i * MCSI_TILE_BLOCK, j = j * MCSI_TILE_BLOCK;
-    rows = mcsi_shares_pick(l.rows, MCSI_TILE_BLOCK, 1, &U2, &part);
-    cols = mcsi_shares_pick(l.cum + rows, MCSI_TILE_BLOCK, MCSI_TILE_BLOCK, &U1, &part);
-    return mcsi_tiled_draw(e, mcsi_tiles_window(t, i + rows, j + cols), U1, U2, part, ok);
+    double part = 1.0, U1 = mcsi_times_one(u1, &ok), U2 = mcsi_times_one(u2, &ok);
+    uint32_t i = 0, j = 0;
+    if (!mcsi_oneshot_tile(t, e, r, &U1, &U2, &i, &j, &part)) return mcsi_nothing(e);
+    return mcsi_tiled_draw(e, mcsi_tiles_window(t, i, j), U1, U2, part, ok);
 }
 MCS_FN float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w) {
     mcs_texel at = mcs_env_texel(e, w);
     int32_t ok = 1;
-    double part;
-    mcsi_facing s;
-    mcsi_level l;
-    uint32_t i = mcsi_tile_of(at.row, t->rows, e->h), j = mcsi_tile_of(at.col, t->cols, e->w), I = i / MCSI_TILE_BLOCK,
-             J = j / MCSI_TILE_BLOCK, rows = t->rows / MCSI_TILE_BLOCK, cols = t->cols / MCSI_TILE_BLOCK;
+    double part = 1.0, U1 = -1.0, U2 = -1.0;
+    uint32_t i = mcsi_tile_of(at.row, t->rows, e->h), j = mcsi_tile_of(at.col, t->cols, e->w);
     mcsi_direction(w, &ok);
-    if (!ok || !mcsi_facing_make(e, r, &s) || !mcsi_level_blocks(&l, &s, t)) return 0.0f;
-    part = mcsi_shares_part(l.rows, rows, 1, I);
-    if (!(part > 0.0)) return 0.0f;
-    part *= mcsi_shares_part(l.cum + I, cols, rows, J);
-    if (!(part > 0.0) || !mcsi_level_tiles(&l, &s, t, I, J)) return 0.0f;
-    i -= I * MCSI_TILE_BLOCK, j -= J * MCSI_TILE_BLOCK, part *= mcsi_shares_part(l.rows, MCSI_TILE_BLOCK, 1, i);
-    if (!(part > 0.0)) return 0.0f;
-    part *= mcsi_shares_part(l.cum + i, MCSI_TILE_BLOCK, MCSI_TILE_BLOCK, j);
-    return part > 0.0 ? mcsi_tiled_density(t, e, part, I * MCSI_TILE_BLOCK + i, J * MCSI_TILE_BLOCK + j, at.row, at.col) : 0.0f;
+    return ok && mcsi_oneshot_tile(t, e, r, &U1, &U2, &i, &j, &part) ? mcsi_tiled_density(t, e, part, i, j, at.row, at.col) : 0.0f;
 }
 #endif /* MCSI_W == 1 */
 #endif

@@ -8,17 +8,18 @@
  *
  * Words travel as the bits of floats. A name needs its function here and its place in one of the three lists: floats at every width, words at every width, and what there is only once. */
 #ifndef BITS_WIDE
-#define BITS_WIDE(X)                                                                                                         \
-    X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(to_world) X(to_local) X(reflect) \
-    X(reflect_pdf) X(half) X(cos_d) X(schlick) X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) X(ashikhmin_make)     \
-    X(is_mirror) X(ggx_d) X(ggx_g1) X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf)
+#define BITS_WIDE(X)                                                                                                              \
+    X(u01)                                                                                                                        \
+    X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(to_world) X(to_local) X(reflect) X(reflect_pdf) X(half) X(cos_d) \
+        X(schlick) X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) X(ashikhmin_make) X(is_mirror) X(ggx_d) X(ggx_g1)      \
+            X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf)
 #define BITS_WORDS(X) X(hash) X(sobol_bits)
-#define BITS_SCALAR(X)                                                                                                       \
-    X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n)        \
-    X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n)  \
-    X(discrete_sample) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n)      \
-    X(alias_bytes) X(alias_build) X(alias_sample) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) X(stat_error)      \
-    X(stat_ci)
+#define BITS_SCALAR(X)                                                                                                         \
+    X(pcg32_make)                                                                                                              \
+    X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n) X(stratified) X(latin) \
+        X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) X(discrete_sample)    \
+            X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(alias_bytes)    \
+                X(alias_build) X(alias_sample) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) X(stat_error) X(stat_ci)
 #endif
 
 #define FN(name) BITS_HD static void B_(name)(const float *in, float *out)
@@ -78,11 +79,11 @@ FN(cos_d) { PUT(0, M_(cos_d)(IN3(3), IN3(8))); }
 FN(schlick) { PUT(0, M_(schlick)(IN(6), IN(7))); }
 
 /* A prepared material is opaque: it is seen through its functions. */
-#define MAKE(name, ...)                                               \
-    FN(name##_make) {                                                 \
-        const M_(name) m = M_(name##_make)(__VA_ARGS__);              \
-        PUT(0, M_(name##_pdf)(&m, IN3(3), IN3(8)));                   \
-        PUT(1, M_(name##_eval)(&m, IN3(3), IN3(8)));                  \
+#define MAKE(name, ...)                                                   \
+    FN(name##_make) {                                                     \
+        const M_(name) m = M_(name##_make)(__VA_ARGS__);                  \
+        PUT(0, M_(name##_pdf)(&m, IN3(3), IN3(8)));                       \
+        PUT(1, M_(name##_eval)(&m, IN3(3), IN3(8)));                      \
         B_(put3)(out, 2, M_(name##_sample)(&m, IN3(3), IN(6), IN(7)).wi); \
     }
 MAKE(phong, IN(0))
@@ -101,9 +102,18 @@ FN(ward_make) {
 }
 FN(is_mirror) { PUT_WORD(0, (U_)M_(is_mirror)(IN(0), IN(1)) & 1u); } /* lanes give all bits for yes */
 #define GGX const M_(ggx) m = M_(ggx_make)(IN(0), IN(1))
-FN(ggx_d) { GGX; PUT(0, M_(ggx_d)(&m, IN3(8))); }
-FN(ggx_g1) { GGX; PUT(0, M_(ggx_g1)(&m, IN3(8))); }
-FN(ggx_g2) { GGX; PUT(0, M_(ggx_g2)(&m, IN3(3), IN3(8))); }
+FN(ggx_d) {
+    GGX;
+    PUT(0, M_(ggx_d)(&m, IN3(8)));
+}
+FN(ggx_g1) {
+    GGX;
+    PUT(0, M_(ggx_g1)(&m, IN3(8)));
+}
+FN(ggx_g2) {
+    GGX;
+    PUT(0, M_(ggx_g2)(&m, IN3(3), IN3(8)));
+}
 #undef GGX
 FN(mis_balance) { PUT(0, M_(mis_balance)(IN(0), IN(1))); }
 FN(mis_power) { PUT(0, M_(mis_power)(IN(0), IN(1))); }
@@ -111,14 +121,18 @@ FN(mix_pdf) { PUT(0, M_(mix_pdf)(IN(6), IN(0), IN(1))); }
 
 #if BITS_W == 1
 #define WORD2(i) ((uint64_t)WORD(i) << 32 | WORD((i) + 1))
-BITS_HD static void bits_put_word2(float *out, int i, uint64_t v) { PUT_WORD(i, (uint32_t)v), PUT_WORD(i + 1, (uint32_t)(v >> 32)); }
+BITS_HD static void bits_put_word2(float *out, int i, uint64_t v) {
+    PUT_WORD(i, (uint32_t)v), PUT_WORD(i + 1, (uint32_t)(v >> 32));
+}
 BITS_HD static void bits_put_double(float *out, int i, double v) {
     uint64_t word;
     memcpy(&word, &v, sizeof word);
     bits_put_word2(out, i, word);
 }
 /* Arrays longer than `out` are seen through their hash. */
-BITS_HD static void bits_put_array(float *out, int i, const float *a, size_t n) { bits_put_word2(out, i, bits_hash(BITS_START, a, n)); }
+BITS_HD static void bits_put_array(float *out, int i, const float *a, size_t n) {
+    bits_put_word2(out, i, bits_hash(BITS_START, a, n));
+}
 enum { BITS_LONG = 200, BITS_CELLS = 40 };
 
 FN(pcg32_make) {
@@ -179,12 +193,12 @@ BITS_HD static uint32_t bits_entries(const float *in, float *f) {
     }
     return n;
 }
-#define TABLE(kind)                                                          \
-    uint64_t room[4 * BITS_CELLS];                                           \
-    float f[BITS_CELLS + 1];                                                 \
-    const uint32_t n = bits_entries(in, f);                                  \
-    mcs_##kind *t = (mcs_##kind *)(void *)room;                              \
-    const mcs_status status = mcs_##kind##_build(t, sizeof room, f, n);      \
+#define TABLE(kind)                                                     \
+    uint64_t room[4 * BITS_CELLS];                                      \
+    float f[BITS_CELLS + 1];                                            \
+    const uint32_t n = bits_entries(in, f);                             \
+    mcs_##kind *t = (mcs_##kind *)(void *)room;                         \
+    const mcs_status status = mcs_##kind##_build(t, sizeof room, f, n); \
     (void)status
 
 FN(pwc_bytes) { PUT_WORD(0, (uint32_t)mcs_pwc_bytes(WORD(11) >> (WORD(12) & 31))); }
@@ -200,23 +214,23 @@ FN(pwc_build_fn) {
     PUT_WORD(0, (uint32_t)mcs_pwc_build_fn(t, sizeof room, bits_curve, &k, 1 + WORD(11) % BITS_CELLS));
     PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total), PUT(4, mcs_pwc_pdf(t, 0.3f)), PUT(5, mcs_pwc_pdf(t, 0.7f));
 }
-#define TABLE_DENSITY(kind)                                                       \
-    FN(kind##_sample) {                                                           \
-        TABLE(kind);                                                              \
-        const mcs_cell c = mcs_##kind##_sample(t, IN(6));                         \
-        PUT(0, c.x), PUT(1, c.pdf), PUT_WORD(2, c.i);                             \
-    }                                                                             \
-    FN(kind##_pdf) {                                                              \
-        TABLE(kind);                                                              \
-        PUT(0, mcs_##kind##_pdf(t, IN(6)));                                       \
-    }                                                                             \
-    FN(kind##_invert) {                                                           \
-        TABLE(kind);                                                              \
-        PUT(0, mcs_##kind##_invert(t, IN(6)));                                    \
-    }                                                                             \
-    FN(kind##_sample_n) {                                                         \
-        TABLE(kind);                                                              \
-        mcs_##kind##_sample_n(t, 2, in + 6, out, out + 2);                        \
+#define TABLE_DENSITY(kind)                                \
+    FN(kind##_sample) {                                    \
+        TABLE(kind);                                       \
+        const mcs_cell c = mcs_##kind##_sample(t, IN(6));  \
+        PUT(0, c.x), PUT(1, c.pdf), PUT_WORD(2, c.i);      \
+    }                                                      \
+    FN(kind##_pdf) {                                       \
+        TABLE(kind);                                       \
+        PUT(0, mcs_##kind##_pdf(t, IN(6)));                \
+    }                                                      \
+    FN(kind##_invert) {                                    \
+        TABLE(kind);                                       \
+        PUT(0, mcs_##kind##_invert(t, IN(6)));             \
+    }                                                      \
+    FN(kind##_sample_n) {                                  \
+        TABLE(kind);                                       \
+        mcs_##kind##_sample_n(t, 2, in + 6, out, out + 2); \
     }
 TABLE_DENSITY(pwc)
 TABLE_DENSITY(pwl)
@@ -263,9 +277,18 @@ BITS_HD static void bits_put_stat(float *out, mcs_stat s) {
 FN(stat_add) { bits_put_stat(out, bits_stat(in, (int)(WORD(12) % 9))); }
 FN(stat_merge) { bits_put_stat(out, mcs_stat_merge(bits_stat(in, (int)(WORD(12) % 9)), bits_stat(in + 1, (int)(WORD(13) % 9)))); }
 #define STAT const mcs_stat s = bits_stat(in, (int)(WORD(12) % 9))
-FN(stat_variance) { STAT; bits_put_double(out, 0, mcs_stat_variance(&s)); }
-FN(stat_error) { STAT; bits_put_double(out, 0, mcs_stat_error(&s)); }
-FN(stat_ci) { STAT; bits_put_double(out, 0, mcs_stat_ci(&s, 1.96)); }
+FN(stat_variance) {
+    STAT;
+    bits_put_double(out, 0, mcs_stat_variance(&s));
+}
+FN(stat_error) {
+    STAT;
+    bits_put_double(out, 0, mcs_stat_error(&s));
+}
+FN(stat_ci) {
+    STAT;
+    bits_put_double(out, 0, mcs_stat_ci(&s, 1.96));
+}
 #undef STAT
 #undef WORD2
 #endif

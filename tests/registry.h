@@ -1,7 +1,7 @@
 /* The registry: one row per continuous sampler of mcsample.h, and everything the generic checks need to know about it.
  *
  * Define MCST_WIDE before including to get the 4, 8 and 16 wide forms too (they cost compile time).
- * The other samplers (tables, alias, discrete, environment) have tests of their own: see mcst_exempt. */
+ * The other samplers (tables, alias, discrete, environment, product) have tests of their own: see mcst_exempt. */
 #ifndef MCST_REGISTRY_H
 #define MCST_REGISTRY_H
 #include <float.h>
@@ -46,7 +46,7 @@
     X(BRDF, ashikhmin, ashikhmin, ashikhmin, ashikhmin, COSPOWER, exponents)
 
 /* Samplers of mcsample.h that are not rows, because a table is not a handful of parameters. */
-static const char *const mcst_exempt[] = {"pwc", "pwl", "discrete", "alias", "env"};
+static const char *const mcst_exempt[] = {"pwc", "pwl", "discrete", "alias", "env", "env_window", "product", "oneshot"};
 
 enum { MCST_P = 6 }; /* numbers in a parameter set: p[0..2] of the sampler, p[3..5] = wo */
 

@@ -2,7 +2,7 @@
 # run.sh JOBS PROGRAM...: runs the test programs JOBS at a time, prints each one's output in one piece when it ends, and at the
 # very end the sum of their cases as "N passed, N failed". Non-zero when a case failed, and when a program crashed, ended without
 # its summary line or ran no case (with FILTER set, single programs may run none, but not all of them).
-# FILTER and SEED are handed to every program as --filter and --seed.
+# FILTER and SEED are handed to every program as --filter and --seed. Programs in a folder stress run at MCS_STRESS_SCALE, 0.002.
 set -u
 jobs=$1
 shift
@@ -18,6 +18,7 @@ worker() {
         mkdir "$tmp/$i" 2>/dev/null || continue
         {
             case $program in */*) ;; *) program=./$program ;; esac
+            case $program in */stress/*) export MCS_TEST_SCALE="${MCS_STRESS_SCALE:-0.002}" ;; esac
             "$program" ${FILTER:+--filter "$FILTER"} ${SEED:+--seed "$SEED"}
             echo $? >"$tmp/$i/status"
         } >"$tmp/$i/output" 2>&1

@@ -60,20 +60,21 @@ static float from_bits(uint32_t bits) {
 
 /* Mostly in 2^-7 ... 2, a quarter in 2^-24 ... 2^31, some over all floats, some special. */
 static float any_parameter(uint64_t *state) {
-    static const float special[16] = {0,    -0.0f, 1e-7f, 1e4f,    1e9f,     FLT_MAX,  FLT_MIN, 0x1p-149f,
+    static const float special[16] = {0,     -0.0f, 1e-7f, 1e4f,     1e9f,      FLT_MAX,   FLT_MIN, 0x1p-149f,
                                       1e-6f, -1,    1,     INFINITY, -INFINITY, 0x1p-130f, 0.5f,    2};
     const uint64_t z = mcst_mix(state);
     const uint32_t mantissa = (uint32_t)(z >> 41), e = (uint32_t)(z >> 8 & 0xFFFF);
     switch (z & 31) {
-        case 0: return from_bits(0x7fc00000); /* NaN */
-        case 1: return special[e % 16];
-        case 2: return from_bits((e % 254 + 1) << 23 | mantissa);
-        default: return from_bits((z & 3 ? 120 + e % 8 : 103 + e % 55) << 23 | mantissa);
+    case 0: return from_bits(0x7fc00000); /* NaN */
+    case 1: return special[e % 16];
+    case 2: return from_bits((e % 254 + 1) << 23 | mantissa);
+    default: return from_bits((z & 3 ? 120 + e % 8 : 103 + e % 55) << 23 | mantissa);
     }
 }
 
 static float any_u(uint64_t *state) {
-    static const float edge[16] = {0, -0.0f, 0x1p-149f, 0x1p-126f, 0x1p-24f, 0.25f, 0.5f, 0.75f, 1 - 0x1p-24f, 1, -1, 2, INFINITY, -1e30f, 0x1p-25f, 0.125f};
+    static const float edge[16] = {0, -0.0f, 0x1p-149f, 0x1p-126f, 0x1p-24f, 0.25f,    0.5f,  0.75f, 1 - 0x1p-24f,
+                                   1, -1,    2,         INFINITY,  -1e30f,   0x1p-25f, 0.125f};
     const uint64_t z = mcst_mix(state);
     if (z % 8) return (float)(int32_t)(z >> 40) * 0x1p-24f;
     return z >> 8 & 31 ? edge[z >> 16 & 15] : from_bits(0x7fc00000);
@@ -83,15 +84,16 @@ static float any_u(uint64_t *state) {
 static void any_direction(uint64_t *state, float w[3]) {
     static const double cosines[8] = {1, 0.7, 0.35, 0.0871557, 1e-2, 1e-3, 1e-6, 1e-7};
     const uint64_t z = mcst_mix(state);
-    const double t = (double)(int32_t)(z >> 40) * 0x1p-23 - 1, c = z & 1 ? cosines[z >> 1 & 7] : (double)(int32_t)(z >> 16 & 0xFFFFFF) * 0x1p-24;
+    const double t = (double)(int32_t)(z >> 40) * 0x1p-23 - 1,
+                 c = z & 1 ? cosines[z >> 1 & 7] : (double)(int32_t)(z >> 16 & 0xFFFFFF) * 0x1p-24;
     const double s = sqrt((1 - c) * (1 + c)), up = z >> 4 & 7 ? 1 : -1, turn = z >> 7 & 1 ? 1 : -1;
     w[0] = (float)(turn * s * (1 - t * t) / (1 + t * t)), w[1] = (float)(s * 2 * t / (1 + t * t)), w[2] = (float)(up * c);
     if (z >> 8 & 15) return;
     switch (z >> 12 & 3) {
-        case 0: w[z % 3] = any_parameter(state); break;
-        case 1: w[0] = w[1] = w[2] = 0; break;
-        case 2: w[0] = from_bits(0x7fc00000); break;
-        default: w[0] *= 1e30f, w[1] *= 1e30f, w[2] *= 1e30f;
+    case 0: w[z % 3] = any_parameter(state); break;
+    case 1: w[0] = w[1] = w[2] = 0; break;
+    case 2: w[0] = from_bits(0x7fc00000); break;
+    default: w[0] *= 1e30f, w[1] *= 1e30f, w[2] *= 1e30f;
     }
 }
 
@@ -150,9 +152,11 @@ static void make_inputs(const mcst_row *row) {
 #define M_(x) mcs16_##x
 #define B_(x) bits16_##x
 #include "bits.h"
-#define FOUR(x) {bits1_##x, bits4_##x, bits8_##x, bits16_##x}
+#define FOUR(x) \
+    { bits1_##x, bits4_##x, bits8_##x, bits16_##x }
 #else
-#define FOUR(x) {bits1_##x, NULL, NULL, NULL}
+#define FOUR(x) \
+    { bits1_##x, NULL, NULL, NULL }
 #endif
 
 /* A function of the index: a row and which of its functions, or one of bits.h. */
@@ -175,12 +179,12 @@ typedef struct {
 static void call(target t, int w, int lanes, const float *in, float *out) {
     const mcst_fns *f = &mcst_rows[t.form == OTHER ? 0 : t.at].fn[w];
     switch (t.form) {
-        case SAMPLE: f->sample(in, in + U * lanes, in + (U + 1) * lanes, out); break;
-        case PDF: f->pdf(in, in + X * lanes, out); break;
-        case INVERT: f->invert(in, in + X * lanes, out); break;
-        case EVAL: f->eval(in, in + X * lanes, out); break;
-        case WEIGHT: f->weight(in, in + X * lanes, out); break;
-        default: others[t.at].fn[w](in, out);
+    case SAMPLE: f->sample(in, in + U * lanes, in + (U + 1) * lanes, out); break;
+    case PDF: f->pdf(in, in + X * lanes, out); break;
+    case INVERT: f->invert(in, in + X * lanes, out); break;
+    case EVAL: f->eval(in, in + X * lanes, out); break;
+    case WEIGHT: f->weight(in, in + X * lanes, out); break;
+    default: others[t.at].fn[w](in, out);
     }
 }
 
@@ -452,7 +456,8 @@ int main(int argc, char **argv) {
     }
     mcst_group("bits");
     if (mcst_case("the index, the adapters and %s agree", MCST_BITS)) {
-        CHECK(name_count > 100, "%d functions in the index of %s; run the test where it is, or compile with -DMCS_HEADER", name_count, MCS_HEADER);
+        CHECK(name_count > 100, "%d functions in the index of %s; run the test where it is, or compile with -DMCS_HEADER",
+              name_count, MCS_HEADER);
         CHECK(stored_count == name_count, "%d hashes for %d functions", stored_count, name_count);
         for (i = 0; i < stored_count; i++)
             CHECK(find(stored_name[i], names, name_count) >= 0, "%s is stored, but not in the index", stored_name[i]);

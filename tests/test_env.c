@@ -1,13 +1,15 @@
 /* Environment map. The truth is the image itself: luminance times solid angle of each texel, summed in long double. */
 #include <float.h>
 #include <math.h>
+#include "arena.h"
+#include "hdr.h"
 #include "mcs_test.h"
 #include "mcsample.h"
 #include "stats.h"
 
 typedef long double ld;
 
-enum { GUARD = 64, MAX_TEXELS = 8192 * 16 };
+enum { MAX_TEXELS = 8192 * 16 };
 static const double pi = 3.14159265358979323846;
 static const double level = 1e-5;      /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
 static const double eps = 0x1p-24;     /* rounding of a float, relative; also the step of u */
@@ -78,12 +80,6 @@ enum { MAPS = (int)(sizeof maps / sizeof *maps), POLES = 9, CHECKER = 10, SKY = 
 static float pixels[MAX_TEXELS];
 static ld prob[MAX_TEXELS], row_prob[8192], total;
 
-/* cos(pi r / h) - cos(pi (r+1) / h) without cancellation, times the width of a column. */
-static ld solid_angle(uint32_t r, uint32_t w, uint32_t h) {
-    const ld p = acosl(-1.0L);
-    return 2 * p / w * 2 * sinl(p / 2 / h) * sinl(p * (r + 0.5L) / h);
-}
-
 static void load(const map *m) {
     uint32_t r, c;
     total = 0;
@@ -99,37 +95,7 @@ static void load(const map *m) {
     }
 }
 
-/* ---- the caller's memory, exactly as many bytes as were asked for, between two guards ---- */
-
-typedef struct {
-    unsigned char *raw;
-    mcs_env *e;
-    size_t bytes;
-} arena;
-
-static arena arena_make(size_t bytes) {
-    arena a;
-    a.bytes = bytes;
-    a.raw = (unsigned char *)malloc(bytes + 2 * GUARD);
-    if (!a.raw) {
-        fprintf(stderr, "out of memory\n");
-        exit(2);
-    }
-    memset(a.raw, 0xa5, bytes + 2 * GUARD);
-    a.e = (mcs_env *)(void *)(a.raw + GUARD);
-    return a;
-}
-
-static int untouched(const unsigned char *p, size_t n) {
-    size_t i;
-    for (i = 0; i < n; i++)
-        if (p[i] != 0xa5) return 0;
-    return 1;
-}
-
-static int arena_intact(const arena *a) { return untouched(a->raw, GUARD) && untouched(a->raw + GUARD + a->bytes, GUARD); }
-
-static void arena_free(arena *a) { free(a->raw); }
+static mcs_env *env_in(const arena *a) { return (mcs_env *)(void *)a->at; }
 
 static mcs_status build_from(mcs_env *e, size_t bytes, const float *p, uint32_t w, uint32_t h, uint32_t channels, size_t stride) {
     mcs_image image = mcs_image_make(p, w, h, channels);
@@ -141,33 +107,14 @@ static arena build(const map *m) {
     arena a = arena_make(mcs_env_bytes(m->w, m->h));
     int rc;
     load(m);
-    rc = build_from(a.e, a.bytes, pixels, m->w, m->h, 1, 0);
+    rc = build_from(env_in(&a), a.bytes, pixels, m->w, m->h, 1, 0);
     CHECK(rc == MCS_OK, "build returns %d", rc);
     CHECK(arena_intact(&a), "build wrote outside its %zu bytes", a.bytes);
-    CHECK(a.e->bad == 0, "%llu bad texels", (unsigned long long)a.e->bad);
+    CHECK(env_in(&a)->bad == 0, "%llu bad texels", (unsigned long long)env_in(&a)->bad);
     /* row borders are doubles between 0 and 2: the height of a row is off by 2^-51, and no row is lower than the first */
-    CHECK(fabs((double)(a.e->total / total - 1)) <= 1e-12 + 0x1p-51 / (1 - cos(pi / m->h)), "total %g, not %g", a.e->total,
-          (double)total);
+    CHECK(fabs((double)(env_in(&a)->total / total - 1)) <= 1e-12 + 0x1p-51 / (1 - cos(pi / m->h)), "total %g, not %g",
+          env_in(&a)->total, (double)total);
     return a;
-}
-
-/* Direction of a point of a texel, from fractions of its column and of its cos(theta) range. */
-static mcs_vec3 point(const map *m, uint32_t col, uint32_t row, double fc, double fr) {
-    const double phi = 2 * pi * (col + fc) / m->w;
-    /* (1 - cos theta) / 2 = sin^2(theta/2) keeps its digits at the poles */
-    const double a = pow(sin(pi / 2 * row / m->h), 2), b = pow(sin(pi / 2 * (row + 1) / m->h), 2);
-    const double half = a + (b - a) * fr, s = 2 * sqrt(half * (1 - half));
-    mcs_vec3 w;
-    w.x = (float)(s * cos(phi)), w.y = (float)(s * sin(phi)), w.z = (float)(1 - 2 * half);
-    return w;
-}
-
-/* Texel of a direction by double atan2, independent of the header. */
-static void texel_of(const map *m, mcs_vec3 w, double *col, double *row) {
-    double turn = atan2(w.y, w.x) / (2 * pi);
-    if (turn < 0) turn += 1;
-    *col = turn * m->w;
-    *row = atan2(hypot((double)w.x, (double)w.y), w.z) / pi * m->h;
 }
 
 /* ---- checks of a map ---- */
@@ -185,7 +132,7 @@ static void check_density(const map *m, const mcs_env *e) {
     const uint32_t step = m->w > 1000 ? 61 : 1;
     for (r = 0; r < m->h; r++)
         for (c = 0; c < m->w; c++) {
-            const mcs_vec3 w = point(m, c, r, 0.5, 0.5);
+            const mcs_vec3 w = point(m->w, m->h, c, r, 0.5, 0.5);
             const double omega = (double)solid_angle(r, m->w, m->h), p = mcs_env_pdf(e, w), want = (double)prob[r * m->w + c];
             const mcs_texel at = mcs_env_texel(e, w);
             mass += p * omega;
@@ -218,7 +165,7 @@ static void check_sample(const map *m, const mcs_env *e, float u1, float u2) {
     at = mcs_env_texel(e, s.w);
     CHECK(at.pdf == s.pdf && at.col == s.col && at.row == s.row, "u = %a, %a: texel (%u, %u), returned (%u, %u)", (double)u1,
           (double)u2, at.col, at.row, s.col, s.row);
-    texel_of(m, s.w, &c, &r);
+    texel_of(m->w, m->h, s.w, &c, &r);
     off = fabs(c - s.col - 0.5);
     if (off > m->w / 2.0) off = m->w - off;
     CHECK(off <= 0.5 + 4 * eps * m->w, "u = %a, %a: column %.9g, returned %u", (double)u1, (double)u2, c, s.col);
@@ -274,7 +221,7 @@ static void check_monotone(const map *m, const mcs_env *e) {
         for (i = 0; i < STEPS; i++) {
             const mcs_texel s = mcs_env_sample(e, ((float)i + 0.5f) / STEPS, (float)(j + 1) * 0.2500001f);
             double c, r;
-            texel_of(m, s.w, &c, &r);
+            texel_of(m->w, m->h, s.w, &c, &r);
             falls += !(s.col >= last) || !(c >= turn - 4 * eps * m->w);
             last = s.col, turn = c;
         }
@@ -324,7 +271,7 @@ static void test_whole_map(void) {
         const size_t n = draws - done < BATCH ? (size_t)(draws - done) : BATCH;
         mcs_pcg32_fill_n(&rng, n, u1);
         mcs_pcg32_fill_n(&rng, n, u2);
-        mcs_env_sample_n(a.e, n, u1, u2, x, y, z, pdf);
+        mcs_env_sample_n(env_in(&a), n, u1, u2, x, y, z, pdf);
         for (i = 0; i < n; i++) {
             double turn = atan2(y[i], x[i]) / (2 * pi);
             uint32_t row = (uint32_t)(acos(z[i]) / pi * m->h), col;
@@ -357,7 +304,7 @@ static void test_inside_texels(void) {
     for (i = 0; i < CELLS; i++) observed[i] = 0, expected[i] = (double)prob[i / 64] * draws / 64;
     for (i = 0; i < draws; i++) {
         const float u1 = mcs_pcg32_float(&rng);
-        const mcs_texel s = mcs_env_sample(a.e, u1, mcs_pcg32_float(&rng));
+        const mcs_texel s = mcs_env_sample(env_in(&a), u1, mcs_pcg32_float(&rng));
         double turn = atan2(s.w.y, s.w.x) / (2 * pi), down = (1 - s.w.z) * 8; /* two rows of eight: cos(pi/2) is 0 */
         int c, r;
         if (turn < 0) turn += 1;
@@ -384,7 +331,7 @@ static void test_caps(void) {
     for (i = 0; i < 64; i++) observed[i] = 0, expected[i] = draws / 64.0;
     for (i = 0; i < draws; i++) {
         const float u1 = mcs_pcg32_float(&rng);
-        const mcs_texel s = mcs_env_sample(a.e, u1, mcs_pcg32_float(&rng));
+        const mcs_texel s = mcs_env_sample(env_in(&a), u1, mcs_pcg32_float(&rng));
         const double half = atan2(hypot((double)s.w.x, (double)s.w.y), fabs((double)s.w.z)) / 2;
         int cell = (int)(32 * pow(sin(half), 2) / cap);
         if (cell > 31) cell = 31;
@@ -427,14 +374,118 @@ static void test_channels(void) {
                 }
             for (r = 0; r < H; r++)
                 for (c = 0, row_prob[r] = 0; c < W; c++) row_prob[r] += prob[r * W + c] /= sum;
-            rc = build_from(a.e, a.bytes, in, W, H, channels, padded ? STRIDE : 0);
-            CHECK(rc == MCS_OK && a.e->bad == 0, "%u channels, stride %zu: returns %d, %llu bad", channels, stride, rc,
-                  (unsigned long long)a.e->bad);
-            CHECK(fabs((double)(a.e->total / sum - 1)) <= 4 * eps, "%u channels, stride %zu: total %g, not %g", channels, stride,
-                  a.e->total, (double)sum);
-            check_density(&m, a.e);
+            rc = build_from(env_in(&a), a.bytes, in, W, H, channels, padded ? STRIDE : 0);
+            CHECK(rc == MCS_OK && env_in(&a)->bad == 0, "%u channels, stride %zu: returns %d, %llu bad", channels, stride, rc,
+                  (unsigned long long)env_in(&a)->bad);
+            CHECK(fabs((double)(env_in(&a)->total / sum - 1)) <= 4 * eps, "%u channels, stride %zu: total %g, not %g", channels,
+                  stride, env_in(&a)->total, (double)sum);
+            check_density(&m, env_in(&a));
             arena_free(&a);
         }
+    }
+}
+
+/* The same picture however it lies in memory: apart, with padding, upside down, as a channel of a larger one. The memory of the
+ * picture ends with its last float, and what is not a pixel is NaN. */
+static void test_strides(void) {
+    enum { W = 21, H = 13 };
+    static const struct {
+        uint32_t channels;
+        ptrdiff_t pixel, row; /* row in pixels beyond a packed one; below 0: stored from the bottom up */
+    } way[] = {{1, 0, 0}, {1, 1, 0},  {1, 1, 3}, {1, 4, 0}, {1, 4, 5}, {1, 3, -1}, {1, 0, -1}, {1, 1, -4},
+               {3, 0, 0}, {3, 0, -1}, {3, 3, 7}, {3, 4, 0}, {3, 9, 2}, {3, 5, -3}, {4, 0, -1}, {4, 6, 1}};
+    static float plain[W * H * 3];
+    size_t k;
+    for (k = 0; k < sizeof way / sizeof *way; k++) {
+        const uint32_t used = way[k].channels < 3 ? 1 : 3;
+        const ptrdiff_t step = way[k].pixel ? way[k].pixel : (ptrdiff_t)way[k].channels;
+        const ptrdiff_t apart = way[k].row < 0 ? -way[k].row - 1 : way[k].row, row = (W + apart) * step;
+        const size_t floats = (size_t)((H - 1) * row + (W - 1) * step) + way[k].channels;
+        float *in = (float *)malloc(floats * sizeof *in), *top = in;
+        arena a = arena_make(mcs_env_bytes(W, H)), b = arena_make(mcs_env_bytes(W, H));
+        mcs_image image;
+        uint32_t r, c, j;
+        size_t i;
+        int rc;
+        if (!in) {
+            CHECK(0, "out of memory");
+            return;
+        }
+        for (i = 0; i < floats; i++) in[i] = NAN;
+        if (way[k].row < 0) top += (H - 1) * row;
+        for (r = 0; r < H; r++)
+            for (c = 0; c < W; c++)
+                for (j = 0; j < used; j++) {
+                    const ptrdiff_t down = way[k].row < 0 ? -(ptrdiff_t)r : (ptrdiff_t)r;
+                    plain[(r * W + c) * used + j] = top[down * row + (ptrdiff_t)c * step + (ptrdiff_t)j] =
+                        hash01((r * W + c) * 3 + j);
+                }
+        rc = build_from(env_in(&a), a.bytes, plain, W, H, used, 0);
+        CHECK(rc == MCS_OK, "packed: returns %d", rc);
+        image = mcs_image_make(top, W, H, way[k].channels);
+        image.pixel_stride = way[k].pixel, image.row_stride = way[k].row < 0 ? -row : way[k].row || k % 2 ? row : 0;
+        rc = mcs_env_build(env_in(&b), b.bytes, &image);
+        CHECK(rc == MCS_OK && arena_intact(&b) && memcmp(a.at, b.at, a.bytes) == 0,
+              "%u channels, pixels %td apart, rows %td: returns %d, %u bad, or another table", way[k].channels, image.pixel_stride,
+              image.row_stride, rc, env_in(&b)->bad);
+        free(in);
+        arena_free(&a);
+        arena_free(&b);
+    }
+}
+
+static void test_refused_strides(void) {
+    enum { W = 20, H = 10, C = 3 };
+    const ptrdiff_t most = PTRDIFF_MAX, least = -PTRDIFF_MAX - 1;
+    const struct {
+        ptrdiff_t pixel, row;
+        mcs_status status;
+    } way[] = {{0, (W - 1) * C + C, MCS_OK},
+               {5, (W - 1) * 5 + C, MCS_OK}, /* a row may end with the last channel of its last pixel */
+               {5, -(W - 1) * 5 - C, MCS_OK},
+               {0, W * C - 1, MCS_ERR_SIZE},
+               {0, -W * C + 1, MCS_ERR_SIZE},
+               {5, (W - 1) * 5 + C - 1, MCS_ERR_SIZE},
+               {5, -(W - 1) * 5 - C + 1, MCS_ERR_SIZE},
+               {0, 1, MCS_ERR_SIZE},
+               {0, -1, MCS_ERR_SIZE},
+               {1, 0, MCS_ERR_SIZE},
+               {2, 1000, MCS_ERR_SIZE},
+               {-1, 0, MCS_ERR_SIZE},
+               {-3, 1000, MCS_ERR_SIZE},
+               {least, 0, MCS_ERR_SIZE},
+               {most, 0, MCS_ERR_SIZE},
+               {most, most, MCS_ERR_SIZE},
+               {most / W, 0, MCS_ERR_SIZE},
+               {most / W + 1, 0, MCS_ERR_SIZE},
+               {most / 4, 0, MCS_ERR_SIZE},
+               {0, most, MCS_ERR_SIZE},
+               {0, least, MCS_ERR_SIZE},
+               {0, most / H, MCS_ERR_SIZE},
+               {0, most / 4 / H + 1, MCS_ERR_SIZE}, /* the picture would be larger than memory */
+               {0, -(most / 4 / H) - 1, MCS_ERR_SIZE}};
+    static float in[2 * H * (W * 5)];
+    const size_t need = mcs_env_bytes(W, H);
+    size_t k, i;
+    for (i = 0; i < sizeof in / sizeof *in; i++) in[i] = hash01((uint32_t)i);
+    for (k = 0; k < sizeof way / sizeof *way; k++) {
+        arena a = arena_make(need);
+        mcs_image image = mcs_image_make(in + sizeof in / sizeof *in / 2, W, H, C);
+        float mean;
+        int rc[3];
+        image.pixel_stride = way[k].pixel, image.row_stride = way[k].row;
+        rc[0] = mcs_env_build(env_in(&a), need, &image), mean = mcs_env_mean(&image);
+        if (way[k].status) {
+            rc[1] = mcs_env_build_rows(env_in(&a), need, &image, 0, 1), rc[2] = mcs_env_finish(env_in(&a), need, &image);
+            CHECK(rc[0] == way[k].status && rc[1] == way[k].status && rc[2] == way[k].status && mean == 0,
+                  "pixels %td, rows %td apart: %d, %d, %d, mean %g", way[k].pixel, way[k].row, rc[0], rc[1], rc[2], (double)mean);
+            CHECK(untouched(a.at, need), "pixels %td, rows %td apart: refused, yet written", way[k].pixel, way[k].row);
+        } else {
+            CHECK(rc[0] == MCS_OK && mean > 0, "pixels %td, rows %td apart: %d, mean %g", way[k].pixel, way[k].row, rc[0],
+                  (double)mean);
+        }
+        CHECK(arena_intact(&a), "written outside");
+        arena_free(&a);
     }
 }
 
@@ -456,15 +507,15 @@ static void test_bad_pixels(void) {
             }
             count += (uint32_t)broken;
         }
-        rc = build_from(a.e, a.bytes, in, W, H, channels, 0);
-        CHECK(rc == MCS_OK && a.e->bad == count && arena_intact(&a), "%u channels: returns %d, %llu bad, not %u", channels, rc,
-              (unsigned long long)a.e->bad, count);
-        rc = build_from(b.e, b.bytes, clean, W, H, channels, 0);
-        CHECK(rc == MCS_OK && b.e->bad == 0 && a.e->total == b.e->total, "%u channels: total %g, not %g", channels, a.e->total,
-              b.e->total);
+        rc = build_from(env_in(&a), a.bytes, in, W, H, channels, 0);
+        CHECK(rc == MCS_OK && env_in(&a)->bad == count && arena_intact(&a), "%u channels: returns %d, %llu bad, not %u", channels,
+              rc, (unsigned long long)env_in(&a)->bad, count);
+        rc = build_from(env_in(&b), b.bytes, clean, W, H, channels, 0);
+        CHECK(rc == MCS_OK && env_in(&b)->bad == 0 && env_in(&a)->total == env_in(&b)->total, "%u channels: total %g, not %g",
+              channels, env_in(&a)->total, env_in(&b)->total);
         for (i = 0; i < 20000; i++) {
             const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
-            const mcs_texel s = mcs_env_sample(a.e, u1, u2), t = mcs_env_sample(b.e, u1, u2);
+            const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2), t = mcs_env_sample(env_in(&b), u1, u2);
             CHECK(s.w.x == t.w.x && s.w.y == t.w.y && s.w.z == t.w.z && s.pdf == t.pdf && s.col == t.col && s.row == t.row,
                   "u = %a, %a: not as with zeros", (double)u1, (double)u2);
         }
@@ -474,9 +525,9 @@ static void test_bad_pixels(void) {
     if (mcst.open) { /* one bad channel makes the texel bad */
         arena a = arena_make(mcs_env_bytes(2, 1));
         const float two[6] = {1, 1, 1, 1, NAN, 1};
-        const int rc = build_from(a.e, a.bytes, two, 2, 1, 3, 0);
-        CHECK(rc == MCS_OK && a.e->bad == 1, "returns %d, %llu bad", rc, (unsigned long long)a.e->bad);
-        CHECK(fabs(mcs_env_sample(a.e, 0.9f, 0.5f).pdf * 2 * pi - 1) <= 4 * eps, "density of the other half");
+        const int rc = build_from(env_in(&a), a.bytes, two, 2, 1, 3, 0);
+        CHECK(rc == MCS_OK && env_in(&a)->bad == 1, "returns %d, %llu bad", rc, (unsigned long long)env_in(&a)->bad);
+        CHECK(fabs(mcs_env_sample(env_in(&a), 0.9f, 0.5f).pdf * 2 * pi - 1) <= 4 * eps, "density of the other half");
         arena_free(&a);
     }
 }
@@ -493,16 +544,16 @@ static void test_black(void) {
         int i, rc;
         for (i = 0; i < W * H; i++) in[i] = fill[k];
         load(&m);
-        rc = build_from(a.e, a.bytes, in, W, H, 1, 0);
+        rc = build_from(env_in(&a), a.bytes, in, W, H, 1, 0);
         CHECK(rc == MCS_UNIFORM && arena_intact(&a), "all %g: returns %d", (double)fill[k], rc);
-        CHECK(a.e->total == 0 && a.e->bad == (k == 2 ? W * H : 0), "all %g: total %g, %llu bad", (double)fill[k], a.e->total,
-              (unsigned long long)a.e->bad);
+        CHECK(env_in(&a)->total == 0 && env_in(&a)->bad == (k == 2 ? W * H : 0), "all %g: total %g, %llu bad", (double)fill[k],
+              env_in(&a)->total, (unsigned long long)env_in(&a)->bad);
         for (i = 0; i < 20000; i++) {
             const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
-            const float pdf = mcs_env_sample(a.e, u1, u2).pdf;
+            const float pdf = mcs_env_sample(env_in(&a), u1, u2).pdf;
             CHECK(fabs(pdf * 4 * pi - 1) <= 4 * eps + 2 * W * H * quantum, "u = %a, %a: density %g", (double)u1, (double)u2,
                   (double)pdf);
-            check_sample(&m, a.e, u1, u2);
+            check_sample(&m, env_in(&a), u1, u2);
         }
         arena_free(&a);
     }
@@ -512,27 +563,27 @@ static void test_refused(void) {
     const uint32_t w = 20, h = 10, big = 0xffffffffu;
     const size_t need = mcs_env_bytes(w, h);
     arena a = arena_make(need + 8);
-    unsigned char *at = a.raw + GUARD;
+    unsigned char *at = a.at;
     size_t i;
     load(&maps[15]);
     CHECK(build_from(NULL, need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "no memory");
-    CHECK(build_from(a.e, need, NULL, w, h, 1, 0) == MCS_ERR_ARG, "no pixels");
-    CHECK(build_from(a.e, need, pixels, 0, h, 1, 0) == MCS_ERR_SIZE, "no columns");
-    CHECK(build_from(a.e, need, pixels, w, 0, 1, 0) == MCS_ERR_SIZE, "no rows");
-    CHECK(build_from(a.e, need, pixels, w, h, 0, 0) == MCS_ERR_ARG, "no channels");
-    CHECK(build_from(a.e, need, pixels, w, h, 2, 0) == MCS_ERR_ARG, "two channels");
-    CHECK(build_from(a.e, need, pixels, w, h, 1, w - 1) == MCS_ERR_SIZE, "stride below a row");
+    CHECK(build_from(env_in(&a), need, NULL, w, h, 1, 0) == MCS_ERR_ARG, "no pixels");
+    CHECK(build_from(env_in(&a), need, pixels, 0, h, 1, 0) == MCS_ERR_SIZE, "no columns");
+    CHECK(build_from(env_in(&a), need, pixels, w, 0, 1, 0) == MCS_ERR_SIZE, "no rows");
+    CHECK(build_from(env_in(&a), need, pixels, w, h, 0, 0) == MCS_ERR_ARG, "no channels");
+    CHECK(build_from(env_in(&a), need, pixels, w, h, 2, 0) == MCS_ERR_ARG, "two channels");
+    CHECK(build_from(env_in(&a), need, pixels, w, h, 1, w - 1) == MCS_ERR_SIZE, "stride below a row");
     CHECK(build_from((mcs_env *)(void *)(at + 4), need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "misaligned memory");
     for (i = 0; i < need; i++) {
-        const int rc = build_from(a.e, i, pixels, w, h, 1, 0);
+        const int rc = build_from(env_in(&a), i, pixels, w, h, 1, 0);
         CHECK(rc == MCS_ERR_MEMORY, "%zu of %zu bytes: %d", i, need, rc);
     }
     CHECK(mcs_env_bytes(0, 1) == 0 && mcs_env_bytes(1, 0) == 0, "bytes of an empty map");
     CHECK(mcs_env_bytes(big, big) == 0, "bytes of 2^64 texels: %zu", mcs_env_bytes(big, big));
-    CHECK(build_from(a.e, SIZE_MAX, pixels, big, big, 1, 0) == MCS_ERR_SIZE, "2^64 texels");
-    CHECK(build_from(a.e, need, pixels, big, big, 4, 0) == MCS_ERR_SIZE, "2^64 texels");
-    CHECK(build_from(a.e, need, pixels, big, 1, big, 0) < 0, "2^64 floats in a row");
-    CHECK(build_from(a.e, need, pixels, w, h, 1, SIZE_MAX / 2) < 0, "a stride beyond memory");
+    CHECK(build_from(env_in(&a), SIZE_MAX, pixels, big, big, 1, 0) == MCS_ERR_SIZE, "2^64 texels");
+    CHECK(build_from(env_in(&a), need, pixels, big, big, 4, 0) == MCS_ERR_SIZE, "2^64 texels");
+    CHECK(build_from(env_in(&a), need, pixels, big, 1, big, 0) < 0, "2^64 floats in a row");
+    CHECK(build_from(env_in(&a), need, pixels, w, h, 1, SIZE_MAX / 2) < 0, "a stride beyond memory");
     CHECK(untouched(at, need + 8) && arena_intact(&a), "a refused build wrote");
     arena_free(&a);
 }
@@ -546,7 +597,7 @@ static void test_bad_sampler_input(void) {
     for (i = 0; i < n; i++)
         for (k = 0; k < 3; k++) {
             const float u1 = k == 1 ? 0.3f : odd[i], u2 = k == 0 ? 0.3f : odd[i];
-            const mcs_texel s = mcs_env_sample(a.e, u1, u2);
+            const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2);
             CHECK(s.pdf == 0 && fabsf(s.w.x) <= 2 && fabsf(s.w.y) <= 2 && fabsf(s.w.z) <= 2 && s.col < m->w && s.row < m->h,
                   "u = %g, %g: pdf %g at (%g, %g, %g)", (double)u1, (double)u2, (double)s.pdf, (double)s.w.x, (double)s.w.y,
                   (double)s.w.z);
@@ -561,11 +612,11 @@ static void test_bad_sampler_input(void) {
             else if (j == 0) w.x = odd[i];
             else if (j == 1) w.y = odd[i];
             else w.z = odd[i];
-            pdf = mcs_env_pdf(a.e, w);
-            u = mcs_env_invert(a.e, w);
+            pdf = mcs_env_pdf(env_in(&a), w);
+            u = mcs_env_invert(env_in(&a), w);
             CHECK(pdf == 0, "w = (%g, %g, %g): pdf %g", (double)w.x, (double)w.y, (double)w.z, (double)pdf);
             CHECK(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1, "w = (%g, %g, %g): invert", (double)w.x, (double)w.y, (double)w.z);
-            at = mcs_env_texel(a.e, w);
+            at = mcs_env_texel(env_in(&a), w);
             CHECK(at.pdf == 0 && at.col < m->w && at.row < m->h && at.w.z == 1, "w = (%g, %g, %g): texel (%u, %u)", (double)w.x,
                   (double)w.y, (double)w.z, at.col, at.row);
         }
@@ -580,14 +631,82 @@ static void test_axes(void) {
     int i;
     for (i = 0; i < 64; i++) {
         const mcs_vec3 w = {v[i & 3], v[i >> 2 & 3], v[i >> 4]};
-        const mcs_texel at = mcs_env_texel(a.e, w);
-        const float pdf = mcs_env_pdf(a.e, w);
+        const mcs_texel at = mcs_env_texel(env_in(&a), w);
+        const float pdf = mcs_env_pdf(env_in(&a), w);
         if (w.x == 0 && w.y == 0 && w.z == 0) continue;
         CHECK(at.col < m->w && at.row < m->h && pdf > 0 && pdf <= FLT_MAX, "(%g, %g, %g): (%u, %u), pdf %g", (double)w.x,
               (double)w.y, (double)w.z, at.col, at.row, (double)pdf);
         if (w.x == 0 && w.y == 0) CHECK(at.row == (w.z > 0 ? 0 : m->h - 1), "pole %g: row %u", (double)w.z, at.row);
     }
     arena_free(&a);
+}
+
+/* ---- orientation ---- */
+
+static double dot(mcs_vec3 a, mcs_vec3 b) { return (double)a.x * b.x + (double)a.y * b.y + (double)a.z * b.z; }
+
+/* A turned map is the same map: drawn where the turned sample lies, with its density. Turning rounds each coordinate by 4 eps,
+ * so a direction closer than that to a border of its texel may be found on the other side of it: 8 eps of a turn for columns,
+ * divided by sin(theta), and for rows; such ones are counted, and few. */
+static void test_frame(void) {
+    const map *m = &maps[SKY];
+    const int draws = scaled(200000);
+    const mcs_vec3 up[4] = {{0, 0, -1}, {1, 0, 0}, {0.6f, 0, 0.8f}, {-0.48f, 0.6f, -0.64f}};
+    arena a = build(m), b = build(m);
+    mcs_env *turned = env_in(&b);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 83);
+    int k, i;
+    for (k = 0; k < 4; k++) {
+        int near = 0;
+        uint32_t r, c;
+        double mass = 0;
+        turned->frame = mcs_frame_make(up[k]);
+        if (k == 3) { /* and turned about its axis, and mirrored */
+            const mcs_vec3 s = turned->frame.s;
+            turned->frame.s = turned->frame.t, turned->frame.t = s;
+        }
+        CHECK(mcs_env_check(turned, b.bytes) == MCS_OK, "axis %d: not a table any more", k);
+        for (i = 0; i < draws; i++) {
+            const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+            const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2), t = mcs_env_sample(turned, u1, u2);
+            const mcs_frame *f = &turned->frame;
+            const double x = (double)f->s.x * s.w.x + (double)f->t.x * s.w.y + (double)f->n.x * s.w.z,
+                         y = (double)f->s.y * s.w.x + (double)f->t.y * s.w.y + (double)f->n.y * s.w.z,
+                         z = (double)f->s.z * s.w.x + (double)f->t.z * s.w.y + (double)f->n.z * s.w.z;
+            double col, row, margin_col, margin_row;
+            mcs_texel at;
+            mcs_vec3 local;
+            CHECK(t.col == s.col && t.row == s.row && t.pdf == s.pdf, "axis %d: another texel or density", k);
+            CHECK(fabs(t.w.x - x) <= 4 * eps && fabs(t.w.y - y) <= 4 * eps && fabs(t.w.z - z) <= 4 * eps,
+                  "axis %d: (%g, %g, %g) turned the wrong way", k, (double)t.w.x, (double)t.w.y, (double)t.w.z);
+            local.x = (float)dot(f->s, t.w), local.y = (float)dot(f->t, t.w), local.z = (float)dot(f->n, t.w);
+            texel_of(m->w, m->h, local, &col, &row);
+            margin_row = 8 * eps * m->h, margin_col = 8 * eps * m->w / hypot((double)local.x, (double)local.y);
+            col -= floor(col), row -= floor(row);
+            at = mcs_env_texel(turned, t.w);
+            CHECK(mcs_env_pdf(turned, t.w) == at.pdf &&
+                      at.pdf == mcs_env_pdf(env_in(&a), point(m->w, m->h, at.col, at.row, 0.5, 0.5)),
+                  "axis %d: pdf %g is not the texel's", k, (double)at.pdf);
+            if (at.col == s.col && at.row == s.row) continue;
+            near++;
+            CHECK((at.col == s.col || col <= margin_col || 1 - col <= margin_col) &&
+                      (at.row == s.row || row <= margin_row || 1 - row <= margin_row),
+                  "axis %d: drawn in (%u, %u), found in (%u, %u)", k, s.col, s.row, at.col, at.row);
+        }
+        /* at both borders of a column 8 eps w / sin(theta), 1.3 in the mean, at those of a row 8 eps h, twice as much allowed */
+        CHECK(near <= draws * 64 * eps * m->w + 10, "axis %d: %d of %d draws found in a neighbour", k, near, draws);
+        for (r = 0; r < m->h; r++)
+            for (c = 0; c < m->w; c++) {
+                const mcs_vec3 p = point(m->w, m->h, c, r, 0.5, 0.5), w = mcs_to_world(&turned->frame, p);
+                float pdf = 0;
+                mcs_env_pdf_n(turned, 1, &w.x, &w.y, &w.z, &pdf);
+                CHECK(pdf == mcs_env_pdf(turned, w), "axis %d: pdf_n %g", k, (double)pdf);
+                mass += pdf * (double)solid_angle(r, m->w, m->h);
+            }
+        CHECK(fabs(mass - 1) <= 4 * eps, "axis %d: the density integrates to 1 + %g", k, mass - 1);
+    }
+    arena_free(&a);
+    arena_free(&b);
 }
 
 /* ---- batches, memory ---- */
@@ -613,9 +732,9 @@ static void test_batch(void) {
                     for (i = 0; i < count + 8; i++) out[k][i] = -7.0f;
                     p[k] = skip >> k & 1 ? NULL : out[k] + at;
                 }
-                mcs_env_sample_n(a.e, count, u1 + shift, u2 + at, p[0], p[1], p[2], p[3]);
+                mcs_env_sample_n(env_in(&a), count, u1 + shift, u2 + at, p[0], p[1], p[2], p[3]);
                 for (i = 0; i < count; i++) {
-                    const mcs_texel s = mcs_env_sample(a.e, u1[shift + i], u2[at + i]);
+                    const mcs_texel s = mcs_env_sample(env_in(&a), u1[shift + i], u2[at + i]);
                     const float want[4] = {s.w.x, s.w.y, s.w.z, s.pdf};
                     for (k = 0; k < 4; k++) same &= !p[k] || p[k][i] == want[k];
                 }
@@ -625,12 +744,12 @@ static void test_batch(void) {
                 if (skip == 0) {
                     static float pdf[ROOM];
                     for (i = 0; i < count + 8; i++) pdf[i] = -7.0f;
-                    mcs_env_pdf_n(a.e, count, out[0] + at, out[1] + at, out[2] + at, pdf + at);
+                    mcs_env_pdf_n(env_in(&a), count, out[0] + at, out[1] + at, out[2] + at, pdf + at);
                     for (i = 0; i < count; i++) CHECK(pdf[at + i] == out[3][at + i], "n = %zu: pdf_n of sample %zu", count, i);
                     CHECK(pdf[at - 1] == -7.0f && pdf[at + count] == -7.0f, "n = %zu: pdf_n wrote outside", count);
-                    mcs_env_pdf_n(a.e, count, out[0] + at, out[1] + at, out[2] + at, NULL);
+                    mcs_env_pdf_n(env_in(&a), count, out[0] + at, out[1] + at, out[2] + at, NULL);
                     memcpy(pdf, u1 + shift, count * sizeof *pdf); /* in place */
-                    mcs_env_sample_n(a.e, count, pdf, u2 + at, pdf, NULL, NULL, NULL);
+                    mcs_env_sample_n(env_in(&a), count, pdf, u2 + at, pdf, NULL, NULL, NULL);
                     CHECK(memcmp(pdf, out[0] + at, count * sizeof *pdf) == 0, "n = %zu: in place", count);
                 }
             }
@@ -647,16 +766,16 @@ static void test_relocation(void) {
     int i;
     for (i = 0; i < N; i++) {
         const float u1 = mcs_pcg32_float(&rng);
-        before[i] = mcs_env_sample(a.e, u1, mcs_pcg32_float(&rng));
+        before[i] = mcs_env_sample(env_in(&a), u1, mcs_pcg32_float(&rng));
     }
-    memcpy(b.e, a.e, a.bytes);
-    memset(a.e, 0xff, a.bytes);
+    memcpy(env_in(&b), env_in(&a), a.bytes);
+    memset(env_in(&a), 0xff, a.bytes);
     for (i = 0; i < N; i++) {
         const float u1 = mcs_pcg32_float(&again);
-        const mcs_texel s = mcs_env_sample(b.e, u1, mcs_pcg32_float(&again)), t = before[i];
+        const mcs_texel s = mcs_env_sample(env_in(&b), u1, mcs_pcg32_float(&again)), t = before[i];
         CHECK(s.w.x == t.w.x && s.w.y == t.w.y && s.w.z == t.w.z && s.pdf == t.pdf && s.col == t.col && s.row == t.row,
               "sample %d differs", i);
-        CHECK(mcs_env_pdf(b.e, s.w) == s.pdf, "sample %d: pdf", i);
+        CHECK(mcs_env_pdf(env_in(&b), s.w) == s.pdf, "sample %d: pdf", i);
     }
     arena_free(&a);
     arena_free(&b);
@@ -680,10 +799,10 @@ int main(int argc, char **argv) {
         arena a;
         if (!mcst_case("%s", maps[i].name)) continue;
         a = build(&maps[i]);
-        check_density(&maps[i], a.e);
-        check_samples(&maps[i], a.e);
-        check_monotone(&maps[i], a.e);
-        check_estimate(&maps[i], a.e);
+        check_density(&maps[i], env_in(&a));
+        check_samples(&maps[i], env_in(&a));
+        check_monotone(&maps[i], env_in(&a));
+        check_estimate(&maps[i], env_in(&a));
         arena_free(&a);
     }
     mcst_group("env statistics");
@@ -692,11 +811,14 @@ int main(int argc, char **argv) {
     if (mcst_case("uniform in solid angle inside both caps of 4099 rows")) test_caps();
     mcst_group("env input");
     if (mcst_case("1, 3, 4 channels and strides")) test_channels();
+    if (mcst_case("pixel and row strides")) test_strides();
+    if (mcst_case("refused strides")) test_refused_strides();
     if (mcst_case("bad pixels")) test_bad_pixels();
     if (mcst_case("black")) test_black();
     if (mcst_case("refused builds")) test_refused();
     if (mcst_case("bad u and directions")) test_bad_sampler_input();
     if (mcst_case("axes")) test_axes();
+    if (mcst_case("turned")) test_frame();
     mcst_group("env memory and batches");
     if (mcst_case("n = 0..67 and 2053, shifted, NULL outputs, in place, pdf_n")) test_batch();
     if (mcst_case("moved by memcpy")) test_relocation();

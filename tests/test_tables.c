@@ -1,47 +1,17 @@
 /* Tables: piecewise constant, discrete, piecewise linear, alias. The truth is the weights themselves, summed in long double. */
 #include <float.h>
 #include <math.h>
+#include "arena.h"
 #include "mcs_test.h"
 #include "mcsample.h"
 #include "stats.h"
 
 typedef long double ld;
 
-enum { GUARD = 64, GRID = 1 << 24, STRATA = 1 << 16, MAX_N = 1000003 };
+enum { GRID = 1 << 24, STRATA = 1 << 16, MAX_N = 1000003 };
 static const double level = 1e-5;      /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
 static const double eps = 0x1p-24;     /* rounding of a float, relative; also the step of u and the largest step of x below 1 */
 static const double quantum = 0x1p-31; /* probabilities of a table are integers over 2^31 */
-
-/* ---- the caller's memory, exactly as many bytes as were asked for, between two guards ---- */
-
-typedef struct {
-    unsigned char *raw, *at;
-    size_t bytes;
-} arena;
-
-static arena arena_make(size_t bytes) {
-    arena a;
-    a.bytes = bytes;
-    a.raw = (unsigned char *)malloc(bytes + 2 * GUARD);
-    if (!a.raw) {
-        fprintf(stderr, "out of memory\n");
-        exit(2);
-    }
-    memset(a.raw, 0xa5, bytes + 2 * GUARD);
-    a.at = a.raw + GUARD;
-    return a;
-}
-
-static int untouched(const unsigned char *p, size_t n) {
-    size_t i;
-    for (i = 0; i < n; i++)
-        if (p[i] != 0xa5) return 0;
-    return 1;
-}
-
-static int arena_intact(const arena *a) { return untouched(a->raw, GUARD) && untouched(a->at + a->bytes, GUARD); }
-
-static void arena_free(arena *a) { free(a->raw); }
 
 /* ---- the three kinds behind one interface ---- */
 

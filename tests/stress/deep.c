@@ -7,7 +7,7 @@
  * around the azimuth. --filter 'ggx/' runs one row; MCS_TEST_SCALE scales the samples. */
 #include "bins.h"
 
-enum { CELLS_U = 65536, SHIFTS = 3 };
+enum { CELLS_U = 65536, SHIFTS = 3, BACK_EVERY = 4 };
 static const double samples_at_full_scale = 1e9, samples_of_make_test = 1e7;
 static const double shifts[SHIFTS] = {0.001, 0.003, 0.01};
 
@@ -16,16 +16,16 @@ static const struct part {
     const char *row;
     unsigned vary;
 } parts[] = {
-    {"linear", 1},     {"tent", 0},        {"exponential", 1},   {"truncexp", 1},   {"normal", 2},        {"logistic", 2},
-    {"power", 1},      {"evenpower", 1},   {"disk", 0},          {"concentric", 0}, {"sphere", 0},        {"hemisphere", 0},
-    {"cosine", 0},     {"cone", 0},        {"phong_lobe", 1},    {"phong", 1},      {"ward_h", 3},        {"ward_gmd", 3},
-    {"beckmann_h", 3}, {"beckmann", 3},    {"ggx_h", 3},         {"ggx", 3},        {"ggx_vndf_h", 3},    {"ggx_vndf", 3},
+    {"linear", 1},        {"tent", 0},        {"exponential", 1}, {"truncexp", 1},   {"normal", 2},     {"logistic", 2},
+    {"power", 1},         {"evenpower", 1},   {"disk", 0},        {"concentric", 0}, {"sphere", 0},     {"hemisphere", 0},
+    {"cosine", 0},        {"cone", 0},        {"phong_lobe", 1},  {"phong", 1},      {"ward_h", 3},     {"ward_gmd", 3},
+    {"beckmann_h", 3},    {"beckmann", 3},    {"ggx_h", 3},       {"ggx", 3},        {"ggx_vndf_h", 3}, {"ggx_vndf", 3},
     {"ggx_bounded_h", 3}, {"ggx_bounded", 3}, {"ashikhmin_h", 3}, {"ashikhmin", 3},
 };
 
-/* --- counting ------------------------------------------------------------------------------------------------------------------- */
+/* --- counting ----------------------------------------------------------------------------------------------------------------- */
 
-static double observed[MCST_CELLS + 1], expected[MCST_CELLS + 1], back[2][CELLS_U];
+static double observed[MCST_CELLS + 1], expected[MCST_CELLS + 1], back[2][CELLS_U], taken_back;
 
 /* One line on stderr every ten seconds. */
 static void progress(const char *name, double share) {
@@ -37,17 +37,20 @@ static void progress(const char *name, double share) {
     fprintf(stderr, "    %s: %.0f %%\n", name, 100 * share);
 }
 
-/* Fills observed and back; returns how many samples were drawn, 0 when one was not finite or came back outside [0,1). */
+/* Fills observed and, from one block in BACK_EVERY (the inverse is dearer than the sample), back; returns how many samples were
+ * drawn, 0 when one was not finite or came back outside [0,1). */
 static double draw(const mcst_row *row, const float *p, const mcst_map *map, double n, uint64_t seed) {
     static float buffer[7][MCST_BLOCK];
     float *const out[5] = {buffer[2], buffer[3], buffer[4], buffer[5], buffer[6]};
     const int lost_cell = map->s_bins * map->t_bins, brdf = row->shape == MCST_IS_BRDF;
     double done = 0;
+    long block;
     int i;
     memset(buffer, 0, sizeof buffer);
     memset(observed, 0, sizeof observed);
     memset(back, 0, sizeof back);
-    while (done < n) {
+    taken_back = 0;
+    for (block = 0; done < n; block++) {
         mcst_uniform(&seed, MCST_BLOCK, buffer[0], buffer[1]);
         row->sample_n(p, MCST_BLOCK, buffer[0], buffer[1], out);
         for (i = 0; i < MCST_BLOCK; i++) {
@@ -56,11 +59,12 @@ static double draw(const mcst_row *row, const float *p, const mcst_map *map, dou
             float u[2] = {0, 0};
             if (!(isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]) && isfinite(out[3][i]))) return 0;
             observed[lost ? lost_cell : mcst_cell(map, (double)x[0], (double)x[1], (double)x[2])] += 1;
-            if (!row->fn[0].invert) continue;
+            if (!row->fn[0].invert || block % BACK_EVERY) continue;
             row->fn[0].invert(p, x, u);
             if (!(u[0] >= 0 && u[0] < 1 && u[1] >= 0 && u[1] < 1)) return 0;
             back[0][(int)(u[0] * CELLS_U)] += 1;
             back[1][(int)(u[1] * CELLS_U)] += 1;
+            taken_back += 1;
         }
         done += MCST_BLOCK;
         progress(row->name, done / n);
@@ -68,28 +72,32 @@ static double draw(const mcst_row *row, const float *p, const mcst_map *map, dou
     return done;
 }
 
-/* --- chi-square ----------------------------------------------------------------------------------------------------------------- */
+/* --- chi-square --------------------------------------------------------------------------------------------------------------- */
 
-/* Cells to groups. The random numbers are multiples of 2^-24, so a ring of constant s, an interval of one of them, gets a share that
- * is up to 2^-24 off its mass m. That adds n 2^-48 / m to chi-square: rings are joined until it is below 0.01. */
+/* Cells to groups. The random numbers are multiples of 2^-24, so a ring of constant s, an interval of one of them, gets a share
+ * that is up to 2^-24 off its mass m. That adds n 2^-48 / m to chi-square: rings are joined until it is below 0.01. */
 static int group_of[MCST_CELLS + 1];
 
 static int make_groups(const mcst_map *map, const double *mass, double n, int brdf) {
     const double least = 100 * n * 0x1p-48;
-    int i, j, groups = 0, joined = -1;
-    double pool = 0;
-    for (i = 0; i < map->s_bins; i++) {
+    double pool = 0; /* the mass of the group that is still being joined; its number */
+    int joined = 0, groups = 0, cells = map->s_bins * map->t_bins, i, j;
+    for (i = 0; i < cells; i += map->t_bins) {
         double ring = 0;
-        for (j = 0; j < map->t_bins; j++) ring += mass[i * map->t_bins + j];
-        for (j = 0; j < map->t_bins; j++) group_of[i * map->t_bins + j] = ring >= least ? groups++ : (joined < 0 ? joined = groups++ : joined);
-        if (ring >= least) continue;
+        for (j = i; j < i + map->t_bins; j++) ring += mass[j];
+        if (ring >= least) {
+            for (j = i; j < i + map->t_bins; j++) group_of[j] = groups++;
+            continue;
+        }
+        if (pool == 0) joined = groups++;
+        for (j = i; j < i + map->t_bins; j++) group_of[j] = joined;
         pool += ring;
-        if (pool >= least) joined = -1, pool = 0;
+        if (pool >= least) pool = 0;
     }
-    if (pool > 0) /* what is left over joins the group before it */
-        for (i = 0; i < map->s_bins * map->t_bins; i++)
+    if (pool > 0) /* what is left over, at most one group, joins its neighbour */
+        for (i = 0; i < cells; i++)
             if (group_of[i] == joined) group_of[i] = joined > 0 ? joined - 1 : joined + 1;
-    if (brdf) group_of[map->s_bins * map->t_bins] = groups++;
+    if (brdf) group_of[cells] = groups++;
     return groups;
 }
 
@@ -125,7 +133,7 @@ static double visible(double dof, double level) {
     return hi;
 }
 
-/* --- wrong densities ------------------------------------------------------------------------------------------------------------ */
+/* --- wrong densities ---------------------------------------------------------------------------------------------------------- */
 
 static const mcst_row *right;
 static unsigned varied;
@@ -163,12 +171,13 @@ static void wrong_masses(enum kind kind, const mcst_row *row, const float *p, co
     for (i = 0; i < all; i++) wrong[i] /= sum;
 }
 
-/* --- one row -------------------------------------------------------------------------------------------------------------------- */
+/* --- one row ------------------------------------------------------------------------------------------------------------------ */
 
 static double ks_back(const double *counts, double n) {
-    /* The distance at the edges of 65536 cells. Within a cell it grows by 1.2e-7 at 1e9 samples (a standard deviation of the counts),
-     * a 250th of 1/sqrt(n), and is left out. A number comes back within 64 2^-24 of itself (test_oracle.c: a few roundings, and 8 ulp
-     * in each coordinate), so the share below an edge may be off by that without anything being wrong. */
+    /* The distance at the edges of 65536 cells. Inside of a cell it grows by about the standard deviation of its count, 1/256 of
+     * 1/sqrt(n), which is left out. A number comes back within 64 2^-24 of itself (test_oracle.c: a few roundings, and 8 ulp in
+     * each coordinate), so the share below an edge may be off by that, and by one more number on the edge, without anything being
+     * wrong. */
     static double flat[CELLS_U];
     double sum = 0, d = 0;
     int i;
@@ -207,11 +216,11 @@ static void check_row(const struct part *part, double n, double level) {
     }
     p_s = mcst_ks_bins(so, se, (size_t)(map.s_bins + brdf), done);
     if (map.t_bins > 1) p_t = mcst_ks_bins(to, te, (size_t)(map.t_bins + brdf), done);
-    /* as in mcst_fit_xy: what may fall into cells that the quadrature takes for dark */
+    /* As in mcst_fit_xy: what may fall into cells that the quadrature takes for dark. */
     p_stray = stray > 0 ? 1 - gamma_q(stray, (1e-8 * map.t_bins + map.noise) * done) : 1;
     if (row->fn[0].invert) {
-        p_u1 = ks_back(back[0], done);
-        if (row->inputs == 2) p_u2 = ks_back(back[1], done);
+        p_u1 = ks_back(back[0], taken_back);
+        if (row->inputs == 2) p_u2 = ks_back(back[1], taken_back);
     }
     groups = make_groups(&map, mass, done, brdf);
     gather(observed, cells + brdf, o);
@@ -238,11 +247,13 @@ static void check_row(const struct part *part, double n, double level) {
             value[j] = chi2_test(o, w, (size_t)groups, NULL, NULL);
             for (lambda = i = 0; i < groups; i++)
                 if (e[i] >= 5) lambda += (w[i] - e[i]) * (w[i] - e[i]) / e[i];
-            if (full && shifts[j] >= 0.003) CHECK(value[j] < level, "%s off by %g: survived, p = %g", kind_name[kind], shifts[j], value[j]);
+            if (full && shifts[j] >= 0.003)
+                CHECK(value[j] < level, "%s off by %g: survived, p = %g", kind_name[kind], shifts[j], value[j]);
         }
         eps99 = shifts[SHIFTS - 1] * sqrt(lambda99 / lambda);
-        printf("  %-14s %-9s p at 0.1 %%: %-9.3g 0.3 %%: %-9.3g 1 %%: %-9.3g seen 99 times in 100 from %.3f %% on, %.2f %% in make test\n", "",
-               kind_name[kind], value[0], value[1], value[2], 100 * eps99, 100 * eps99 * sqrt(done / samples_of_make_test));
+        printf("  %-14s %-9s p at 0.1 %%: %-9.3g 0.3 %%: %-9.3g 1 %%: %-9.3g seen 99 times in 100 from %.3f %% on, %.2f %% in make "
+               "test\n",
+               "", kind_name[kind], value[0], value[1], value[2], 100 * eps99, 100 * eps99 * sqrt(done / samples_of_make_test));
     }
     printf("  %-14s %.1f s\n", "", (double)(clock() - began) / CLOCKS_PER_SEC);
     fflush(stdout);

@@ -4,8 +4,9 @@
  * Jacobians.
  *
  * Inputs are the literal floats; directions are not made unit, and half-vectors are wo + wi. Densities are judged relative to
- * E = 1e-6 (1 + |ln(pdf/peak)|), because a density e^-x has the rounding of x in it. Where that is exceeded, the bound is widened by
- * what the exact density itself does when the inputs move by half an ulp; such points are counted and both figures are printed.
+ * E = 1e-6 (1 + |ln(pdf/peak)|), because a density e^-x has the rounding of x in it. Where that is exceeded, the bound is widened
+ * by what the exact density itself does when the inputs move by half an ulp (ROUNDINGS below); such points are counted and both
+ * figures are printed.
  *
  * --filter picks a row or a case; MCS_TEST_SCALE scales the number of u. */
 #include <quadmath.h>
@@ -13,9 +14,13 @@
 #include "mass.h"
 
 #define EPS 0x1p-24 /* half an ulp of 1 */
-/* Densities and values are judged where both cosines are at least this. Below, products of cosines leave the normal floats; results
+/* Where inputs cancel, so do their descendants: each component of a half-vector carries 3 half ulps (sine or cosine, root, product;
+ * column `where` of the lobes), its product with wo one more. So the conditioning term is this many times the exact answer's change
+ * when the inputs move by half an ulp. */
+#define ROUNDINGS 4
+/* Errors are judged where both cosines are at least this. Below, products and squares of cosines leave the normal floats; results
  * must be finite and directions unit there, too, and the errors are printed as a line of their own. */
-#define LEAST_COSINE 9.9e-8f
+#define LEAST_COSINE 9.9e-16f
 
 __extension__ typedef __float128 qd;
 typedef struct {
@@ -23,7 +28,7 @@ typedef struct {
 } q3;
 static qd pi;
 
-/* --- the oracle ----------------------------------------------------------------------------------------------------------------- */
+/* --- the oracle ------------------------------------------------------------------------------------------------------------- */
 
 static q3 vec(qd x, qd y, qd z) {
     q3 v;
@@ -135,7 +140,8 @@ static q3 half_vector_map(const setting *s, qd u1, qd u2) {
         return at_versine(-expm1q(log1pq(-u1) / (e + 1)), phi);
     } else {
         const qd r2 = s->id == ID_ggx || s->id == ID_ggx_h ? u1 / (1 - u1) : -log1pq(-u1);
-        return at_tangent2(r2 * (square(s->a * cosq(turn)) + square(s->b * sinq(turn))), atan2q(s->b * sinq(turn), s->a * cosq(turn)));
+        return at_tangent2(r2 * (square(s->a * cosq(turn)) + square(s->b * sinq(turn))),
+                           atan2q(s->b * sinq(turn), s->a * cosq(turn)));
     }
 }
 
@@ -170,7 +176,9 @@ static void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2, q3 *x
     case ID_evenpower: x->x = d != 0 ? copysignq(expq(logq(fabsq(d)) / (a + 1)), d) : 0; return;
     case ID_disk: x->x = a * sqrtq(u1) * cosq(2 * pi * u2), x->y = a * sqrtq(u1) * sinq(2 * pi * u2); return;
     case ID_concentric: {
-        const qd r = fabsq(d) > fabsq(e) ? d : e, phi = r == 0 ? 0 : fabsq(d) > fabsq(e) ? pi / 4 * (e / d) : pi / 2 - pi / 4 * (d / e);
+        const qd r = fabsq(d) > fabsq(e) ? d : e, phi = r == 0                ? 0
+                                                        : fabsq(d) > fabsq(e) ? pi / 4 * (e / d)
+                                                                              : pi / 2 - pi / 4 * (d / e);
         x->x = a * r * cosq(phi), x->y = a * r * sinq(phi);
         return;
     }
@@ -201,10 +209,8 @@ static qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
     case ID_truncexp: return x.x < 0 || x.x > b ? 0 : a > 0 ? a * expq(-a * x.x) / -expm1q(-a * b) : 1 / b;
     case ID_normal: return expq(-z * z / 2) / (b * sqrtq(2 * pi));
     case ID_logistic: return expq(-fabsq(z)) / (b * square(1 + expq(-fabsq(z))));
-    case ID_power:
-        return x.x < 0 || x.x > 1 ? 0 : x.x > 0 ? (a + 1) * expq(a * logq(x.x)) : a > 0 ? 0 : 1;
-    case ID_evenpower:
-        return fabsq(x.x) > 1 ? 0 : x.x != 0 ? (a + 1) / 2 * expq(a * logq(fabsq(x.x))) : a > 0 ? 0 : (qd)0.5;
+    case ID_power: return x.x < 0 || x.x > 1 ? 0 : x.x > 0 ? (a + 1) * expq(a * logq(x.x)) : a > 0 ? 0 : 1;
+    case ID_evenpower: return fabsq(x.x) > 1 ? 0 : x.x != 0 ? (a + 1) / 2 * expq(a * logq(fabsq(x.x))) : a > 0 ? 0 : (qd)0.5;
     case ID_disk:
     case ID_concentric: return x.x * x.x + x.y * x.y <= a * a * (1 + (qd)1e-30) ? 1 / (pi * a * a) : 0;
     case ID_sphere: return 1 / (4 * pi);
@@ -246,14 +252,13 @@ static qd exact_value(const setting *s, q3 wi) {
     case ID_ward_gmd: return gauss * dot(h, h) / square(square(h.z));
     case ID_ward_duer: return gauss / (4 * zo * zi);
     case ID_ward_1992: return gauss / (4 * sqrtq(zo * zi));
-    case ID_beckmann:
-        return beckmann_d(a, b, h) / (4 * zo * zi * (1 + beckmann_lambda(a, b, s->wo) + beckmann_lambda(a, b, wi)));
+    case ID_beckmann: return beckmann_d(a, b, h) / (4 * zo * zi * (1 + beckmann_lambda(a, b, s->wo) + beckmann_lambda(a, b, wi)));
     case ID_ashikhmin: return ashikhmin_h(a, b, h) / (2 * len(h) * fmaxq(zo, zi)); /* 4 wo.h = 2 |H| */
     default: return ggx_d(a, b, h) / (4 * zo * zi * (1 + ggx_lambda(a, b, s->wo) + ggx_lambda(a, b, wi)));
     }
 }
 
-/* --- does the oracle agree with itself? -------------------------------------------------------------------------------------------- */
+/* --- does the oracle agree with itself? ------------------------------------------------------------------------------------- */
 
 /* The density at map(u) times the area of the map there, by central differences: 1. */
 static qd density_times_area(const mcst_row *row, const setting *s, qd u1, qd u2) {
@@ -266,32 +271,48 @@ static qd density_times_area(const mcst_row *row, const setting *s, qd u1, qd u2
     return exact_pdf(row, s, x) * (row->inputs == 1 ? len(d[0]) : len(cross(d[0], d[2])));
 }
 
-/* --- the grid ------------------------------------------------------------------------------------------------------------------------ */
+/* --- the grid --------------------------------------------------------------------------------------------------------------- */
 
 /* Alphas beyond both limits of the header, anisotropy 1e4 and more; exponents likewise. */
 static const float alphas[][2] = {{1e-8f, 1e-8f}, {1e-7f, 1e-7f}, {1e-6f, 1e-6f}, {1e-5f, 1e-5f}, {1e-3f, 1e-3f}, {0.01f, 0.01f},
                                   {0.1f, 0.1f},   {0.3f, 0.3f},   {1, 1},         {3, 3},         {100, 100},     {1e4f, 1e4f},
                                   {1e5f, 1e5f},   {1e-7f, 1e-3f}, {1e-3f, 1e-7f}, {1e-6f, 0.01f}, {1e-4f, 1},     {1, 1e-4f},
                                   {0.1f, 1e3f},   {100, 0.01f},   {1e4f, 1},      {0.01f, 1},     {1e-7f, 1e4f}};
-static const float exponents[][2] = {{0, 0},       {0x1p-149f, 1e-30f}, {0.5f, 0.5f}, {1, 1},       {10, 10},       {1e3f, 1e3f},
-                                     {1e5f, 1e5f}, {1e7f, 1e7f},        {1e9f, 1e9f}, {1e30f, 1e30f}, {0, 1e9f},    {1e9f, 0},
+static const float exponents[][2] = {{0, 0},       {0x1p-149f, 1e-30f}, {0.5f, 0.5f}, {1, 1},         {10, 10},  {1e3f, 1e3f},
+                                     {1e5f, 1e5f}, {1e7f, 1e7f},        {1e9f, 1e9f}, {1e30f, 1e30f}, {0, 1e9f}, {1e9f, 0},
                                      {1, 1e4f},    {1e4f, 1},           {1e5f, 1e9f}, {10, 1000}};
 /* Beyond the grid of the registry. */
 static const float line_more[][3] = {
-    {ID_linear, 0x1p-149f, 1},   {ID_linear, FLT_MAX, 1},    {ID_linear, FLT_MAX, FLT_MAX},      {ID_linear, 0x1p-149f, 0x1p-149f},
-    {ID_linear, 1, FLT_MAX},     {ID_tent, 3e17f, 0},        {ID_tent, 2e-18f, 0},               {ID_exponential, 80, 0},
-    {ID_truncexp, 1e18f, 1e18f}, {ID_truncexp, 0x1p-149f, 1}, {ID_truncexp, 80, 1},              {ID_truncexp, 79.9f, 1},
-    {ID_truncexp, 1e-8f, 1},     {ID_truncexp, 2e-8f, 1},    {ID_truncexp, 1e-18f, 1e-18f},      {ID_truncexp, 1e18f, 1e-18f},
-    {ID_normal, 1e30f, 1e18f},   {ID_normal, -1e18f, 1e18f}, {ID_logistic, 1e30f, 1e18f},        {ID_logistic, -1e18f, 1e18f},
-    {ID_power, 0x1p-149f, 0},    {ID_power, 1e-30f, 0},      {ID_evenpower, 0x1p-149f, 0},       {ID_evenpower, 1e-30f, 0},
-    {ID_cone, 1e-30f, 0},        {ID_cone, 0.99999994f, 0},  {ID_cone, 1.9999999f, 0},           {ID_disk, 3e17f, 0},
+    {ID_linear, 0x1p-149f, 1},   {ID_linear, FLT_MAX, 1},     {ID_linear, FLT_MAX, FLT_MAX}, {ID_linear, 0x1p-149f, 0x1p-149f},
+    {ID_linear, 1, FLT_MAX},     {ID_tent, 3e17f, 0},         {ID_tent, 2e-18f, 0},          {ID_exponential, 80, 0},
+    {ID_truncexp, 1e18f, 1e18f}, {ID_truncexp, 0x1p-149f, 1}, {ID_truncexp, 80, 1},          {ID_truncexp, 79.9f, 1},
+    {ID_truncexp, 1e-8f, 1},     {ID_truncexp, 2e-8f, 1},     {ID_truncexp, 1e-18f, 1e-18f}, {ID_truncexp, 1e18f, 1e-18f},
+    {ID_normal, 1e30f, 1e18f},   {ID_normal, -1e18f, 1e18f},  {ID_logistic, 1e30f, 1e18f},   {ID_logistic, -1e18f, 1e18f},
+    {ID_power, 0x1p-149f, 0},    {ID_power, 1e-30f, 0},       {ID_evenpower, 0x1p-149f, 0},  {ID_evenpower, 1e-30f, 0},
+    {ID_cone, 1e-30f, 0},        {ID_cone, 0.99999994f, 0},   {ID_cone, 1.9999999f, 0},      {ID_disk, 3e17f, 0},
     {ID_concentric, 3e17f, 0}};
-static const float incidence[][2] = {{1, 0},        {0.99999994f, 0},        {0.99999994f, 2.2f}, {0.9f, 0.4f},     {0.5f, 1.5707964f},
-                                     {0.5f, -2.5f}, {0.1f, 0},               {0.1f, 2.1f},        {0.01f, 1.1f},    {1e-3f, -0.4f},
-                                     {1e-3f, 3.1415927f}, {1e-5f, 2.8f},     {1e-7f, 0},          {1e-7f, 0.785f},  {1e-7f, -1.5707964f},
-                                     {1e-12f, 0.5f}, {0x1p-126f, 2.0f},      {0x1p-140f, -2.0f}};
-static const float corners[] = {0,       0x1p-149f, 0x1p-140f, FLT_MIN,        0x1p-64f, 0x1p-24f,     0x1p-12f,   0.125f,
-                                0.25f,   0.49999997f, 0.5f,    0.50000006f,    0.75f,    1 - 0x1p-12f, 1 - 0x1p-24f};
+static const float incidence[][2] = {{1, 0},
+                                     {0.99999994f, 0},
+                                     {0.99999994f, 2.2f},
+                                     {0.9f, 0.4f},
+                                     {0.5f, 1.5707964f},
+                                     {0.5f, -2.5f},
+                                     {0.1f, 0},
+                                     {0.1f, 2.1f},
+                                     {0.01f, 1.1f},
+                                     {1e-3f, -0.4f},
+                                     {1e-3f, 3.1415927f},
+                                     {1e-5f, 2.8f},
+                                     {1e-7f, 0},
+                                     {1e-7f, 0.785f},
+                                     {1e-7f, -1.5707964f},
+                                     {1e-12f, 0.5f},
+                                     {1e-15f, 1.9f},
+                                     {1e-18f, -0.9f},
+                                     {0x1p-126f, 2.0f},
+                                     {0x1p-140f, -2.0f}};
+static const float corners[] = {0,     0x1p-149f,   0x1p-140f, FLT_MIN,     0x1p-64f, 0x1p-24f,     0x1p-12f,    0.125f,
+                                0.25f, 0.49999997f, 0.5f,      0.50000006f, 0.75f,    1 - 0x1p-12f, 1 - 0x1p-24f};
 enum { CORNERS = 15, U_MAX = CORNERS * CORNERS + 64 * 64 };
 
 static int make_u(const mcst_row *row, uint64_t seed, int strata, float (*u)[2]) {
@@ -310,7 +331,7 @@ static int make_u(const mcst_row *row, uint64_t seed, int strata, float (*u)[2])
     return n;
 }
 
-/* --- scores ------------------------------------------------------------------------------------------------------------------------ */
+/* --- scores ----------------------------------------------------------------------------------------------------------------- */
 
 enum { PDF_U, PDF_X, FAR_, VALUE, WEIGHT, AGREE, WHERE, SINE, SCORES };
 /* Densities, values and weights in E; where: in half ulps of 1 (lines and disks: of the size); sine: relative, in 1e-6. */
@@ -331,8 +352,8 @@ static void score(tally *t, int what, double raw, double judged, const char *whe
 typedef struct {
     const mcst_row *row;
     const float *p;
-    q3 x;        /* where the density is asked for, or */
-    qd u1, u2;   /* the random numbers whose sample it is */
+    q3 x;      /* where the density is asked for, or */
+    qd u1, u2; /* the random numbers whose sample it is */
     int of_u, what;
 } question;
 
@@ -367,21 +388,22 @@ static double conditioning(question q, qd want) {
         }
         sum += worst;
     }
-    return (double)(sum / want);
+    return ROUNDINGS * (double)(sum / want);
 }
 
 /* Is got within E of want? Densities beyond FLT_MAX saturate. A density is its peak times a float in [0,1]: where that float is
  * subnormal its digits are gone, and all that is asked is that the density is small, too. */
 static int judge(tally *t, question q, float got, qd want, double unit, double peak, const char *where) {
     const double top = want > (qd)FLT_MAX ? FLT_MAX : (double)want, floor_ = 0x1p-126 * peak + 0x1p-148;
-    const double err = fabs((double)((qd)got - (want > (qd)FLT_MAX ? (qd)FLT_MAX : want))), raw = err <= floor_ ? 0 : err / (unit * top);
+    const double err = fabs((double)((qd)got - (want > (qd)FLT_MAX ? (qd)FLT_MAX : want))),
+                 raw = err <= floor_ ? 0 : err / (unit * top);
     double judged = raw;
     if (!(raw <= 1)) {
         const double wider = conditioning(q, want);
         judged = err / (top * (unit + wider));
         t->ill[q.what] += judged <= 1;
-        CHECK(judged <= 1 || t->beyond, "%s %s: %.9g, exact %.9g, error %.3g (bound %.3g, with half an ulp of the inputs %.3g)", where,
-              score_name[q.what], (double)got, top, err / top, unit, unit + wider);
+        CHECK(judged <= 1 || t->beyond, "%s %s: %.9g, exact %.9g, error %.3g (bound %.3g, with half an ulp of the inputs %.3g)",
+              where, score_name[q.what], (double)got, top, err / top, unit, unit + wider);
     }
     score(t, q.what, raw, judged, where);
     return judged <= 1;
@@ -405,7 +427,7 @@ static double movement(const mcst_row *row, const float *p, qd u1, qd u2, q3 fro
         }
         sum += worst;
     }
-    return (double)sum / EPS;
+    return ROUNDINGS * (double)sum / EPS;
 }
 
 static void count_point(const mcst_row *row, const float *p, tally *t, const float s[5]) {
@@ -417,7 +439,8 @@ static void count_point(const mcst_row *row, const float *p, tally *t, const flo
     if (row->dim == 3) t->not_unit += !(fabs(sqrt(l2) - 1) <= 4 * EPS + (row->shape == MCST_IS_BRDF ? fabs(sqrt(o2) - 1) : 0));
 }
 
-static void check_point(const mcst_row *row, const setting *s, const float *p, const float *u, double peak, double extent, tally *t) {
+static void check_point(const mcst_row *row, const setting *s, const float *p, const float *u, double peak, double extent,
+                        tally *t) {
     question q;
     q3 x, at;
     qd pdf_u, pdf_x;
@@ -449,8 +472,8 @@ static void check_point(const mcst_row *row, const setting *s, const float *p, c
         const double wider = limit + movement(row, p, u[0], u[1], x) / size;
         score(g, WHERE, err, err / wider, where);
         g->ill[WHERE] += err <= wider;
-        CHECK(err <= wider || g->beyond, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g", where, (double)w[0],
-              (double)w[1], (double)w[2], (double)x.x, (double)x.y, (double)x.z, err, wider);
+        CHECK(err <= wider || g->beyond, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g", where,
+              (double)w[0], (double)w[1], (double)w[2], (double)x.x, (double)x.y, (double)x.z, err, wider);
     }
     if (row->dim == 3 && row->shape != MCST_IS_BRDF) {
         /* sin(theta), and the point across the lobe in units of its width: both relative, where sin^2(theta) is a normal float
@@ -466,11 +489,13 @@ static void check_point(const mcst_row *row, const setting *s, const float *p, c
             if (rel <= 1) score(g, SINE, rel, rel, where);
             else {
                 /* of visible normals h = c + i is a sum: relative to the whole of it, not to what is left */
-                const double wider = 1 + movement(row, p, u[0], u[1], x) * EPS / (double)(sine * fminq(1, fminq(wx, wy) / fmaxq(wx, wy))) / 1e-6;
+                const double wider =
+                    1 + movement(row, p, u[0], u[1], x) * EPS / (double)(sine * fminq(1, fminq(wx, wy) / fmaxq(wx, wy))) / 1e-6;
                 score(g, SINE, rel, rel / wider, where);
                 g->ill[SINE] += rel <= wider;
-                CHECK(rel <= wider || g->beyond, "%s: sin(theta) %.9g, exact %.9g: off by %.3g along, %.3g across the lobe (bound %.3g)", where,
-                      (double)got, (double)sine, along, across, 1e-6 * wider);
+                CHECK(rel <= wider || g->beyond,
+                      "%s: sin(theta) %.9g, exact %.9g: off by %.3g along, %.3g across the lobe (bound %.3g)", where, (double)got,
+                      (double)sine, along, across, 1e-6 * wider);
             }
         }
     }
@@ -515,33 +540,37 @@ static void check_point(const mcst_row *row, const setting *s, const float *p, c
         if (f > 0) judge(g, q, v, weight, 1e-6, 0, where);
         /* the weight of the sample is a function of the cosines; wi.z is known to half an ulp of 1 */
         if (f > 0 && !g->beyond)
-            CHECK(fabs((double)((qd)out[4] / fminq(weight, FLT_MAX)) - 1) <= 2e-6 + 40 * EPS / (double)w[2] || weight < (qd)0x1p-100,
+            CHECK(fabs((double)((qd)out[4] / fminq(weight, FLT_MAX)) - 1) <= 2e-6 + 40 * EPS / (double)w[2] ||
+                      weight < (qd)0x1p-100,
                   "%s: weight %.9g, exact %.9g", where, (double)out[4], (double)weight);
     }
 }
 
 /* Directions that the sampler does not pick: mirrored, opposed, back, across, grazing, below, and any. */
 static void check_far(const mcst_row *row, const setting *s, const float *p, uint64_t seed, double peak, tally *t) {
-    static const float z_of[] = {1, 0.9f, 0.3f, 0.01f, 1e-4f, 1e-7f, 1e-30f, 0x1p-140f, 0, -0.5f};
+    static const float z_of[] = {1, 0.9f, 0.3f, 0.01f, 1e-4f, 1e-7f, 1e-12f, 1e-18f, 1e-30f, 0x1p-140f, 0, -0.5f};
     int i;
-    for (i = 0; i < 40; i++) {
+    for (i = 0; i < 44; i++) {
         question q;
         float w[3], pdf = -1, u, v;
         char where[160];
         tally *g = t;
         qd want;
         mcst_uniform(&seed, 1, &u, &v);
-        if (i < 20) {
-            const double z = (double)z_of[i / 2], r = sqrt(1 - z * z), l = sqrt((double)p[3] * (double)p[3] + (double)p[4] * (double)p[4]);
+        if (i < 24) {
+            const double z = (double)z_of[i / 2], r = sqrt(1 - z * z),
+                         l = sqrt((double)p[3] * (double)p[3] + (double)p[4] * (double)p[4]);
             const double side = i % 2 ? 1 : -1; /* away from wo, or towards it */
-            w[0] = (float)(l > 0 ? side * r * (double)p[3] / l : r), w[1] = (float)(l > 0 ? side * r * (double)p[4] / l : 0), w[2] = (float)z;
-        } else if (i == 20) w[0] = -p[3], w[1] = -p[4], w[2] = p[5];
-        else if (i == 21) w[0] = p[3], w[1] = p[4], w[2] = p[5];
-        else if (i == 22) w[0] = -p[3], w[1] = -p[4], w[2] = -p[5];
-        else if (i == 23) w[0] = -p[4], w[1] = p[3], w[2] = p[5];
+            w[0] = (float)(l > 0 ? side * r * (double)p[3] / l : r), w[1] = (float)(l > 0 ? side * r * (double)p[4] / l : 0),
+            w[2] = (float)z;
+        } else if (i == 24) w[0] = -p[3], w[1] = -p[4], w[2] = p[5];
+        else if (i == 25) w[0] = p[3], w[1] = p[4], w[2] = p[5];
+        else if (i == 26) w[0] = -p[3], w[1] = -p[4], w[2] = -p[5];
+        else if (i == 27) w[0] = -p[4], w[1] = p[3], w[2] = p[5];
         else {
             const double z = (double)u, r = sqrt(1 - z * z);
-            w[0] = (float)(r * cos(6.283185307179586 * (double)v)), w[1] = (float)(r * sin(6.283185307179586 * (double)v)), w[2] = u;
+            w[0] = (float)(r * cos(6.283185307179586 * (double)v)), w[1] = (float)(r * sin(6.283185307179586 * (double)v)),
+            w[2] = u;
         }
         q.row = row, q.p = p, q.x = vec(w[0], w[1], w[2]), q.u1 = q.u2 = 0, q.of_u = 0, q.what = FAR_;
         snprintf(where, sizeof where, "p %g %g, wo %a %a %a, w %a %a %a", (double)p[0], (double)p[1], (double)p[3], (double)p[4],
@@ -559,8 +588,8 @@ static void check_far(const mcst_row *row, const setting *s, const float *p, uin
             row->fn[0].eval(p, w, &value), row->fn[0].weight(p, w, &weight);
             t->evaluations += 2;
             t->nans += isnan(value) || isnan(weight), t->infinities += isinf(value) || isinf(weight);
-            CHECK(value >= 0 && weight >= 0 && value <= FLT_MAX && weight <= FLT_MAX, "%s: eval %g, weight %g", where, (double)value,
-                  (double)weight);
+            CHECK(value >= 0 && weight >= 0 && value <= FLT_MAX && weight <= FLT_MAX, "%s: eval %g, weight %g", where,
+                  (double)value, (double)weight);
             q.what = VALUE;
             judge(g, q, value, f, unit_of(want, peak), want > 0 ? peak * (double)(f / want) : 0, where);
         }
@@ -598,7 +627,7 @@ static void sweep(const mcst_row *row, const float *p, uint64_t seed, size_t blo
 
 static size_t settings_of(const mcst_row *row, float (*list)[2]) {
     size_t n = 0, i;
-    const float (*more)[2] = row->coord == MCST_SLOPES ? alphas : row->coord == MCST_COSPOWER ? exponents : row->grid;
+    const float(*more)[2] = row->coord == MCST_SLOPES ? alphas : row->coord == MCST_COSPOWER ? exponents : row->grid;
     const size_t count = row->coord == MCST_SLOPES     ? MCST_COUNT(alphas)
                          : row->coord == MCST_COSPOWER ? MCST_COUNT(exponents)
                                                        : row->grid_size;
@@ -613,7 +642,7 @@ static size_t settings_of(const mcst_row *row, float (*list)[2]) {
 
 static void check_setting(const mcst_row *row, const float *p, uint64_t seed, double scale, tally *t) {
     static float u[U_MAX][2];
-    const int strata = (int)fmin(64, fmax(4, sqrt((row->has_wo ? 256 : 4096) * scale))), n = make_u(row, seed, strata, u);
+    const int strata = (int)fmin(64, fmax(4, sqrt((row->has_wo ? 1024 : 4096) * scale))), n = make_u(row, seed, strata, u);
     const setting s = setting_of(row, p);
     double peak = 0, extent = 0;
     int i;
@@ -634,16 +663,16 @@ static void print_tally(const char *name, const tally *t, int head) {
     int i;
     if (head) {
         printf("%-14s %11s %4s %4s %9s %9s |", "", "evaluations", "NaN", "inf", "not unit", "density 0");
-        for (i = 0; i < SCORES; i++) printf(" %13s", score_name[i]);
+        for (i = 0; i < SCORES; i++) printf(" %16s", score_name[i]);
         puts("  raw/judged (ill)");
         return;
     }
     printf("%-14s %11.0f %4.0f %4.0f %9.0f %9.0f |", name, t->evaluations, t->nans, t->infinities, t->not_unit, t->zero);
     for (i = 0; i < SCORES; i++) {
         char cell[40];
-        if (t->ill[i] > 0) snprintf(cell, sizeof cell, "%.3g/%.2f (%.0f)", t->raw[i], t->judged[i], t->ill[i]);
+        if (t->ill[i] > 0) snprintf(cell, sizeof cell, "%.2g/%.2g (%.0f)", t->raw[i], t->judged[i], t->ill[i]);
         else snprintf(cell, sizeof cell, "%.3g", t->raw[i]);
-        printf(" %13s", cell);
+        printf(" %16s", cell);
     }
     putchar('\n');
     for (i = 0; i < SCORES && getenv("MCS_TEST_VERBOSE"); i++)
@@ -691,8 +720,8 @@ int main(int argc, char **argv) {
             }
         }
         if (t->evaluations > 0 && mcst_case("NaN, infinities, lengths, densities of 0"))
-            CHECK(t->nans == 0 && t->infinities == 0 && t->not_unit == 0 && t->zero == 0, "%.0f NaN, %.0f infinite, %.0f not unit, %.0f of density 0",
-                  t->nans, t->infinities, t->not_unit, t->zero);
+            CHECK(t->nans == 0 && t->infinities == 0 && t->not_unit == 0 && t->zero == 0,
+                  "%.0f NaN, %.0f infinite, %.0f not unit, %.0f of density 0", t->nans, t->infinities, t->not_unit, t->zero);
     }
     mcst_group("mass");
     for (i = 0; i < MCST_NROWS; i++) {
@@ -706,8 +735,8 @@ int main(int argc, char **argv) {
             if (row->coord == MCST_COSPOWER && p[0] > 1e9f) continue;
             if (!mcst_case("%s %g %g", row->name, (double)list[j][0], (double)list[j][1])) continue;
             m = mcst_mass_of(row, p);
-            CHECK(!m.resolved || fabs(m.integral - m.lit) <= m.tolerance, "integral %.8f, not lost %.8f (%g, tolerance %g)", m.integral,
-                  m.lit, m.integral - m.lit, m.tolerance);
+            CHECK(!m.resolved || fabs(m.integral - m.lit) <= m.tolerance, "integral %.8f, not lost %.8f (%g, tolerance %g)",
+                  m.integral, m.lit, m.integral - m.lit, m.tolerance);
         }
     }
     mcst_group("");
@@ -715,7 +744,7 @@ int main(int argc, char **argv) {
         print_tally("", NULL, 1);
         for (i = 0; i < MCST_NROWS; i++)
             for (j = 0; j < (mcst_rows[i].dim == 3 ? 2 : 1); j++)
-                if (all[i][0].evaluations > 0) print_tally(j ? "  below 1e-7" : mcst_rows[i].name, &all[i][j], 0);
+                if (all[i][0].evaluations > 0) print_tally(j ? "  below 1e-15" : mcst_rows[i].name, &all[i][j], 0);
     }
     return mcst_finish();
 }

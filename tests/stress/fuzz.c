@@ -1,13 +1,14 @@
 /* A libFuzzer target: raw bytes choose a function and are its arguments. Every public function is reached; every result must be
- * finite and in its range; arrays and tables are allocated at exactly their size, so that the address sanitizer sees a byte too far.
+ * finite and in its range; arrays and tables are allocated at exactly their size, so that the address sanitizer sees a byte too
+ * far.
  *
  *     clang -g -O1 -fsanitize=fuzzer,address,undefined,float-cast-overflow -fno-sanitize-recover=all -I. -Itests fuzz.c -o fuzz
  *
  * With -DMCS_FUZZ_MAIN and any compiler the program replays the files given to it, or, without any, a corpus made from a counter
- * (1e6 inputs times MCS_TEST_SCALE); options as in mcs_test.h. */
+ * (1e7 inputs times MCS_TEST_SCALE); options as in mcs_test.h. */
 #include "stress.h"
 
-/* --- the input ----------------------------------------------------------------------------------------------------------------------- */
+/* --- the input -------------------------------------------------------------------------------------------------------------- */
 
 typedef struct {
     const uint8_t *at;
@@ -54,7 +55,7 @@ static float take_u(bytes *b, int tame) {
     return tame ? mcs_u01(v) : st_float(v);
 }
 
-/* --- what must hold ------------------------------------------------------------------------------------------------------------------- */
+/* --- what must hold --------------------------------------------------------------------------------------------------------- */
 
 static const char *doing = "";
 #ifdef MCS_FUZZ_MAIN
@@ -79,7 +80,7 @@ static float *floats(size_t n) {
     return f;
 }
 
-/* --- the functions --------------------------------------------------------------------------------------------------------------------- */
+/* --- the functions ---------------------------------------------------------------------------------------------------------- */
 
 static void fuzz_row(const mcst_row *row, bytes *b) {
     const int tame = take_u8(b) & 1;
@@ -270,7 +271,8 @@ static void fuzz_table(int kind, bytes *b) {
 }
 
 enum { NUMBERS = MCST_NROWS, VECTORS, ESTIMATOR, TABLES, FUNCTIONS = TABLES + KINDS };
-static const char *const other_name[FUNCTIONS - MCST_NROWS] = {"numbers", "vectors", "estimator", "pwc", "pwl", "alias", "pwc of a function"};
+static const char *const other_name[FUNCTIONS - MCST_NROWS] = {"numbers", "vectors", "estimator",        "pwc",
+                                                               "pwl",     "alias",   "pwc of a function"};
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -332,7 +334,7 @@ int main(int argc, char **argv) {
         return mcst_finish();
     }
     mcst_start(argc, argv);
-    n = (uint64_t)fmax(1000, 1e6 * mcst_scale() / FUNCTIONS);
+    n = (uint64_t)fmax(1000, 1e7 * mcst_scale() / FUNCTIONS);
     mcst_group("fuzz");
     for (which = 0; which < FUNCTIONS; which++)
         if (mcst_case("%s", which < (int)MCST_NROWS ? mcst_rows[which].name : other_name[which - (int)MCST_NROWS]))

@@ -79,8 +79,8 @@ static int point_bad(const mcst_row *row, const float *x) {
     return st_above_bad(x[0], x[1], x[2]);
 }
 
-#define SHOWN                                                                                                                    \
-    "p %a %a, wo %a %a %a, u %a %a, x %a %a %a", (double)a->p[0], (double)a->p[1], (double)a->p[3], (double)a->p[4],              \
+#define SHOWN                                                                                                        \
+    "p %a %a, wo %a %a %a, u %a %a, x %a %a %a", (double)a->p[0], (double)a->p[1], (double)a->p[3], (double)a->p[4], \
         (double)a->p[5], (double)a->u[0], (double)a->u[1], (double)a->x[0], (double)a->x[1], (double)a->x[2]
 
 /* s: x, y, z, pdf, weight of a sample. */
@@ -114,7 +114,8 @@ static void check_value(tally *t, const arguments *a, int bad, float v) {
 }
 
 static void print_head(void) {
-    printf("%-22s %12s %5s %5s %9s %9s %14s %9s\n", "", "evaluations", "NaN", "inf", "negative", "not unit", "not discarded", "range");
+    printf("%-22s %12s %5s %5s %9s %9s %14s %9s\n", "", "evaluations", "NaN", "inf", "negative", "not unit", "not discarded",
+           "range");
 }
 static void print_tally(const char *name, const tally *t) {
     printf("%-22s %12.0f %5.0f %5.0f %9.0f %9.0f %14.0f %9.0f\n", name, t->evaluations, t->nans, t->infinities, t->negative,
@@ -201,7 +202,7 @@ static void check_arrays(const mcst_row *row, uint64_t seed, long calls, tally *
     }
 }
 
-/* --- functions that are no row: vectors, Fresnel, MIS, GGX terms, points, random numbers ----------------------------------------- */
+/* --- functions that are no row: vectors, Fresnel, MIS, GGX terms, points, random numbers ------------------------------------ */
 
 static mcs8_f eight(const float *v) {
     mcs8_f r;
@@ -222,8 +223,8 @@ static void put(float out[3][LANES], mcs8_vec3 v) {
 
 enum { COS_D, SCHLICK, BALANCE, POWER_, MIX, REFLECT_PDF, GGX_D, GGX_G1, GGX_G2, FROM_SIN2, VALUES };
 static const float value_top[VALUES] = {2, 1, 1, 1, FLT_MAX, FLT_MAX, FLT_MAX, 1, 1, 1};
-static const char *const value_name[VALUES] = {"cos_d", "schlick", "mis_balance", "mis_power",   "mix_pdf",
-                                               "reflect_pdf", "ggx_d", "ggx_g1", "ggx_g2", "cone_from_sin2"};
+static const char *const value_name[VALUES] = {"cos_d",       "schlick", "mis_balance", "mis_power", "mix_pdf",
+                                               "reflect_pdf", "ggx_d",   "ggx_g1",      "ggx_g2",    "cone_from_sin2"};
 
 static void check_vectors(uint64_t seed, long rounds, tally *t) {
     const mcst_row *row = mcst_find("ggx");
@@ -305,8 +306,8 @@ static void check_numbers(uint64_t seed, long rounds, tally *t) {
         mcs_pcg32_advance(&g, z ^ y);
         v[8] = mcs_pcg32_float(&g);
         for (i = 0; i < 9; i++)
-            CHECK(below_one(t, v[i]), "function %d: %a for %u %u %u %u", (int)i, (double)v[i], (unsigned)c, (unsigned)a, (unsigned)b,
-                  (unsigned)d);
+            CHECK(below_one(t, v[i]), "function %d: %a for %u %u %u %u", (int)i, (double)v[i], (unsigned)c, (unsigned)a,
+                  (unsigned)b, (unsigned)d);
         CHECK(v[7] > 0, "u01_open of %u is 0", (unsigned)c);
         if (k % 64 == 0) {
             const size_t n = z % ARRAY + 1;
@@ -323,7 +324,7 @@ static void check_numbers(uint64_t seed, long rounds, tally *t) {
     }
 }
 
-/* --- tables ------------------------------------------------------------------------------------------------------------------------ */
+/* --- tables ----------------------------------------------------------------------------------------------------------------- */
 
 enum { PWC, DISCRETE, PWL, ALIAS, FROM_FUNCTION, KINDS };
 static const char *const kind_name[KINDS] = {"pwc", "discrete", "pwl", "alias", "pwc of a function"};
@@ -398,7 +399,8 @@ static void check_draws(int kind, const st_memory *m, const float *f, uint32_t n
         }
         CHECK(below_one(t, x) && below_one(t, back), "%u cells: x or rest %a, invert %a", (unsigned)n, (double)x, (double)back);
         if (!good) CHECK(pdf == 0, "u %a is bad, but density %a", (double)u, (double)pdf);
-        else if (f && !uniform) CHECK(kind == PWL ? lit(f, i) || lit(f, i + 1) : lit(f, i), "entry %u is zero, but drawn", (unsigned)i);
+        else if (f && !uniform)
+            CHECK(kind == PWL ? lit(f, i) || lit(f, i + 1) : lit(f, i), "entry %u is zero, but drawn", (unsigned)i);
         if (good && kind != PWL) CHECK(pdf > 0, "u %a: density 0 at its own sample", (double)u);
     }
     t->evaluations += 400 * 3;
@@ -421,7 +423,8 @@ static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
     e = table_build(kind, &m, bytes, f, 0, state);
     CHECK(e == MCS_ERR_SIZE && st_untouched(m.at, bytes), "0 entries: %d", (int)e);
     e = table_build(kind, &m, bytes, f, n, state);
-    CHECK(st_intact(&m) && st_intact(&source) && !memcmp(copy.at, source.at, source.bytes), "%u entries: written outside", (unsigned)n);
+    CHECK(st_intact(&m) && st_intact(&source) && !memcmp(copy.at, source.at, source.bytes), "%u entries: written outside",
+          (unsigned)n);
     if (kind == FROM_FUNCTION) {
         CHECK(e == MCS_OK || e == MCS_UNIFORM, "%u entries: status %d", (unsigned)n, (int)e);
         check_draws(PWC, &m, NULL, n, 1, state, t);
@@ -447,14 +450,15 @@ static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
             }
             t->evaluations += n;
             CHECK(fabs(all - 1) <= 0x1p-24, "probabilities add up to 1 + %g", all - 1); /* each rounded to 24 digits */
-        } else { /* arrays with exactly n places; in place */
+        } else {                                                                        /* arrays with exactly n places; in place */
             const size_t count = mcst_mix(state) % 70;
             st_memory u = st_memory_make(count * sizeof(float)), x = st_memory_make(u.bytes), pdf = st_memory_make(u.bytes);
             float *in = (float *)(void *)u.at, *ox = (float *)(void *)x.at, *op = (float *)(void *)pdf.at;
             for (i = 0; i < count; i++) in[i] = i & 3 ? (float)(mcst_mix(state) >> 40) * 0x1p-24f : st_hostile(mcst_mix(state));
             if (kind == PWL) mcs_pwl_sample_n((const mcs_pwl *)(const void *)m.at, count, in, ox, op);
             else mcs_pwc_sample_n(head, count, in, ox, op);
-            for (i = 0; i < count; i++) CHECK(below_one(t, ox[i]) && proper(t, op[i]), "u %a: %a %a", (double)in[i], (double)ox[i], (double)op[i]);
+            for (i = 0; i < count; i++)
+                CHECK(below_one(t, ox[i]) && proper(t, op[i]), "u %a: %a %a", (double)in[i], (double)ox[i], (double)op[i]);
             if (kind == PWL) mcs_pwl_sample_n((const mcs_pwl *)(const void *)m.at, count, in, in, NULL);
             else mcs_pwc_sample_n(head, count, in, in, NULL);
             CHECK(!memcmp(u.at, x.at, u.bytes), "in place is different");

@@ -13,10 +13,10 @@ static inline float st_float(uint32_t bits) {
 
 /* Any float: half of the time any bit pattern, otherwise a number at an edge of some range, NaN and infinities among them. */
 static inline float st_hostile(uint64_t z) {
-    static const float edge[32] = {0.0f,       -0.0f,      0x1p-149f, -0x1p-149f, 0x1p-127f, FLT_MIN,   -FLT_MIN, 1e-30f,
-                                   1e-18f,     9e-19f,     1e-7f,     9e-8f,      0x1p-24f,  0.25f,     0.5f,     0.49999997f,
-                                   0.70710678f, 0.99999994f, 1.0f,    1.0000001f, -1.0f,     2.0f,      -2.0f,    1e4f,
-                                   1.1e9f,     1e18f,      1.1e18f,   1e30f,      FLT_MAX,   -FLT_MAX,  INFINITY, -INFINITY};
+    static const float edge[32] = {0.0f,        -0.0f,       0x1p-149f, -0x1p-149f, 0x1p-127f, FLT_MIN,  -FLT_MIN, 1e-30f,
+                                   1e-18f,      9e-19f,      1e-7f,     9e-8f,      0x1p-24f,  0.25f,    0.5f,     0.49999997f,
+                                   0.70710678f, 0.99999994f, 1.0f,      1.0000001f, -1.0f,     2.0f,     -2.0f,    1e4f,
+                                   1.1e9f,      1e18f,       1.1e18f,   1e30f,      FLT_MAX,   -FLT_MAX, INFINITY, -INFINITY};
     const uint32_t bits = (uint32_t)(z >> 32);
     if (z & 1) return st_float(bits);
     if ((z & 30) == 0) return st_float(0x7fc00000u | (bits & 0x803fffffu)); /* quiet NaN of either sign, any payload */

@@ -1,0 +1,42 @@
+/* The caller's memory of a table: exactly as many bytes as were asked for, between two guards, all filled with one pattern, so that
+ * a test sees what was written and what was not. */
+#ifndef MCST_ARENA_H
+#define MCST_ARENA_H
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ARENA_GUARD = 64, ARENA_FILL = 0xa5 };
+
+typedef struct {
+    unsigned char *raw, *at;
+    size_t bytes;
+} arena;
+
+static inline arena arena_make(size_t bytes) {
+    arena a;
+    a.bytes = bytes;
+    a.raw = (unsigned char *)malloc(bytes + 2 * ARENA_GUARD);
+    if (!a.raw) {
+        fprintf(stderr, "out of memory\n");
+        exit(2);
+    }
+    memset(a.raw, ARENA_FILL, bytes + 2 * ARENA_GUARD);
+    a.at = a.raw + ARENA_GUARD;
+    return a;
+}
+
+static inline size_t filled(const unsigned char *p, size_t n) {
+    size_t i, count = 0;
+    for (i = 0; i < n; i++) count += p[i] == ARENA_FILL;
+    return count;
+}
+
+static inline int untouched(const unsigned char *p, size_t n) { return filled(p, n) == n; }
+
+static inline int arena_intact(const arena *a) {
+    return untouched(a->raw, ARENA_GUARD) && untouched(a->at + a->bytes, ARENA_GUARD);
+}
+
+static inline void arena_free(arena *a) { free(a->raw); }
+#endif

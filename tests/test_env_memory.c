@@ -1,0 +1,720 @@
+/* What the environment map keeps in memory: probabilities that are integers, places that are skipped, tables that come from a file.
+ * The truth is the picture; the layout is the one documented at mcsi_env_parts. MCS_TEST_BIG adds a map of 16384 x 8192, in
+ * 1.2 GB. */
+#include <float.h>
+#include <math.h>
+#include "arena.h"
+#include "hdr.h"
+#include "mcs_test.h"
+#include "mcsample.h"
+
+typedef long double ld;
+
+static const double pi = 3.14159265358979323846;
+static const double eps = 0x1p-24;    /* rounding of a float, relative */
+static const uint32_t one = 1u << 31; /* probabilities of rows and of columns are integers over this */
+
+/* MCS_TEST_SCALE below 1 (sanitizer builds) draws fewer samples. */
+static int scaled(int n) {
+    const char *s = getenv("MCS_TEST_SCALE");
+    const double f = s ? atof(s) : 1;
+    return f > 0 && f < 1 ? (int)(n * f) + 1 : n;
+}
+
+/* ---- pictures ---- */
+
+typedef float (*shade)(uint32_t col, uint32_t row, uint32_t w, uint32_t h);
+typedef struct {
+    const char *name;
+    uint32_t w, h;
+    shade value;
+    float *lum;
+} picture;
+
+static float hash01(uint32_t i) { return mcs_u01(mcs_philox(mcst.seed, i, 3).v[0]); }
+
+static float v_random(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)h, 0.1f + hash01(r * w + c); }
+static float v_constant(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)c, (void)r, (void)w, (void)h, 0.7f; }
+static float v_black(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)c, (void)r, (void)w, (void)h, 0.0f; }
+static float v_checker(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)w, (void)h, (c + r) & 1 ? 1.0f : 0.0f; }
+static float v_tiny(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return (void)w, (void)h, (float)((c + r) % 4) * 1.4012984643e-45f;
+}
+static float v_huge(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return (void)w, (void)h, (c + r) % 3 ? FLT_MAX : FLT_MAX / 4;
+}
+static float v_wide(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return (void)h, (c * 7 + r) % 5 ? powf(10.0f, 76.0f * hash01(r * w + c) - 38.0f) : 0.0f;
+}
+/* In a row next to a sun, every texel but one is a single integer of a row that is a single integer. */
+static float v_suns(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    if (r == h / 3) return c == w / 2 ? 1e30f : 1.0f;
+    if (r == h / 2) return c == w / 4 ? 1e-5f : 1e-20f * (1.0f + hash01(c));
+    return hash01(r * w + c);
+}
+static float v_sky(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    const float up = 1.0f - 2.0f * ((float)r + 0.5f) / (float)h;
+    if (c == w / 5 && r == h / 4) return 1e5f;
+    return up > 0 ? 1.0f - 0.7f * up + 0.1f * hash01(r * w + c) : 0.0f;
+}
+/* Light in a rectangle; some of it black. */
+static float v_region(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    const int in = c >= w / 3 && c < w / 3 + w / 5 && r >= h / 4 && r < h / 4 + h / 3;
+    return in && (c + r) % 7 ? 0.5f + hash01(r * w + c) : 0.0f;
+}
+/* Rows black but for every third one. */
+static float v_thirds(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)h, r % 3 == 1 ? hash01(r * w + c) : 0.0f; }
+/* One texel per row 1e8 times brighter than the others, which differ by up to 3. */
+static float v_sun_rows(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return (void)h, c == (r * 977 + 5) % w ? 1e8f : 0.5f + hash01(r * w + c);
+}
+
+static void draw(picture *p) {
+    uint32_t r, c;
+    p->lum = (float *)malloc((size_t)p->w * p->h * sizeof *p->lum);
+    if (!p->lum) {
+        fprintf(stderr, "out of memory\n");
+        exit(2);
+    }
+    for (r = 0; r < p->h; r++)
+        for (c = 0; c < p->w; c++) p->lum[(size_t)r * p->w + c] = p->value(c, r, p->w, p->h);
+}
+static picture make(const char *name, uint32_t w, uint32_t h, shade value) {
+    picture p;
+    p.name = name, p.w = w, p.h = h, p.value = value;
+    draw(&p);
+    return p;
+}
+
+static mcs_env *env_in(const arena *a) { return (mcs_env *)(void *)a->at; }
+static uint32_t *rows_of(const arena *a) { return (uint32_t *)(void *)(a->at + env_in(a)->at.rows); }
+static uint32_t *cdf_of(const arena *a, uint32_t row) {
+    return (uint32_t *)(void *)(a->at + env_in(a)->at.cdf) + (size_t)row * (env_in(a)->w + 1);
+}
+static unsigned char *guide_of(const arena *a, uint32_t row) {
+    return a->at + env_in(a)->at.col_guide + (size_t)row * env_in(a)->at.guides * 2;
+}
+
+static arena build(const picture *p, mcs_status want) {
+    arena a = arena_make(mcs_env_bytes(p->w, p->h));
+    const mcs_image image = mcs_image_make(p->lum, p->w, p->h, 1);
+    const mcs_status rc = mcs_env_build(env_in(&a), a.bytes, &image);
+    CHECK(rc == want && arena_intact(&a), "%s: build returns %d", p->name, rc);
+    return a;
+}
+
+static int same(mcs_texel s, mcs_texel t) {
+    return s.w.x == t.w.x && s.w.y == t.w.y && s.w.z == t.w.z && s.pdf == t.pdf && s.col == t.col && s.row == t.row;
+}
+/* Bits in the middle of what cell i of a cumulative list gets: twice a number below 2^31. */
+static uint32_t middle(const uint32_t *cdf, uint32_t i) { return cdf[i] + cdf[i + 1]; }
+
+/* ---- probabilities in integers ---- */
+
+/* A list of cumulative sums against the weights: differences add up to 2^31, nothing gets nothing, everything else at least one and
+ * its share. A share moves by one of rounding, its own one, and its part of the ones of all that are lit; `loose` is the relative
+ * rounding of the weights, n 2^-22 that of sums of doubles. */
+static void check_list(const picture *p, const uint32_t *cdf, const ld *weight, uint32_t n, double loose, const char *what,
+                       uint32_t at) {
+    uint64_t sum = 0;
+    ld total = 0;
+    uint32_t i, lit = 0, falls = 0;
+    for (i = 0; i < n; i++) total += weight[i], lit += weight[i] > 0;
+    for (i = 0; i < n; i++) {
+        const uint32_t share = cdf[i + 1] - cdf[i];
+        const double want = (double)(weight[i] / total * one);
+        falls += cdf[i + 1] < cdf[i];
+        sum += share;
+        CHECK((share > 0) == (weight[i] > 0), "%s: %s %u, entry %u has %u of 2^31 and weight %Lg", p->name, what, at, i, share,
+              weight[i]);
+        CHECK(fabs(share - want) <= 2 + lit * (want / one) + loose * want + n * 0x1p-22,
+              "%s: %s %u, entry %u has %u of 2^31, not %g", p->name, what, at, i, share, want);
+    }
+    CHECK(cdf[0] == 0 && cdf[n] == one && falls == 0 && sum == one, "%s: %s %u: from %u to %u, %u falls, sum 2^31 + %lld", p->name,
+          what, at, cdf[0], cdf[n], falls, (long long)sum - (long long)one);
+}
+
+/* The density times the solid angle is the product of the two integers over 2^62, rounded once to float. A small one must therefore
+ * be an integer to the eye, whatever lies in memory. Returns how many small ones there were. */
+static size_t check_integers(const picture *p, const arena *a) {
+    const mcs_env *e = env_in(a);
+    ld *weight = (ld *)malloc((p->w + p->h) * sizeof *weight), *row_weight = weight + p->w, mass = 0;
+    const double loose = eps + 1e-12 + 0x1p-51 / (1 - cos(pi / p->h));
+    const uint32_t *rows = rows_of(a);
+    size_t small = 0;
+    uint32_t r, c;
+    if (!weight) exit(2);
+    for (r = 0; r < p->h; r++) {
+        const ld omega = solid_angle(r, p->w, p->h);
+        ld sum = 0;
+        uint32_t lit = 0;
+        for (c = 0; c < p->w; c++) sum += weight[c] = p->lum[(size_t)r * p->w + c], lit += weight[c] > 0;
+        row_weight[r] = sum * omega;
+        if (lit) check_list(p, cdf_of(a, r), weight, p->w, 0, "row", r);
+        for (c = 0; c < p->w; c++) {
+            const float pdf = mcs_env_pdf(e, point(p->w, p->h, c, r, 0.5, 0.5));
+            const ld found = pdf * omega * 0x1p62L, nearest = roundl(found);
+            const ld want = lit ? (ld)(rows[r + 1] - rows[r]) * (cdf_of(a, r)[c + 1] - cdf_of(a, r)[c]) : 0;
+            mass += pdf * omega;
+            CHECK(fabsl(found - want) <= loose * want, "%s: texel (%u, %u) has probability %Lg / 2^62, not %Lg", p->name, c, r,
+                  found, want);
+            if (found == 0 || found >= 0x1p20L) continue;
+            small++;
+            CHECK(nearest >= 1 && fabsl(found - nearest) <= loose * nearest, "%s: texel (%u, %u) has probability %Lg / 2^62",
+                  p->name, c, r, found);
+        }
+    }
+    check_list(p, rows, row_weight, p->h, 4 * eps, "rows of", 0);
+    CHECK(fabsl(mass - 1) <= loose, "%s: probabilities add up to 1 + %Lg", p->name, mass - 1);
+    free(weight);
+    return small;
+}
+
+/* The first and the last number of every row, and many others: each draws the texel whose share holds it, never a black one. */
+static void check_lit(const picture *p, const arena *a) {
+    const uint32_t *rows = rows_of(a);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 89);
+    const int draws = env_in(a)->uniform ? 0 : scaled(100000);
+    uint32_t r, k;
+    int i;
+    for (r = 0; r < p->h; r++)
+        for (k = 0; k < 2 && rows[r] < rows[r + 1]; k++) {
+            const mcs_texel s = mcs_env_sample_bits(env_in(a), mcs_pcg32_next(&rng), k ? 2 * (rows[r + 1] - 1) + 1 : 2 * rows[r]);
+            CHECK(s.row == r, "%s: %s of row %u draws row %u", p->name, k ? "end" : "begin", r, s.row);
+        }
+    for (i = 0; i < draws; i++) {
+        const uint32_t b1 = mcs_pcg32_next(&rng), b2 = mcs_pcg32_next(&rng);
+        const mcs_texel s = mcs_env_sample_bits(env_in(a), b1, b2);
+        const int in = s.col < p->w && s.row < p->h;
+        const uint32_t *cdf = cdf_of(a, in ? s.row : 0) + (in ? s.col : 0);
+        CHECK(in && p->lum[(size_t)s.row * p->w + s.col] > 0 && s.pdf > 0, "%s: black texel (%u, %u) drawn", p->name, s.col, s.row);
+        CHECK(in && rows[s.row] <= b2 / 2 && b2 / 2 < rows[s.row + 1] && cdf[0] <= b1 / 2 && b1 / 2 < cdf[1],
+              "%s: bits %08x, %08x draw texel (%u, %u)", p->name, b1, b2, s.col, s.row);
+    }
+}
+
+static void test_integers(void) {
+    static const picture all[] = {{"1 x 1", 1, 1, v_random, NULL},
+                                  {"7 x 5", 7, 5, v_random, NULL},
+                                  {"1 x 1000", 1, 1000, v_thirds, NULL},
+                                  {"1000 x 1", 1000, 1, v_wide, NULL},
+                                  {"100 x 999", 100, 999, v_checker, NULL},
+                                  {"denormals", 20, 10, v_tiny, NULL},
+                                  {"FLT_MAX", 64, 32, v_huge, NULL},
+                                  {"1e-38 to 1e38", 515, 33, v_wide, NULL},
+                                  {"sky", 512, 256, v_sky, NULL},
+                                  {"region", 93, 50, v_region, NULL},
+                                  {"sun in every row", 4096, 16, v_sun_rows, NULL}};
+    const shade any[4] = {v_random, v_wide, v_region, v_thirds};
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 97);
+    size_t k;
+    int i;
+    for (k = 0; k < sizeof all / sizeof *all; k++) {
+        picture p = all[k];
+        arena a;
+        draw(&p);
+        a = build(&p, MCS_OK);
+        check_integers(&p, &a), check_lit(&p, &a);
+        arena_free(&a), free(p.lum);
+    }
+    for (i = 0; i < 12; i++) {
+        const uint32_t w = 15 + mcs_pcg32_next(&rng) % 200;
+        picture p = make("random shape", w, 12 + mcs_pcg32_next(&rng) % 100, any[i % 4]);
+        arena a = build(&p, MCS_OK);
+        check_integers(&p, &a), check_lit(&p, &a);
+        arena_free(&a), free(p.lum);
+    }
+    {
+        picture p = make("suns", 64, 32, v_suns);
+        arena a = build(&p, MCS_OK);
+        const size_t small = check_integers(&p, &a);
+        CHECK(small >= p.w - 1, "%zu texels of a few 2^-62", small);
+        check_lit(&p, &a);
+        arena_free(&a), free(p.lum);
+    }
+}
+
+/* Texels 1e8 times darker than one of their row: 15 to 30 integers each, to within 2, and bits that reach each of them. */
+static void test_contrast(void) {
+    picture p = make("sun in every row", 4096, 16, v_sun_rows);
+    arena a = build(&p, MCS_OK);
+    const mcs_env *e = env_in(&a);
+    uint32_t r, c;
+    ld total = 0;
+    for (r = 0; r < p.h; r++)
+        for (c = 0; c < p.w; c++) total += p.lum[r * p.w + c] * solid_angle(r, p.w, p.h);
+    for (r = 0; r < p.h; r++) {
+        ld sum = 0, row;
+        for (c = 0; c < p.w; c++) sum += p.lum[r * p.w + c];
+        row = sum * solid_angle(r, p.w, p.h) / total;
+        for (c = 0; c < p.w; c++) {
+            const mcs_texel s = mcs_env_sample_bits(e, middle(cdf_of(&a, r), c), middle(rows_of(&a), r));
+            const double found = (double)(s.pdf * solid_angle(r, p.w, p.h) / row) * one,
+                         want = (double)(p.lum[r * p.w + c] / sum) * one;
+            CHECK(s.row == r && s.col == c, "texel (%u, %u) reached by none: (%u, %u)", c, r, s.col, s.row);
+            /* the row's own integer: 2 and its part of 16, of at least 2^31/128 */
+            CHECK(fabs(found - want) <= 2 + p.w * (want / one) + want * (18 * 128 / (double)one + 6 * eps),
+                  "texel (%u, %u): %g of 2^31 of its row, not %g", c, r, found, want);
+            CHECK(mcs_env_pdf(e, s.w) == s.pdf, "texel (%u, %u): pdf", c, r);
+        }
+    }
+    arena_free(&a), free(p.lum);
+}
+
+/* ---- in parts ---- */
+
+/* Ranges that hold every row, in random order, some empty, some twice: the same bytes, also of what is not written. */
+static void test_parts(void) {
+    const shade any[5] = {v_random, v_wide, v_region, v_thirds, v_black};
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 101);
+    int i;
+    for (i = 0; i < 60; i++) {
+        uint32_t first[160], end[160], n = 0, y = 0, k;
+        picture p = make("parts", 1 + mcs_pcg32_next(&rng) % 150, 1 + mcs_pcg32_next(&rng) % 120, any[i % 5]);
+        mcs_image image = mcs_image_make(p.lum, p.w, p.h, 1);
+        arena a = arena_make(mcs_env_bytes(p.w, p.h)), b = arena_make(a.bytes);
+        mcs_status whole, rc = MCS_OK;
+        image.bilinear = i % 3 == 1, image.floor = i % 4 == 2 ? mcs_env_mean(&image) : 0;
+        whole = mcs_env_build(env_in(&a), a.bytes, &image);
+        while (y < p.h) {
+            const uint32_t rest = p.h - y, to = y + (i % 2 ? 1 + mcs_pcg32_next(&rng) % rest : 1);
+            first[n] = y, end[n++] = y = to;
+        }
+        for (k = 0; k < 3; k++, n++) {
+            first[n] = mcs_pcg32_next(&rng) % p.h;
+            end[n] = first[n] + (k ? 0 : mcs_pcg32_next(&rng) % (p.h - first[n] + 1));
+        }
+        while (n > 0) {
+            k = mcs_pcg32_next(&rng) % n--;
+            rc = rc ? rc : mcs_env_build_rows(env_in(&b), b.bytes, &image, first[k], end[k]);
+            first[k] = first[n], end[k] = end[n];
+        }
+        CHECK(rc == MCS_OK && mcs_env_finish(env_in(&b), b.bytes, &image) == whole && arena_intact(&b), "%u x %u: returns %d", p.w,
+              p.h, rc);
+        CHECK(memcmp(a.at, b.at, a.bytes) == 0, "%u x %u: another table than at once", p.w, p.h);
+        CHECK(mcs_env_check(env_in(&b), b.bytes) == MCS_OK, "%u x %u: no table", p.w, p.h);
+        arena_free(&a), arena_free(&b), free(p.lum);
+    }
+}
+
+static void test_refused_parts(void) {
+    picture p = make("refused", 12, 9, v_random);
+    const mcs_image image = mcs_image_make(p.lum, p.w, p.h, 1);
+    arena a = arena_make(mcs_env_bytes(p.w, p.h));
+    mcs_env *e = env_in(&a);
+    const mcs_status rc[9] = {mcs_env_build_rows(e, a.bytes, &image, 0, p.h + 1),
+                              mcs_env_build_rows(e, a.bytes, &image, 5, 4),
+                              mcs_env_build_rows(e, a.bytes, &image, 0xffffffffu, 0),
+                              mcs_env_build_rows(e, a.bytes, &image, 0xffffffffu, 0xffffffffu),
+                              mcs_env_build_rows(NULL, a.bytes, &image, 0, 1),
+                              mcs_env_build_rows(e, a.bytes - 1, &image, 0, 1),
+                              mcs_env_build_rows(e, a.bytes, NULL, 0, 1),
+                              mcs_env_finish(e, a.bytes - 1, &image),
+                              mcs_env_finish(e, a.bytes, NULL)};
+    const mcs_status want[9] = {MCS_ERR_SIZE,   MCS_ERR_SIZE, MCS_ERR_SIZE,   MCS_ERR_SIZE, MCS_ERR_ARG,
+                                MCS_ERR_MEMORY, MCS_ERR_ARG,  MCS_ERR_MEMORY, MCS_ERR_ARG};
+    int i;
+    for (i = 0; i < 9; i++) CHECK(rc[i] == want[i], "refusal %d: %d, not %d", i, rc[i], want[i]);
+    CHECK(mcs_env_build(e, a.bytes, NULL) == MCS_ERR_ARG, "build without an image");
+    CHECK(untouched(a.at, a.bytes) && arena_intact(&a), "a refused build wrote");
+    arena_free(&a), free(p.lum);
+}
+
+/* ---- what is skipped ---- */
+
+/* Overwrites the columns' sums and guides of row r. */
+static void poison(const arena *a, uint32_t r) {
+    memset(cdf_of(a, r), 0xff, (env_in(a)->w + 1) * sizeof(uint32_t));
+    memset(guide_of(a, r), 0xff, env_in(a)->at.guides * 2);
+}
+static size_t row_bytes(const mcs_env *e) { return (e->w + (size_t)1) * sizeof(uint32_t) + e->at.guides * (size_t)2; }
+
+enum { DRAWS = 4096 };
+static float u1[DRAWS], u2[DRAWS], x[4][DRAWS], again[4][DRAWS];
+
+/* Draws and densities of all texels, for a table before and after its memory was spoilt. */
+static double record(const mcs_env *e, float *pdf) {
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 103);
+    uint32_t r, c;
+    double sum = 0;
+    int i;
+    for (i = 0; i < scaled(250); i++) {
+        int k;
+        mcs_pcg32_fill_n(&rng, DRAWS, u1), mcs_pcg32_fill_n(&rng, DRAWS, u2);
+        mcs_env_sample_n(e, DRAWS, u1, u2, x[0], x[1], x[2], x[3]);
+        mcs_env_pdf_n(e, DRAWS, x[0], x[1], x[2], again[3]);
+        for (k = 0; k < DRAWS; k++) sum += x[0][k] + 2 * x[1][k] + 4 * x[2][k] + x[3][k] + again[3][k];
+        for (k = 0; k < DRAWS; k += 16) {
+            const mcs_texel s = mcs_env_sample(e, u1[k], u2[k]);
+            const mcs_vec2 u = mcs_env_invert(e, s.w);
+            sum += (double)s.pdf + mcs_env_pdf(e, s.w) + u.x + u.y + s.col + s.row;
+        }
+    }
+    for (r = 0; r < e->h; r++)
+        for (c = 0; c < e->w; c++) {
+            const mcs_vec3 v = point(e->w, e->h, c, r, 0.5, 0.5);
+            const mcs_vec2 u = mcs_env_invert(e, v);
+            *pdf++ = mcs_env_pdf(e, v);
+            sum += u.x + u.y;
+        }
+    return sum;
+}
+
+/* Draws, densities and inverse without the memory of rows that hold nothing to know. `lit`: rows of light that the map has. */
+static void check_skips(picture p, mcs_status status, uint32_t lit, int uniform) {
+    arena a = build(&p, status);
+    const mcs_env *e = env_in(&a);
+    const size_t texels = (size_t)p.w * p.h;
+    float *before = (float *)malloc(2 * texels * sizeof *before), *after = before + texels;
+    size_t kept = 0, unread = 0;
+    double first, second;
+    uint32_t r, c;
+    if (!before) exit(2);
+    CHECK(!e->uniform == !uniform, "%s: uniform is %u", p.name, e->uniform);
+    first = record(e, before);
+    for (r = 0; r < p.h; r++) {
+        int black = 1;
+        size_t held;
+        for (c = 0; c < p.w; c++) black &= p.lum[(size_t)r * p.w + c] == 0;
+        held = filled((unsigned char *)cdf_of(&a, r), (p.w + (size_t)1) * 4) + filled(guide_of(&a, r), e->at.guides * (size_t)2);
+        if (black) {
+            kept += held;
+            CHECK(held == row_bytes(e), "%s: %zu of %zu bytes of black row %u written", p.name, row_bytes(e) - held, row_bytes(e),
+                  r);
+        }
+        if (black || uniform) poison(&a, r), unread++;
+    }
+    CHECK(kept == row_bytes(e) * (p.h - lit), "%s: %zu bytes not written", p.name, kept);
+    CHECK(unread == (uniform ? p.h : p.h - lit), "%s: %zu rows spoilt", p.name, unread);
+    if (uniform) memset(rows_of(&a), 0xff, e->at.cdf - e->at.rows);
+    second = record(e, after);
+    CHECK(first == second && memcmp(before, after, texels * sizeof *before) == 0, "%s: draws or densities read what was spoilt",
+          p.name);
+    CHECK(mcs_env_check(e, a.bytes) == MCS_OK, "%s: no table any more", p.name);
+    if (uniform)
+        for (r = 0; r < texels; r++) CHECK(fabs(after[r] * 4 * pi - 1) <= 2 * eps, "%s: density %g", p.name, (double)after[r]);
+    free(before), free(p.lum), arena_free(&a);
+}
+
+static void test_skips(void) {
+    check_skips(make("constant", 128, 64, v_constant), MCS_OK, 64, 1);
+    check_skips(make("constant, odd", 31, 17, v_constant), MCS_OK, 17, 1);
+    check_skips(make("black", 128, 64, v_black), MCS_UNIFORM, 0, 1);
+    check_skips(make("every third row", 128, 66, v_thirds), MCS_OK, 22, 0);
+    check_skips(make("dark ground", 256, 128, v_sky), MCS_OK, 64, 0);
+    check_skips(make("region", 200, 96, v_region), MCS_OK, 32, 0);
+}
+
+/* Outside [row0, row1) x [col0, col1), the smallest rectangle of light, densities are found without reading the sums. */
+static void test_region(void) {
+    picture p = make("region", 200, 96, v_region);
+    arena a = build(&p, MCS_OK);
+    const mcs_env *e = env_in(&a);
+    uint32_t r, c, row0 = p.h, row1 = 0, col0 = p.w, col1 = 0, zero = 0;
+    for (r = 0; r < p.h; r++)
+        for (c = 0; c < p.w; c++) {
+            if (!(p.lum[r * p.w + c] > 0)) continue;
+            row0 = r < row0 ? r : row0, row1 = r + 1, col0 = c < col0 ? c : col0, col1 = c + 1 > col1 ? c + 1 : col1;
+        }
+    CHECK(e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1, "light in [%u, %u) x [%u, %u)", e->row0,
+          e->row1, e->col0, e->col1);
+    for (r = 0; r < p.h; r++) {
+        uint32_t *cdf = cdf_of(&a, r);
+        for (c = 0; c < col0; c++) cdf[c] = 0x9e3779b9u * (c + 1);
+        for (c = col1 + 1; c <= p.w; c++) cdf[c] = 0x9e3779b9u * (c + 1);
+        if (r < row0 || r >= row1) poison(&a, r);
+    }
+    for (r = 0; r < p.h; r++)
+        for (c = 0; c < p.w; c++) {
+            const mcs_vec3 v = point(p.w, p.h, c, r, 0.5, 0.5);
+            const float pdf = mcs_env_pdf(e, v);
+            float batch = -1;
+            mcs_env_pdf_n(e, 1, &v.x, &v.y, &v.z, &batch);
+            zero += pdf == 0;
+            CHECK((pdf > 0) == (p.lum[r * p.w + c] > 0) && batch == pdf, "texel (%u, %u): density %g, in a batch %g", c, r,
+                  (double)pdf, (double)batch);
+        }
+    CHECK(zero >= p.w * p.h - (row1 - row0) * (col1 - col0), "%u texels without density", zero);
+    arena_free(&a), free(p.lum);
+}
+
+/* ---- bits, and the largest maps ---- */
+
+/* Every texel of a map has bits that reach it: those in the middle of its share. First, middle and last ones lie in it, as seen by
+ * a double arctangent and by mcs_env_texel: the margin that keeps places off borders is enough. */
+static void check_every(const picture *p, const arena *a, int places) {
+    const mcs_env *e = env_in(a);
+    const uint32_t *rows = rows_of(a);
+    uint32_t r, c, missed = 0, strayed = 0;
+    int k;
+    for (r = 0; r < p->h; r++) {
+        const uint32_t *cdf = cdf_of(a, r);
+        const uint32_t down[3] = {middle(rows, r), 2 * rows[r], 2 * (rows[r + 1] - 1) + 1};
+        if (rows[r] == rows[r + 1]) continue;
+        for (c = 0; c < p->w; c++) {
+            const uint32_t along[3] = {middle(cdf, c), 2 * cdf[c], 2 * (cdf[c + 1] - 1) + 1};
+            if (!(p->lum[(size_t)r * p->w + c] > 0)) continue;
+            for (k = 0; k < places; k++) {
+                const mcs_texel s = mcs_env_sample_bits(e, along[k % 3], down[k / 3]);
+                missed += s.col != c || s.row != r;
+                if (places > 1) {
+                    const mcs_texel t = mcs_env_texel(e, s.w);
+                    double col, row;
+                    texel_of(p->w, p->h, s.w, &col, &row);
+                    strayed += !(t.col == c && t.row == r && t.pdf == s.pdf && floor(col) == c && floor(row) == r);
+                }
+            }
+        }
+    }
+    CHECK(missed == 0, "%s: %u times not the texel of the bits", p->name, missed);
+    CHECK(strayed == 0, "%s: %u directions found in another texel", p->name, strayed);
+}
+
+/* Columns by bisection alone: the least bits that draw column c or a later one draw c itself. */
+static void check_bisected(const picture *p, const mcs_env *e, uint32_t b2) {
+    const uint32_t row = mcs_env_sample_bits(e, 0, b2).row;
+    uint32_t c, unreached = 0;
+    for (c = 0; c < p->w; c++) {
+        uint32_t lo = 0, hi = 0xffffffffu;
+        if (!(p->lum[(size_t)row * p->w + c] > 0)) continue;
+        while (lo < hi) {
+            const uint32_t mid = lo + (hi - lo) / 2;
+            if (mcs_env_sample_bits(e, mid, b2).col >= c) hi = mid;
+            else lo = mid + 1;
+        }
+        unreached += mcs_env_sample_bits(e, lo, b2).col != c;
+    }
+    CHECK(unreached == 0, "%s: %u texels of row %u that no bits reach", p->name, unreached, row);
+}
+
+static void check_bits(const picture *p, const mcs_env *e) {
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 107);
+    const int draws = scaled(1000000);
+    uint64_t b;
+    uint32_t last_col = 0, last_row = 0, falls = 0;
+    float z = 2;
+    int i;
+    for (b = 0; b <= 0xffffffffu; b += mcs_pcg32_next(&rng) >> 15) {
+        const mcs_texel s = mcs_env_sample_bits(e, (uint32_t)b, 0x9e3779b9u),
+                        t = mcs_env_sample_bits(e, mcs_pcg32_next(&rng), (uint32_t)b);
+        falls += s.col < last_col || t.row < last_row || !(t.w.z <= z);
+        last_col = s.col, last_row = t.row, z = t.w.z;
+    }
+    CHECK(falls == 0, "%s: %u falls", p->name, falls);
+    for (i = 0; i < draws; i++) {
+        /* at most 24 bits that count, so that a float holds b 2^-32: any of the 24-bit grid, and small ones */
+        const uint32_t x1 = mcs_pcg32_next(&rng), x2 = mcs_pcg32_next(&rng);
+        const uint32_t b1 = i & 1 ? x1 & 0xffffff00u : x1 >> 8 >> (x1 & 15), b2 = i & 2 ? x2 & 0xffffff00u : x2 >> 8 >> (x2 & 15);
+        const float f1 = (float)b1 * 0x1p-32f, f2 = (float)b2 * 0x1p-32f;
+        const mcs_texel s = mcs_env_sample_bits(e, b1, b2), t = mcs_env_sample(e, f1, f2);
+        CHECK(same(s, t), "%s: u = %a, %a: (%u, %u), by bits (%u, %u)", p->name, (double)f1, (double)f2, t.col, t.row, s.col,
+              s.row);
+    }
+}
+
+/* Random places of the largest maps, by floats: what was drawn is what is found. */
+static void check_found(const picture *p, const mcs_env *e) {
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 109);
+    const int draws = scaled(1000000);
+    int i, off = 0, strayed = 0;
+    for (i = 0; i < draws; i++) {
+        const float v = mcs_pcg32_float(&rng);
+        const mcs_texel s = mcs_env_sample(e, v, mcs_pcg32_float(&rng)), t = mcs_env_texel(e, s.w);
+        double col, row;
+        texel_of(p->w, p->h, s.w, &col, &row);
+        off += !(t.col == s.col && t.row == s.row && t.pdf == s.pdf && s.pdf > 0),
+            strayed += floor(col) != s.col || floor(row) != s.row;
+    }
+    CHECK(off == 0 && strayed == 0, "%s: of %d draws the header finds %d in another texel, a double arctangent %d", p->name, draws,
+          off, strayed);
+}
+
+static void test_long(uint32_t w, uint32_t h, shade value) {
+    picture p = make(w > h ? "wide" : "tall", w, h, value);
+    arena a = build(&p, MCS_OK);
+    check_every(&p, &a, 9);
+    check_bits(&p, env_in(&a));
+    check_found(&p, env_in(&a));
+    if (w > h) check_bisected(&p, env_in(&a), 0x55555555u);
+    arena_free(&a), free(p.lum);
+}
+
+/* ---- from a file ---- */
+
+/* Exactly as many bytes as there are, so that the address sanitizer sees a read beyond them. */
+static mcs_env *copy_of(const void *from, size_t bytes) {
+    void *to = malloc(bytes ? bytes : 1);
+    if (!to) exit(2);
+    memcpy(to, from, bytes);
+    return (mcs_env *)to;
+}
+
+/* A table that was accepted may be wrong, but draws texels of the map, with densities that are numbers and along unit directions,
+ * as far as the frame, which may be changed at any time, is one. */
+static void check_harmless(const mcs_env *e, const char *what, size_t at) {
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 113);
+    enum { N = 68 };
+    const mcs_frame *f = &e->frame;
+    const int axes = f->s.x == 1 && f->t.y == 1 && f->n.z == 1 && f->s.y == 0 && f->s.z == 0 && f->t.x == 0 && f->t.z == 0 &&
+                     f->n.x == 0 && f->n.y == 0;
+    float a[N], b[N], out[4][N], pdf[N];
+    int i, outside = 0, no_density = 0, no_direction = 0, no_inverse = 0;
+    for (i = 0; i < N; i++) a[i] = i < 4 ? (float)(i & 1) * 0x0.ffffffp0f : mcs_pcg32_float(&rng);
+    for (i = 0; i < N; i++) b[i] = i < 4 ? (float)(i >> 1) * 0x0.ffffffp0f : mcs_pcg32_float(&rng);
+    mcs_env_sample_n(e, N, a, b, out[0], out[1], out[2], out[3]);
+    mcs_env_pdf_n(e, N, out[0], out[1], out[2], pdf);
+    for (i = 0; i < N; i++) {
+        const mcs_texel s = mcs_env_sample(e, a[i], b[i]), t = mcs_env_texel(e, s.w);
+        const mcs_vec2 u = mcs_env_invert(e, s.w);
+        const double length = sqrt((double)s.w.x * s.w.x + (double)s.w.y * s.w.y + (double)s.w.z * s.w.z);
+        outside += !(s.col < e->w && s.row < e->h && t.col < e->w && t.row < e->h);
+        no_density += !(s.pdf >= 0 && s.pdf <= FLT_MAX && t.pdf >= 0 && t.pdf <= FLT_MAX && out[3][i] >= 0 && pdf[i] >= 0);
+        no_direction += axes && !(fabs(length - 1) <= 0.01);
+        no_inverse += !(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1);
+    }
+    CHECK(outside + no_density + no_direction + no_inverse == 0,
+          "%s %zu changed, accepted: of %d draws %d outside the map, %d without density, %d without direction, %d inverses", what,
+          at, N, outside, no_density, no_direction, no_inverse);
+}
+
+/* Accepted or MCS_ERR_FORMAT or, where the size that the header tells is larger, MCS_ERR_MEMORY; what is accepted is harmless. */
+static int check_damaged(const mcs_env *e, size_t bytes, const char *what, size_t at) {
+    const mcs_status rc = mcs_env_check(e, bytes);
+    CHECK(rc == MCS_OK || rc == MCS_ERR_FORMAT || rc == MCS_ERR_MEMORY, "%s %zu changed: %d", what, at, rc);
+    if (rc == MCS_OK) check_harmless(e, what, at);
+    return rc != MCS_OK;
+}
+
+static void check_file(picture p, mcs_status status) {
+    arena a = build(&p, status);
+    const size_t bytes = a.bytes;
+    mcs_env *e = copy_of(a.at, bytes);
+    unsigned char *byte = (unsigned char *)e;
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 127);
+    const int all_lit = p.value == v_random && !e->uniform;
+    size_t i, k, guides_tried = 0;
+    CHECK(mcs_env_check(e, bytes) == MCS_OK && mcs_env_check(e, bytes + 8) == MCS_OK, "a good table");
+    check_harmless(e, "nothing", 0);
+    for (i = 0; i < sizeof *e; i++) { /* every bit of the header, then whole bytes */
+        const unsigned char was = byte[i];
+        for (k = 0; k < 11; k++) {
+            byte[i] = (unsigned char)(k < 8 ? was ^ 1u << k : k == 8 ? 0 : k == 9 ? 0xff : 0x7f);
+            if (byte[i] != was) check_damaged(e, bytes, "header byte", i);
+        }
+        byte[i] = was;
+    }
+    for (i = 0; i < sizeof *e; i += 4) { /* words to what numbers break at */
+        const uint32_t odd[8] = {0, 1, 65535, 65536, 65537, 0x7f800000u, 0x80000000u, 0xffffffffu};
+        uint32_t was;
+        memcpy(&was, byte + i, 4);
+        for (k = 0; k < 10; k++) {
+            const uint32_t now = k < 8 ? odd[k] : k == 8 ? was + 1 : was - 1;
+            memcpy(byte + i, &now, 4);
+            if (now != was) {
+                const int no = check_damaged(e, bytes, "header word at", i);
+                /* magic, version, the whole layout and both sizes are what everything else is found by */
+                if (i < offsetof(mcs_env, total) || i == offsetof(mcs_env, w) || i == offsetof(mcs_env, h))
+                    CHECK(no, "header word at %zu: %08x accepted for %08x", i, now, was);
+            }
+        }
+        memcpy(byte + i, &was, 4);
+    }
+    for (i = 0; i < (size_t)scaled(4000); i++) {
+        const size_t at = sizeof *e + mcs_pcg32_next(&rng) % (bytes - sizeof *e), n = 1 + mcs_pcg32_next(&rng) % 8;
+        for (k = at; k < at + n && k < bytes; k++) byte[k] = (unsigned char)(i % 3 ? mcs_pcg32_next(&rng) : i % 2 ? 0xff : 0);
+        {
+            const size_t guides = env_in(&a)->at.col_guide;
+            const int changed = memcmp(e, a.at, bytes) != 0, no = check_damaged(e, bytes, "table byte", at);
+            /* guides follow from the sums: none but the right one passes; the padding at the end is nobody's */
+            if (all_lit && changed && at >= guides && at + n <= guides + (size_t)p.h * env_in(&a)->at.guides * 2)
+                guides_tried++, CHECK(no, "guide byte %zu changed, accepted", at);
+        }
+        memcpy(e, a.at, bytes);
+    }
+    CHECK(!all_lit || guides_tried > 0, "no guide tried");
+    for (i = 0; i < bytes; i += i < sizeof *e || i + 64 >= bytes ? 1 : 1 + mcs_pcg32_next(&rng) % (bytes / 64 + 1)) {
+        mcs_env *cut = copy_of(a.at, i);
+        CHECK(mcs_env_check(cut, i) == MCS_ERR_MEMORY, "%zu of %zu bytes: %d", i, bytes, mcs_env_check(cut, i));
+        free(cut);
+    }
+    for (i = 4; i <= 8; i += 4) { /* another byte order: of the words, of the whole header */
+        for (k = 0; k < sizeof *e; k++) byte[k] = a.at[i == 4 ? k ^ 3 : k ^ 7];
+        CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "bytes swapped by %zu: %d", i, mcs_env_check(e, bytes));
+    }
+    memcpy(e, a.at, bytes);
+    e->magic ^= 0x20202020u;
+    CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "magic");
+    memcpy(e, a.at, bytes);
+    e->version++;
+    CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "a later version");
+    memset(e, 0, bytes);
+    CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "zeros");
+    memset(e, 0xff, bytes);
+    CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "ones");
+    for (i = 0; i < bytes; i++) byte[i] = (unsigned char)mcs_pcg32_next(&rng);
+    CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "noise");
+    CHECK(mcs_env_check(NULL, bytes) == MCS_ERR_ARG, "no memory");
+    for (i = 1; i < 8; i++)
+        CHECK(mcs_env_check((const mcs_env *)(const void *)(a.at + i), bytes - 8) == MCS_ERR_ARG, "off by %zu", i);
+    free(e), free(p.lum), arena_free(&a);
+}
+
+static void test_damage(void) {
+    check_file(make("random", 40, 14, v_random), MCS_OK);
+    check_file(make("every third row", 13, 9, v_thirds), MCS_OK);
+    check_file(make("sky", 64, 32, v_sky), MCS_OK);
+    check_file(make("one texel", 1, 1, v_random), MCS_OK);
+    check_file(make("constant", 9, 5, v_constant), MCS_OK);
+    check_file(make("black", 9, 5, v_black), MCS_UNIFORM);
+}
+
+static void test_file(void) {
+    picture p = make("sky", 256, 128, v_sky);
+    arena a = build(&p, MCS_OK), b = arena_make(a.bytes), m = arena_make(mcs_env_window_bytes(20));
+    mcs_env_window *window = (mcs_env_window *)(void *)m.at;
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 131);
+    FILE *f = tmpfile();
+    int i;
+    CHECK(f && fwrite(a.at, 1, a.bytes, f) == a.bytes, "the table cannot be written");
+    if (f) rewind(f);
+    CHECK(f && fread(b.at, 1, b.bytes, f) == b.bytes && fgetc(f) == EOF && fclose(f) == 0, "the table cannot be read");
+    CHECK(a.at != b.at && mcs_env_check(env_in(&b), b.bytes) == MCS_OK, "refused after it was read: %d",
+          mcs_env_check(env_in(&b), b.bytes));
+    CHECK(mcs_env_window_build(window, m.bytes, env_in(&a), 30, 20, 250, 17) == MCS_OK, "window");
+    for (i = 0; i < 20000; i++) {
+        const float f1 = mcs_pcg32_float(&rng), f2 = mcs_pcg32_float(&rng);
+        const mcs_texel s = mcs_env_sample(env_in(&b), f1, f2);
+        CHECK(same(s, mcs_env_sample(env_in(&a), f1, f2)), "draw %d differs", i);
+        CHECK(same(mcs_env_window_sample(window, env_in(&a), f1, f2), mcs_env_window_sample(window, env_in(&b), f1, f2)),
+              "draw %d through the window differs", i);
+    }
+    arena_free(&a), arena_free(&b), arena_free(&m), free(p.lum);
+}
+
+int main(int argc, char **argv) {
+    mcst_start(argc, argv);
+    mcst_group("env integers");
+    if (mcst_case("rows and columns add up to 2^31, densities to 1")) test_integers();
+    if (mcst_case("texels 1e8 times brighter than their rows")) test_contrast();
+    mcst_group("env in parts");
+    if (mcst_case("ranges of rows in any order")) test_parts();
+    if (mcst_case("refused ranges")) test_refused_parts();
+    mcst_group("env skips");
+    if (mcst_case("constant, black, black rows")) test_skips();
+    if (mcst_case("outside a lit region")) test_region();
+    mcst_group("env largest maps");
+    if (mcst_case("65536 x 3")) test_long(65536, 3, v_random);
+    if (mcst_case("3 x 65536")) test_long(3, 65536, v_random);
+    if (mcst_case("65536 x 4, 1e-38 to 1e38")) test_long(65536, 4, v_wide);
+    if (mcst_case("4 x 65536, 1e-38 to 1e38")) test_long(4, 65536, v_wide);
+    if (getenv("MCS_TEST_BIG") && mcst_case("16384 x 8192")) {
+        picture p = make("16384 x 8192", 16384, 8192, v_random);
+        arena a = build(&p, MCS_OK);
+        check_every(&p, &a, 1);
+        arena_free(&a), free(p.lum);
+    }
+    mcst_group("env files");
+    if (mcst_case("damaged tables")) test_damage();
+    if (mcst_case("written and read")) test_file();
+    return mcst_finish();
+}
