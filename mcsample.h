@@ -89,10 +89,10 @@
  *              mcs_pwc_sample_n mcs_discrete_sample mcs_discrete_pmf mcs_pwl mcs_pwl_bytes mcs_pwl_build mcs_pwl_sample mcs_pwl_pdf
  *              mcs_pwl_invert mcs_pwl_sample_n mcs_alias mcs_alias_bytes mcs_alias_build mcs_alias_sample mcs_alias_pmf
  * [env]        directions per solid angle; memory of the caller
- *              mcs_image mcs_image_make mcs_env mcs_texel mcs_env_bytes mcs_env_build mcs_env_build_rows mcs_env_finish mcs_env_check
- *              mcs_env_mean mcs_env_sample mcs_env_sample_bits mcs_env_pdf mcs_env_invert mcs_env_texel mcs_env_weight
- *              mcs_env_sample_n mcs_env_pdf_n mcs_env_window mcs_env_window_bytes mcs_env_window_build mcs_env_window_sample
- *              mcs_env_window_pdf mcs_env_window_sample_n
+ *              mcs_image mcs_image_make mcs_env mcs_texel mcs_env_bytes mcs_env_build mcs_env_build_rows mcs_env_finish
+ *              mcs_env_check mcs_env_mean mcs_env_sample mcs_env_sample_bits mcs_env_pdf mcs_env_invert mcs_env_texel
+ *              mcs_env_weight mcs_env_sample_n mcs_env_pdf_n mcs_env_window mcs_env_window_bytes mcs_env_window_build
+ *              mcs_env_window_sample mcs_env_window_pdf mcs_env_window_sample_n
  * [product]    directions per solid angle; memory of the caller
  *              mcs_tiles mcs_tiles_bytes mcs_tiles_build mcs_tiles_direction mcs_reflection mcs_product mcs_product_bytes
  *              mcs_product_build mcs_product_build_weights mcs_product_sample mcs_product_pdf mcs_product_sample_n
@@ -615,8 +615,8 @@ MCSI_CORE MCSI_I MCSI_(always)(void) { return MCSI_(set)(0.0f) == MCSI_(set)(0.0
  * Errors in ulp are the largest found in dense sweeps of the whole range (tests/test_math.c). */
 
 /* clang-format off */
-/* x to the nearest multiple of step, ties to even, and *k, which multiple; |x| < 2^22 step. `big` is 1.5 * 2^23 step: the sum has room
- * for nothing below step. Where compilers may take the difference for x itself it goes through *k. */
+/* x to the nearest multiple of step, ties to even, and *k, which multiple; |x| < 2^22 step. `big` is 1.5 * 2^23 step: the sum has
+ * room for nothing below step. Where compilers may take the difference for x itself it goes through *k. */
 MCSI_CORE MCSI_F MCSI_(to_grid)(MCSI_F x, float step, float big, MCSI_I *k) {
     MCSI_F sum = x + big;
     *k = MCSI_(bits)(sum) - MCSI_(bits)(MCSI_(set)(big));
@@ -2899,10 +2899,11 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  * towards +y. Density per solid angle: texel probability (luminance times solid angle) over the texel's solid angle 2 pi/W (cos t0
  * - cos t1): constant within a texel, because there cos(theta), not theta, is linear; no division by sin(theta) is left (slide 23).
  *
- *   mcs_image                    the pixels; mcs_image_make(pixels, w, h, channels), then set what differs: pixels, w, h; channels 1 (luminance) or 3 and more (the first 3 linear RGB, Rec. 709
- *                                luminance); pixel_stride, row_stride in floats, 0: packed, row_stride may be negative (pixels is
- *                                the row at +z); bilinear: radiance will be looked up with a bilinear filter (columns wrap, rows
- *                                end at the poles); floor: luminance taken off every texel, see below
+ *   mcs_image                    the pixels: mcs_image_make(pixels, w, h, channels), then set what differs. channels 1 (luminance)
+ *                                or 3 and more (the first 3 linear RGB, Rec. 709 luminance); pixel_stride, row_stride in floats,
+ *                                0: packed, row_stride may be negative (pixels is the row at +z); bilinear: radiance will be
+ *                                looked up with a bilinear filter (columns wrap, rows end at the poles); floor: luminance taken
+ *                                off every texel, see below
  *   mcs_env_bytes(w, h)          bytes to give to build, 8-byte aligned; 0 where refused
  *   mcs_env_build(e, bytes, &image)
  *   mcs_env_build_rows(e, bytes, &image, y0, y1), mcs_env_finish(e, bytes, &image)   the same in parts: any ranges that together
@@ -2917,8 +2918,8 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  *   mcs_env_mean(&image)         mean luminance over the sphere
  *   mcs_env_weight(e, pdf)       1/pdf, for an estimator without other strategies: 0 and MCS_ASSERT for a map with a floor
  *   mcs_env_window_*             the same for a rectangle of texels: `rows` rows from `row`, `cols` columns from `col`, across the
- *                                seam where need be. _bytes(rows); _build(m, bytes, e, row, rows, col, cols); the window holds no
- *                                pointer and goes with any table of the same image
+ *                                seam where need be. _bytes(rows); _build(m, bytes, e, row, rows, col, cols), MCS_UNIFORM when it
+ *                                is black; the window holds no pointer and goes with any table of the same image
  *   e->frame                     orientation: world directions of local x, y, z. build makes it the axes; it may be changed at any
  *                                time
  *
@@ -3619,7 +3620,7 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  *   mcs_reflection               what the surface does with light: frame (normal, tangent in world space), wo (local, to the eye),
  *                                alpha_x, alpha_y of a GGX lobe like its own (Phong n: sqrt(2 / (n + 2))), matte: the matte
  *                                part of its reflectance, 0 to 1. Only the variance depends on how like it is.
- *   prepared form, for several samples at a point: about 7 KB for 16 rows
+ *   prepared form, for several samples at a point: about 5 KB for 16 rows
  *     mcs_product_bytes(rows), mcs_product_build(p, bytes, t, e, &reflection)
  *     mcs_product_build_weights(p, bytes, t, e, weight)             any reflection: weight[rows * 2 rows], one per tile, to be
  *                                evaluated about mcs_tiles_direction(t, e, k); > 0 wherever the reflection may be
@@ -3627,21 +3628,23 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  *   one-shot form, for one sample at a point: no table, two levels of tiles
  *     mcs_oneshot_sample(t, e, &reflection, u1, u2) -> mcs_texel, mcs_oneshot_pdf(t, e, &reflection, w)
  *
- * Support: every direction above the surface from which light comes can be drawn (tiles that the horizon may cross get at least a
- * thousandth of the mean weight; decided by the distance of a tile's corners from its mean direction). Nothing else is drawn but
- * parts below the horizon of tiles that it crosses. The tables keep pointers to t and e. Bad u or a bad direction give pdf 0, as
- * does a surface that no light reaches (build returns MCS_UNIFORM).
- * Lobes narrower than a tile: a share p->brdf_share of the samples is drawn from the visible normals of the lobe instead, m / (1 + m)
- * where m is how many times wider than the lobe the tile is, less 0.15; the density is that of the mixture. For wide lobes it is 0
+ * Support: every direction above the surface from which light comes can be drawn: tiles that the horizon may cross, judged by the
+ * distance of a tile's corners from its mean direction, weigh at least a ten-thousandth of what a white surface would make of them.
+ * Below the horizon only parts of tiles that it crosses are drawn. The tables keep pointers to t and e. Bad u or a bad direction
+ * give pdf 0, as does a surface that no light reaches (build returns MCS_UNIFORM).
+ * Lobes narrower than a tile: a share p->brdf_share of the samples is drawn from the visible normals of the lobe instead, (1 -
+ * matte) m/(1 + m), at most 0.95, where m + 0.1 is the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of
+ * the lobe; the density is that of the mixture, and what the lobe sends below the surface is lost. For wide lobes the share is 0
  * and the maps are monotone: stratified u stay stratified.
- * Tile weights: matte: E (c + r)^2 / (4 r), or E c where c >= r, c the cosine of the mean direction and r the radius of the tile; lobe:
- * GGX at the mean direction with alpha^2 + s^2 / 4, s^2 the spread of the light's direction in the tile. Tile probabilities are
- * integers over 2^24. Cost of a sample: that of the environment's and two short searches. Sources: Clarberg and Akenine-Moeller 2008,
+ * Tile weights: matte: E (c + r)^2/(4 r), or E c where c >= r, c the cosine of the mean direction and r the radius of the tile;
+ * lobe: GGX at the mean direction with alpha^2 + s^2/4, s^2 the spread of the light's direction in the tile. Tile probabilities are
+ * integers. Cost of a sample: that of the environment's and two short searches. Sources: Clarberg and Akenine-Moeller 2008,
  * "Practical product importance sampling for direct illumination"; Cline et al. 2006, "Two stage importance sampling". */
 
 #if MCSI_W == 1
 /* What is known of tiles, column by column: light, mean direction and its length's inverse, spread, radius. */
 enum { MCSI_TILE_E, MCSI_TILE_X, MCSI_TILE_Y, MCSI_TILE_Z, MCSI_TILE_UNIT, MCSI_TILE_SPREAD, MCSI_TILE_RADIUS, MCSI_TILE_FIELDS };
+#define MCSI_TILE_LEAST 3.18309873e-05f /* a ten-thousandth of a white matte surface that faces the light */
 /* The reflection as seen from the map: axes of the surface in its frame. */
 typedef struct {
     mcs_frame axes;
@@ -3658,9 +3661,8 @@ MCSI_CORE MCSI_F MCSI_(tile_lobe)(const mcsi_facing *s, MCS_(vec3) w, MCSI_F spr
                     w.z * MCSI_(sqrt)(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
     return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / shadow;
 }
-/* Weight of tiles, and what they weigh by their light alone where they may be above the horizon. */
-MCSI_CORE MCSI_F MCSI_(tile_weight)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride,
-                                    MCSI_F *above) {
+/* Weight of tiles: light times reflection; more than 0 wherever there is light that may be above the horizon. */
+MCSI_CORE MCSI_F MCSI_(tile_weight)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride) {
     MCSI_F energy = MCSI_(load)(tile), r = MCSI_(load)(tile + MCSI_TILE_RADIUS * stride), zero = MCSI_(set)(0.0f);
     MCS_(vec3)
     m = MCSI_(vec3)(MCSI_(load)(tile + MCSI_TILE_X * stride), MCSI_(load)(tile + MCSI_TILE_Y * stride),
@@ -3672,51 +3674,36 @@ MCSI_CORE MCSI_F MCSI_(tile_weight)(const MCS_(frame) * axes, const mcsi_facing 
         MCS_(vec3) w = MCSI_(vec3)(MCSI_(dot)(axes->s, m) * unit, MCSI_(dot)(axes->t, m) * unit, MCSI_(max)(c * unit, cosine));
         f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCSI_(load)(tile + MCSI_TILE_SPREAD * stride));
     }
-    *above = MCSI_(sel)((crossing > 0.0f) & (energy > 0.0f), energy, zero);
-    return MCSI_(sel)(*above > 0.0f, energy * f, zero);
+    return MCSI_(sel)(crossing > 0.0f, energy * (f + MCSI_TILE_LEAST), zero);
 }
-/* A grid of weights, column by column, as integers: cum[j][i] is the sum of row i's shares before column j, cum[cols][i] that of the
- * whole row. Where there is light above the horizon a weight is raised by a thousandth of the mean. row[i] is the weight of a row. */
-MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *weight, const float *above, uint32_t *cum, float *row) {
-    float light[64], all = 0.0f, bright = 0.0f, floor;
+/* A grid of weights, column by column, as integers: cum[j][i] is the sum of row i's shares before column j, cum[cols][i] that of
+ * the whole row. row[i] is the weight of a row. */
+MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *weight, uint32_t *cum, float *row) {
     size_t i, j;
     for (i = 0; i < rows; i += MCSI_W) {
-        MCSI_F w = MCSI_(set)(0.0f), a = w;
-        for (j = 0; j < cols; j++) w = w + MCSI_(load)(weight + j * rows + i), a = a + MCSI_(load)(above + j * rows + i);
-        MCSI_(store)(row + i, w), MCSI_(store)(light + i, a);
-    }
-    for (i = 0; i < rows; i++) all += row[i], bright += light[i];
-    floor = all > 0.0f && bright > 0.0f ? 1e-3f * all / bright : 1.0f;
-    for (i = 0; i < rows; i += MCSI_W) {
-        MCSI_F sum = MCSI_(load)(row + i) + floor * MCSI_(load)(light + i);
-        MCSI_F scale = (16777216.0f - (float)cols) / MCSI_(max)(sum, MCSI_(set)(FLT_MIN));
-        MCSI_I at = MCSI_(trunc)(MCSI_(set)(0.0f));
-        MCSI_(store)(row + i, sum);
+        MCSI_F sum = MCSI_(set)(0.0f), scale;
+        MCSI_I at = MCSI_(trunc)(sum);
+        for (j = 0; j < cols; j++) sum = sum + MCSI_(load)(weight + j * rows + i);
+        scale = (16777216.0f - (float)cols) / MCSI_(max)(sum, MCSI_(set)(FLT_MIN));
         for (j = 0; j < cols; j++) {
-            MCSI_F w = MCSI_(load)(weight + j * rows + i) + floor * MCSI_(load)(above + j * rows + i);
+            MCSI_F w = MCSI_(load)(weight + j * rows + i);
             MCSI_(store_int)(cum + j * rows + i, at);
             at = at + MCSI_(trunc)(MCSI_(sel)(w > 0.0f, w * scale + 1.0f, MCSI_(set)(0.0f)));
         }
-        MCSI_(store_int)(cum + cols * rows + i, at);
+        MCSI_(store_int)(cum + cols * rows + i, at), MCSI_(store)(row + i, sum);
     }
 }
 #ifndef MCS_NO_BATCH
 MCSI_BATCH_AS(mcsi_tile_weights_n, tile_weights_n,
-              (const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *weight, float *above),
-              (s, n, tile, stride, weight, above), {
+              (const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *weight), (s, n, tile, stride, weight), {
                   MCS_(frame) axes = MCSI_(spread_frame)(&s->axes);
                   size_t i;
-                  for (i = 0; i < n; i += MCSI_W) {
-                      MCSI_F a;
-                      MCSI_(store)(weight + i, MCSI_(tile_weight)(&axes, s, tile + i, stride, &a));
-                      MCSI_(store)(above + i, a);
-                  }
+                  for (i = 0; i < n; i += MCSI_W) MCSI_(store)(weight + i, MCSI_(tile_weight)(&axes, s, tile + i, stride));
               })
-MCSI_BATCH_AS(mcsi_grid_rows_n, grid_rows_n,
-              (size_t rows, size_t cols, const float *weight, const float *above, uint32_t *cum, float *row),
-              (rows, cols, weight, above, cum, row), {
+MCSI_BATCH_AS(mcsi_grid_rows_n, grid_rows_n, (size_t rows, size_t cols, const float *weight, uint32_t *cum, float *row),
+              (rows, cols, weight, cum, row), {
                   MCSI_(grid_rows)
-                  (rows, cols, weight, above, cum, row);
+                  (rows, cols, weight, cum, row);
               })
 #endif
 
@@ -3894,8 +3881,7 @@ MCS_FN int mcsi_facing_make(const mcs_env *e, const mcs_reflection *r, mcsi_faci
 MCS_FN size_t mcs_product_bytes(uint32_t rows) {
     size_t n = 2 * (size_t)rows * rows;
     if (!mcsi_tiles_ok(rows)) return 0;
-    return sizeof(mcs_product) + rows * sizeof(double) + (n + 2 * (size_t)rows + 2) * sizeof(uint32_t) +
-           (2 * n + rows) * sizeof(float);
+    return sizeof(mcs_product) + rows * sizeof(double) + (n + 2 * (size_t)rows + 2) * sizeof(uint32_t) + (n + rows) * sizeof(float);
 }
 /* Where a product keeps its parts: of each row the density of a unit of its shares; shares of rows; of the columns of each row;
  * weights, which drawing does not need. */
@@ -3914,12 +3900,12 @@ MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_til
 }
 MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
     size_t n = (size_t)p->t->rows * p->t->cols;
-    float *weight = mcsi_product_weights(p), *above = weight + n, *row = above + n;
+    float *weight = mcsi_product_weights(p), *row = weight + n;
     uint32_t *rows, i;
 #ifndef MCS_NO_BATCH
-    mcsi_grid_rows_n(p->t->rows, p->t->cols, weight, above, mcsi_product_cum(p), row);
+    mcsi_grid_rows_n(p->t->rows, p->t->cols, weight, mcsi_product_cum(p), row);
 #else
-    mcsi_grid_rows(p->t->rows, p->t->cols, weight, above, mcsi_product_cum(p), row);
+    mcsi_grid_rows(p->t->rows, p->t->cols, weight, mcsi_product_cum(p), row);
 #endif
     rows = mcsi_product_rows(p), p->lit = mcsi_shares(rows, row, p->t->rows);
     for (i = 0; i < p->t->rows; i++)
@@ -3927,12 +3913,12 @@ MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
             rows[i + 1] > rows[i] ? (rows[i + 1] - rows[i]) / ((double)p->lit * mcsi_product_cum(p)[n + i]) : 0.0;
     return p->lit ? MCS_OK : MCS_UNIFORM;
 }
-MCSI_CORE void mcsi_tiles_weigh(const mcsi_facing *s, size_t n, const float *fields, size_t stride, float *weight, float *above) {
+MCSI_CORE void mcsi_tiles_weigh(const mcsi_facing *s, size_t n, const float *fields, size_t stride, float *weight) {
 #ifndef MCS_NO_BATCH
-    mcsi_tile_weights_n(s, n, fields, stride, weight, above);
+    mcsi_tile_weights_n(s, n, fields, stride, weight);
 #else
     size_t i;
-    for (i = 0; i < n; i++) weight[i] = mcsi_tile_weight(&s->axes, s, fields + i, stride, above + i);
+    for (i = 0; i < n; i++) weight[i] = mcsi_tile_weight(&s->axes, s, fields + i, stride);
 #endif
 }
 /* The part of the samples that a lobe narrower than the tiles gets for itself. */
@@ -3950,7 +3936,7 @@ MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tile
     n = (size_t)t->rows * t->cols, weight = mcsi_product_weights(p);
     p->frame = r->frame, p->wo = s.wo, p->lobe = mcs_ggx_make(mcsi_sqrt(s.ax2), mcsi_sqrt(s.ay2)),
     p->brdf_share = mcsi_brdf_share(&s, n);
-    mcsi_tiles_weigh(&s, n, mcsi_tiles_fields(t), n, weight, weight + n);
+    mcsi_tiles_weigh(&s, n, mcsi_tiles_fields(t), n, weight);
     return mcsi_product_finish(p);
 }
 MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
@@ -3962,11 +3948,7 @@ MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const 
     if (status) return status;
     if (!weight) return MCS_ERR_ARG;
     n = (size_t)t->rows * t->cols, w = mcsi_product_weights(p);
-    for (k = 0; k < n; k++) {
-        float light = mcsi_tiles_fields(t)[k];
-        w[k] = light * mcsi_min(mcsi_clean(weight[k], &bad), 1e30f);
-        w[n + k] = weight[k] > 0.0f ? light : 0.0f;
-    }
+    for (k = 0; k < n; k++) w[k] = mcsi_tiles_fields(t)[k] * mcsi_min(mcsi_clean(weight[k], &bad), 1e30f);
     return mcsi_product_finish(p);
 }
 /* Density of the tiles alone. */
@@ -4097,28 +4079,24 @@ MCSI_CORE int mcsi_list_draw(const float *weight, uint32_t n, double *U, uint32_
     *part *= (double)(cum[*k + 1] - cum[*k]) / total;
     return *part > 0.0;
 }
-/* The same from a grid of tiles, as mcsi_grid_rows has it; from their light alone when all are below the horizon. */
-MCSI_CORE int mcsi_level_draw(const mcsi_facing *s, uint32_t rows, uint32_t cols, const float *fields, double *U1, double *U2,
-                              uint32_t *i, uint32_t *j, double *part) {
-    float weight[MCSI_BLOCKS_MAX], above[MCSI_BLOCKS_MAX], list[MCSI_TILES_MAX], light[MCSI_TILES_MAX], all = 0.0f, bright = 0.0f,
-                                                                                                        floor;
-    uint32_t n = rows * cols, k, m;
+/* The same from a grid of tiles; from their light alone when all are below the horizon that the block around them crosses. */
+MCSI_CORE int mcsi_level_draw(const mcsi_facing *s, uint32_t rows, uint32_t cols, const float *fields, int inner, double *U1,
+                              double *U2, uint32_t *i, uint32_t *j, double *part) {
+    float weight[MCSI_BLOCKS_MAX], list[MCSI_TILES_MAX], all = 0.0f;
     const float *w = weight;
-    mcsi_tiles_weigh(s, n, fields, n, weight, above);
-    for (k = 0; k < rows; k++) {
-        float sum = 0.0f, sky = 0.0f;
-        for (m = k; m < n; m += rows) sum += weight[m], sky += above[m];
-        list[k] = sum, light[k] = sky, all += sum, bright += sky;
-    }
-    floor = all > 0.0f && bright > 0.0f ? 1e-3f * all / bright : 1.0f;
-    if (!(bright > 0.0f)) {
+    uint32_t n = rows * cols, k, m;
+    mcsi_tiles_weigh(s, n, fields, n, weight);
+    for (;;) {
+        for (k = 0; k < rows; k++) {
+            float sum = 0.0f;
+            for (m = k; m < n; m += rows) sum += w[m];
+            list[k] = sum, all += sum;
+        }
+        if (all > 0.0f || !inner || w == fields) break;
         w = fields;
-        for (m = 0; m < n; m += rows)
-            for (k = 0; k < rows; k++) list[k] += fields[m + k];
     }
-    for (k = 0; k < rows; k++) list[k] += floor * light[k];
     if (!mcsi_list_draw(list, rows, U2, i, part)) return 0;
-    for (k = 0; k < cols; k++) list[k] = w[k * rows + *i] + floor * above[k * rows + *i];
+    for (k = 0; k < cols; k++) list[k] = w[k * rows + *i];
     return mcsi_list_draw(list, cols, U1, j, part);
 }
 /* Down both levels to tile (i, j) and the place in it; with U1, U2 < 0, the part of all draws that tile (i, j) gets. */
@@ -4130,7 +4108,8 @@ MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcs_
     const float *from;
     size_t k, c, n = (size_t)t->rows * t->cols;
     mcsi_facing s;
-    if (!mcsi_facing_make(e, r, &s) || !mcsi_level_draw(&s, t->rows / B, t->cols / B, mcsi_tiles_blocks(t), U1, U2, &I, &J, part))
+    if (!mcsi_facing_make(e, r, &s) ||
+        !mcsi_level_draw(&s, t->rows / B, t->cols / B, mcsi_tiles_blocks(t), 0, U1, U2, &I, &J, part))
         return 0;
     from = mcsi_tiles_fields(t) + (size_t)J * B * t->rows + (size_t)I * B;
     for (k = 0; k < MCSI_TILE_FIELDS; k++)
@@ -4140,7 +4119,7 @@ MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcs_
             to[0] = column[0], to[1] = column[1], to[2] = column[2], to[3] = column[3];
         }
     *i %= B, *j %= B;
-    if (!mcsi_level_draw(&s, B, B, fields, U1, U2, i, j, part)) return 0;
+    if (!mcsi_level_draw(&s, B, B, fields, 1, U1, U2, i, j, part)) return 0;
     *i += I * B, *j += J * B;
     return 1;
 }
