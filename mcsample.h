@@ -4054,7 +4054,15 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
             ok[k] = 1, U1[k] = mcsi_times_one(u1[i + k], &ok[k]), U2[k] = mcsi_times_one(u2[i + k], &ok[k]);
             row[k] = mcsi_product_row(p, &U2[k]);
         }
-        for (k = 0; k < m; k++) window[k] = mcsi_product_col(p, row[k], &U1[k], &part[k]);
+        for (k = 0; k < m; k++) {
+            window[k] = mcsi_product_col(p, row[k], &U1[k], &part[k]);
+            MCSI_PREFETCH(window[k]);
+        }
+        for (k = 0; k < m; k++) {
+            mcsi_env_view v = mcsi_env_part(window[k]);
+            uint32_t near_row = (uint32_t)(U2[k] * v.count * (1.0 / MCSI_ONE));
+            MCSI_PREFETCH(v.guide + near_row), MCSI_PREFETCH(v.rows + near_row), MCSI_PREFETCH(v.line + near_row);
+        }
         for (k = 0; k < m; k++) {
             mcsi_env_view v = mcsi_env_part(window[k]);
             mcsi_env_block_aim(p->e, &v, &b, k, U1[k], U2[k], part[k], ok[k]);
@@ -4067,17 +4075,22 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
 /* ---- one-shot form: blocks of 4 x 4 tiles, then the tiles of one ---- */
 
 enum { MCSI_BLOCKS_MAX = MCSI_TILES_MAX * MCSI_TILES_MAX / 8 };
-/* A draw from a list of weights as integer shares, or the part of entry *k when there is nothing to draw (U < 0). */
+/* A draw from a list of n (a power of two) weights: entry, place in it, and the entry's part; with U < 0, the part of entry *k. In
+ * double, where the part of an entry down to 2^-30 of the whole is that of the sums to 2^-22 of itself. 0: nothing to draw. */
 MCSI_CORE int mcsi_list_draw(const float *weight, uint32_t n, double *U, uint32_t *k, double *part) {
-    uint32_t cum[MCSI_TILES_MAX + 1], total = mcsi_shares(cum, weight, n);
-    if (total == 0) return 0;
+    double cum[MCSI_TILES_MAX], total = 0.0;
+    uint32_t i, half;
+    for (i = 0; i < n; i++) cum[i] = total, total += (double)weight[i];
+    if (!(total > 0.0)) return 0;
     if (*U >= 0.0) {
-        double V = *U * (total * (1.0 / MCSI_ONE));
-        *k = mcsi_shares_find(cum, n, 1, (uint32_t)V);
-        *U = mcsi_shares_rest(V, cum[*k], cum[*k + 1] - cum[*k]);
+        double V = *U * (total * (1.0 / MCSI_ONE)), rest;
+        for (i = 0, half = n / 2; half; half /= 2) i += (uint32_t)(cum[i + half] <= V) * half;
+        rest = (V - cum[i]) * (MCSI_ONE / (double)weight[i]);
+        *k = i, *U = rest < 2147483647.5 ? rest : 2147483647.5;
     }
-    *part *= (double)(cum[*k + 1] - cum[*k]) / total;
-    return *part > 0.0;
+    if (!(weight[*k] > 0.0f)) return 0;
+    *part *= (double)weight[*k] / total;
+    return 1;
 }
 /* The same from a grid of tiles; from their light alone when all are below the horizon that the block around them crosses. */
 MCSI_CORE int mcsi_level_draw(const mcsi_facing *s, uint32_t rows, uint32_t cols, const float *fields, int inner, double *U1,
@@ -4087,11 +4100,12 @@ MCSI_CORE int mcsi_level_draw(const mcsi_facing *s, uint32_t rows, uint32_t cols
     uint32_t n = rows * cols, k, m;
     mcsi_tiles_weigh(s, n, fields, n, weight);
     for (;;) {
-        for (k = 0; k < rows; k++) {
+        k = 0;
+        do {
             float sum = 0.0f;
             for (m = k; m < n; m += rows) sum += w[m];
             list[k] = sum, all += sum;
-        }
+        } while (++k < rows);
         if (all > 0.0f || !inner || w == fields) break;
         w = fields;
     }

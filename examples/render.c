@@ -1,8 +1,8 @@
 /* render.c - the main example of mcsample.h: how a renderer uses it.
  *
  * A row of spheres, one per BRDF, on a matte ground, lit by a latitude-longitude environment map: direct illumination with
- * visibility, estimated by uniform, cosine, BRDF, environment or multiple importance sampling. Writes PNG and Radiance .hdr
- * pictures and prints what each strategy cost and how far its mean may be off.
+ * visibility, estimated by uniform, cosine, BRDF, environment, multiple importance or product sampling. Writes PNG and Radiance
+ * .hdr pictures and prints what each strategy cost and how far its mean may be off.
  *
  *     cc -O2 -std=c99 -I. -fopenmp examples/render.c -o render -lm       (-fopenmp is optional: without it, one thread)
  *     ./render --strategy all sunrise.hdr
@@ -65,6 +65,8 @@ static int complain(const char *what, const char *format, ...) {
 #define MAX_TEXELS (1u << 27)
 #define MAX_EXPONENT 188 /* radiance up to 2^60; from there on a product with a sharp lobe could leave the range of a float */
 
+#define TILES 16u /* rows of tiles of product sampling */
+
 typedef struct {
     unsigned char rgb[3], exponent; /* as in the file: at 4 bytes a texel most lookups find theirs in the cache */
 } rgbe;
@@ -74,6 +76,7 @@ typedef struct {
     rgbe *texel;
     float unit[256]; /* what 1 in rgb stands for, by exponent */
     mcs_env *table;
+    mcs_tiles *tiles; /* for product sampling */
     float irradiance; /* luminance of the irradiance on level ground with nothing in the way */
     float main_light; /* azimuth */
 } environment;
@@ -252,7 +255,12 @@ static int environment_make(environment *e, const char *map) {
     status = mcs_env_build(e->table, bytes, &image);
     free(pixel);
     if (status == MCS_UNIFORM) return complain(name, "the map is black: there is nothing to light the scene with");
-    return status == MCS_OK ? 1 : complain(name, "no sampling table (status %d)", status);
+    if (status != MCS_OK) return complain(name, "no sampling table (status %d)", status);
+    bytes = mcs_tiles_bytes(e->table, TILES);
+    e->tiles = malloc(bytes);
+    if (!e->tiles) return complain(name, "not enough memory for the tiles");
+    status = mcs_tiles_build(e->tiles, bytes, e->table, TILES);
+    return status == MCS_OK ? 1 : complain(name, "no tiles (status %d)", status);
 }
 
 /* ---- Materials: a matte base, a lobe, or both ---- */
@@ -271,6 +279,8 @@ typedef struct {
     vec3 specular; /* reflectance of the lobe, for microfacets at normal incidence */
     float p_lobe;  /* probability that BRDF sampling takes the lobe: 0 matte, 1 no base */
     float share;   /* BRDF samples of MIS for each environment sample: few where the lobe is so wide that they find nothing new */
+
+    float alpha_x, alpha_y; /* of a GGX lobe as wide as this one */
 } material;
 
 static mcs_brdf lobe_sample(const material *m, vec3 wo, float u1, float u2) {
@@ -352,6 +362,7 @@ static bounce material_sample(const material *m, vec3 wo, float u_choice, float 
 /* ---- Scene ---- */
 
 #define SPHERES 8
+#define NO_OBJECT (-1)
 #define GROUND SPHERES /* index of the ground, the plane z = 0 */
 
 typedef struct {
@@ -372,6 +383,9 @@ static material material_make(lobe_kind kind, float p_lobe, vec3 base, vec3 spec
     material m;
     memset(&m, 0, sizeof m);
     m.kind = kind, m.p_lobe = p_lobe, m.base = base, m.specular = specular, m.share = kind == MATTE ? 0.125f : 1;
+    m.alpha_x = a, m.alpha_y = b;
+    if (kind == PHONG) m.alpha_x = m.alpha_y = sqrtf(0.5f / (a + 2)); /* about the mirror direction: half that of a half-vector */
+    if (kind == ASHIKHMIN) m.alpha_x = sqrtf(2 / (a + 2)), m.alpha_y = sqrtf(2 / (b + 2));
     if (kind == PHONG) m.lobe.phong = mcs_phong_make(a);
     if (kind == WARD) m.lobe.ward = mcs_ward_make(a, b, MCS_WARD_GMD);
     if (kind == GGX_VISIBLE || kind == GGX_BOUNDED) m.lobe.ggx = mcs_ggx_make(a, b);
@@ -438,13 +452,13 @@ static mcs_frame sphere_frame(vec3 n) {
 static int intersect(const scene *s, vec3 p, vec3 w, surface *x) {
     float nearest = INFINITY;
     int i;
-    x->object = -1;
+    x->object = NO_OBJECT;
     if (w.z < 0) nearest = -p.z / w.z, x->object = GROUND;
     for (i = 0; i < SPHERES; i++) {
         float t = hit_sphere(s, i, p, w);
         if (t > 0 && t < nearest) nearest = t, x->object = i;
     }
-    if (x->object < 0) return 0;
+    if (x->object == NO_OBJECT) return 0;
     x->p = add(p, scale(nearest, w));
     if (x->object == GROUND) {
         x->p.z = 0;
@@ -460,8 +474,8 @@ static int intersect(const scene *s, vec3 p, vec3 w, surface *x) {
 
 /* ---- Direct illumination: each strategy estimates the integral of f L V cos over the hemisphere ---- */
 
-typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, STRATEGIES } strategy;
-static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine", "brdf", "env", "mis"};
+typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, PRODUCT, STRATEGIES } strategy;
+static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine", "brdf", "env", "mis", "product"};
 
 /* With mis, one half of a multi-sample estimator with the power heuristic (Veach and Guibas, "Optimally combining sampling
  * techniques", 1995); without, an estimator by itself. Likewise the environment. */
@@ -495,31 +509,97 @@ static vec3 sample_hemisphere(const scene *s, const environment *e, const surfac
     return scale(1 / d.pdf, mul(material_eval(x->m, x->wo, d.w), radiance_at(e, l.col, l.row)));
 }
 
-/* *drawn counts the light samples. */
-static vec3 direct(const scene *s, const environment *e, const surface *x, strategy how, mcs_pcg32 *rng, uint32_t *drawn) {
+/* What product sampling is told of a surface; Fresnel's factor as the mirror direction has it. */
+static mcs_reflection reflection_of(const surface *x) {
+    const material *m = x->m;
+    mcs_reflection r;
+    float base = m->p_lobe < 1 ? luminance(m->base) : 0, lobe = 0;
+    if (m->p_lobe > 0) lobe = m->kind == PHONG ? luminance(m->specular) : mcs_schlick(luminance(m->specular), x->wo.z);
+    r.frame = x->frame, r.wo = x->wo, r.alpha_x = m->alpha_x, r.alpha_y = m->alpha_y, r.matte = base / (base + lobe);
+    return r;
+}
+
+/* The value of a light sample: radiance times f cos over the density. */
+static vec3 product_value(const scene *s, const environment *e, const surface *x, mcs_texel l) {
+    vec3 wi = mcs_to_local(&x->frame, l.w);
+    if (!(l.pdf > 0 && wi.z > 0 && visible(s, x->p, l.w, x->object))) return vec(0, 0, 0);
+    return scale(1 / l.pdf, mul(material_eval(x->m, x->wo, wi), radiance_at(e, l.col, l.row)));
+}
+
+/* Several samples: the prepared form, which sees to sharp lobes by itself. */
+static vec3 sample_product(const scene *s, const environment *e, const surface *x, uint32_t lights, mcs_pcg32 *rng) {
+    union {
+        mcs_product p;
+        double room[1024];
+    } point;
+    mcs_reflection r = reflection_of(x);
     vec3 sum = {0, 0, 0};
-    ++*drawn;
-    switch (how) {
-    case BRDF: return sample_brdf(s, e, x, 0, rng);
-    case ENVIRONMENT: return sample_environment(s, e, x, 0, rng);
-    case MIS:
-        if (x->m->share == 1 || mcs_pcg32_float(rng) < x->m->share) sum = sample_brdf(s, e, x, 1, rng), ++*drawn;
-        return add(sum, sample_environment(s, e, x, 1, rng));
-    default: return sample_hemisphere(s, e, x, how == COSINE, rng);
+    uint32_t i;
+    if (mcs_product_build(&point.p, sizeof point, e->tiles, e->table, &r) != MCS_OK) return sum;
+    for (i = 0; i < lights; i++) {
+        float u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng);
+        sum = add(sum, product_value(s, e, x, mcs_product_sample(&point.p, u1, u2)));
     }
+    return sum;
+}
+
+/* One sample: the one-shot form. Where the lobe is narrower than a tile a share of the samples is drawn from the lobe instead, as
+ * large as the prepared form takes it, with the density of the mixture of both. */
+static vec3 sample_oneshot(const scene *s, const environment *e, const surface *x, mcs_pcg32 *rng) {
+    const material *m = x->m;
+    mcs_reflection r = reflection_of(x);
+    float u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng), share = 0, wide;
+    mcs_texel l;
+    if (m->p_lobe > 0) {
+        wide = 1 / ((float)(2 * TILES * TILES) * m->alpha_x * m->alpha_y * x->wo.z) - 0.1f; /* tile over lobe */
+        share = wide > 0 ? (1 - r.matte) * wide / (1 + wide) : 0;
+    }
+    if (share > 0 && mcs_pcg32_float(rng) < share) {
+        mcs_brdf b = lobe_sample(m, x->wo, u1, u2);
+        if (!(b.pdf > 0)) return vec(0, 0, 0);
+        l = mcs_env_texel(e->table, mcs_to_world(&x->frame, b.wi));
+        l.w = mcs_to_world(&x->frame, b.wi), l.pdf = mcs_mix_pdf(share, b.pdf, mcs_oneshot_pdf(e->tiles, e->table, &r, l.w));
+    } else {
+        l = mcs_oneshot_sample(e->tiles, e->table, &r, u1, u2);
+        if (share > 0) l.pdf = mcs_mix_pdf(share, lobe_pdf(m, x->wo, mcs_to_local(&x->frame, l.w)), l.pdf);
+    }
+    return product_value(s, e, x, l);
+}
+
+/* The mean of so many estimates; *drawn counts the light samples. */
+static vec3 direct(const scene *s, const environment *e, const surface *x, strategy how, uint32_t lights, mcs_pcg32 *rng,
+                   uint32_t *drawn) {
+    vec3 sum = {0, 0, 0};
+    uint32_t i;
+    *drawn += lights;
+    if (how == PRODUCT && lights > 1) return scale(1 / (float)lights, sample_product(s, e, x, lights, rng));
+    for (i = 0; i < lights; i++) {
+        switch (how) {
+        case BRDF: sum = add(sum, sample_brdf(s, e, x, 0, rng)); break;
+        case ENVIRONMENT: sum = add(sum, sample_environment(s, e, x, 0, rng)); break;
+        case PRODUCT: sum = add(sum, sample_oneshot(s, e, x, rng)); break;
+        case MIS:
+            if (x->m->share == 1 || mcs_pcg32_float(rng) < x->m->share) sum = add(sum, sample_brdf(s, e, x, 1, rng)), ++*drawn;
+            sum = add(sum, sample_environment(s, e, x, 1, rng));
+            break;
+        default: sum = add(sum, sample_hemisphere(s, e, x, how == COSINE, rng));
+        }
+    }
+    return scale(1 / (float)lights, sum);
 }
 
 /* ---- Rendering ---- */
 
-#define PASS 16 /* samples per pixel between two looks at the error */
+#define PASS 16 /* samples per pixel between two looks at the error; 1 with --seconds */
 
 typedef struct {
-    unsigned w, h, spp;
-    double error; /* relative standard error of the mean at which to stop, 0: take spp samples */
+    unsigned w, h, spp, lights;
+    double seconds; /* of processor time after which to stop, 0: take spp samples */
+    double error;   /* relative standard error of the mean at which to stop, 0: take spp samples */
     uint64_t seed;
     int help, threads, wanted[STRATEGIES];
     float stops;
-    const char *out, *map;
+    const char *out, *map, *stack;
 } options;
 
 typedef struct {
@@ -527,12 +607,14 @@ typedef struct {
     vec3 sum;
     mcs_stat luminance; /* of this pixel's samples */
     uint32_t drawn;     /* light samples */
+    int object;         /* that all samples hit, or NO_OBJECT */
 } pixel;
 
 typedef struct {
     unsigned spp;
     double samples, wall, cpu; /* light samples; seconds on the clock, and of all threads together */
     double mean, error;        /* of the luminance of the picture; the standard error of that mean */
+    double mse[SPHERES + 1];   /* mean squared error of a pixel, by object */
 } outcome;
 
 typedef struct {
@@ -568,7 +650,8 @@ static void render_row(const options *o, const scene *s, const environment *e, s
             float py = 1 - 2 * ((float)y + mcs_pcg32_float(&p->rng)) / (float)o->h;
             vec3 w = unit(add(s->forward, add(scale(px, s->right), scale(py, s->up)))), c;
             surface at;
-            c = intersect(s, s->eye, w, &at) ? direct(s, e, &at, how, &p->rng, &p->drawn) : radiance(e, w);
+            c = intersect(s, s->eye, w, &at) ? direct(s, e, &at, how, o->lights, &p->rng, &p->drawn) : radiance(e, w);
+            p->object = p->luminance.n > 0 && at.object != p->object ? NO_OBJECT : at.object;
             p->sum = add(p->sum, c);
             mcs_stat_add(&p->luminance, luminance(c));
         }
@@ -579,14 +662,18 @@ static void render_row(const options *o, const scene *s, const environment *e, s
  * of the variances of the pixel means over the square of their number. What differs between pixels is picture, not error. As with
  * any estimate: where samples hardly ever find a small bright light, both the mean and its error come out low until they do. */
 static void picture_statistics(const pixel *p, size_t n, outcome *r) {
-    double variance = 0;
+    double variance = 0, count[SPHERES + 1] = {0};
     size_t i;
+    int k;
     r->mean = r->samples = 0;
+    memset(r->mse, 0, sizeof r->mse);
     for (i = 0; i < n; i++) {
         double e = mcs_stat_error(&p[i].luminance);
         r->mean += p[i].luminance.mean, r->samples += p[i].drawn;
         variance += e * e;
+        if (p[i].object != NO_OBJECT) r->mse[p[i].object] += e * e, count[p[i].object]++;
     }
+    for (k = 0; k <= SPHERES; k++) r->mse[k] /= fmax(count[k], 1);
     r->mean /= (double)n;
     r->error = sqrt(variance) / (double)n;
 }
@@ -595,8 +682,9 @@ static void picture_statistics(const pixel *p, size_t n, outcome *r) {
  * changes: the picture does not depend on the number of threads. */
 static outcome render(const options *o, const scene *s, const environment *e, strategy how, pixel *image) {
     size_t pixels = (size_t)o->w * o->h, i;
-    outcome r = {0, 0, 0, 0, 0, 0};
-    progress p = {strategy_name[how], seconds(CLOCK_MONOTONIC), 0, o->h * ceil(o->spp / (double)PASS), 0};
+    outcome r = {0, 0, 0, 0, 0, 0, {0}};
+    const unsigned pass = o->seconds > 0 ? 1 : PASS;
+    progress p = {strategy_name[how], seconds(CLOCK_MONOTONIC), 0, o->h * ceil(o->spp / (double)pass), 0};
     double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     int watched = isatty(fileno(stderr));
     if (!watched) p.rows = -1;
@@ -605,8 +693,9 @@ static outcome render(const options *o, const scene *s, const environment *e, st
         memset(&image[i], 0, sizeof image[i]);
         image[i].rng = mcs_pcg32_make((uint64_t)key.v[0] << 32 | key.v[1], (uint64_t)key.v[2] << 32 | key.v[3]);
     }
-    while (r.spp < o->spp && !(o->error > 0 && r.spp > 0 && r.error <= o->error * r.mean)) {
-        uint32_t n = o->spp - r.spp < PASS ? o->spp - r.spp : PASS;
+    while (r.spp < o->spp && !(o->error > 0 && r.spp > 0 && r.error <= o->error * r.mean) &&
+           !(o->seconds > 0 && r.spp > 1 && r.cpu >= o->seconds)) {
+        uint32_t n = o->spp - r.spp < pass ? o->spp - r.spp : pass;
         int y;
         OMP(omp parallel for schedule(dynamic) num_threads(o->threads))
         for (y = 0; y < (int)o->h; y++) {
@@ -617,10 +706,11 @@ static outcome render(const options *o, const scene *s, const environment *e, st
         picture_statistics(image, pixels, &r);
         if (watched && o->error > 0 && r.mean > 0) /* the error falls with the root of the samples */
             p.rows = fmin(p.rows, p.done * fmax(1, pow(r.error / (o->error * r.mean), 2)));
+        r.cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
+        if (watched && o->seconds > 0) p.rows = fmin(p.rows, p.done * fmax(1, o->seconds / r.cpu));
     }
     if (watched) fputs("\r\033[K", stderr);
     r.wall = seconds(CLOCK_MONOTONIC) - p.start;
-    r.cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
     return r;
 }
 
@@ -755,14 +845,17 @@ static int png_write(const char *name, const pixel *image, unsigned w, unsigned 
     return ok;
 }
 
+static float exposure_for(const options *o, const environment *e) {
+    return (e->irradiance > 0 ? 0.9f * PI / e->irradiance : 1) * exp2f(o->stops);
+}
+
 static int write_pictures(const options *o, strategy how, const environment *e, const pixel *image) {
     size_t size = strlen(o->out) + 16;
     char *name = malloc(size);
-    float exposure = e->irradiance > 0 ? 0.9f * PI / e->irradiance : 1;
     int ok;
     if (!name) return complain(o->out, "not enough memory");
     snprintf(name, size, "%s-%s.png", o->out, strategy_name[how]);
-    ok = png_write(name, image, o->w, o->h, exposure * exp2f(o->stops));
+    ok = png_write(name, image, o->w, o->h, exposure_for(o, e));
     snprintf(name, size, "%s-%s.hdr", o->out, strategy_name[how]);
     ok = ok && hdr_write(name, image, o->w, o->h);
     free(name);
@@ -774,17 +867,22 @@ static int write_pictures(const options *o, strategy how, const environment *e, 
 static int usage(void) {
     return fputs("usage: render [options] [map.hdr]\n"
                  "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
-                 "  --strategy LIST    uniform, cosine, brdf, env, mis, several with commas, or all (mis)\n"
-                 "  --spp N            samples per pixel (64; with --error: at most N, 16384)\n"
+                 "  --strategy LIST    uniform, cosine, brdf, env, mis, product, several with commas, or all (mis)\n"
+                 "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384)\n"
+                 "  --lights N         estimates of the light at each point that a sample sees (1)\n"
+                 "  --seconds T        stop each strategy after T seconds of processor time: pictures of equal cost\n"
                  "  --error E          stop when the standard error of the mean of the picture is E times the mean\n"
                  "  --size WxH         size of the picture (960x320)\n"
                  "  --stops X          brighten the PNG by X stops from what suits the map (0)\n"
                  "  --out PREFIX       write PREFIX-STRATEGY.png and PREFIX-STRATEGY.hdr (render)\n"
+                 "  --stack FILE       write all pictures into one PNG too, one below the other\n"
                  "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on it\n"
                  "  --seed N           another set of random numbers (1)\n"
                  "  --help             this text\n"
                  "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
-                 "EXPOSURE lines of a map are ignored. The camera has the main light of the map behind it at the left.\n",
+                 "EXPOSURE lines of a map are ignored. The camera has the main light of the map behind it at the left.\n"
+                 "examples/product.png: render --strategy mis,product --lights 16 --seconds 2 --size 480x160 --threads 1\n"
+                 "    --out build/product --stack examples/product.png\n",
                  stdout) < 0;
 }
 
@@ -812,7 +910,7 @@ static int parse_strategies(const char *list, options *o) {
         for (i = 0; i < STRATEGIES; i++)
             if ((n == 3 && !strncmp(list, "all", 3)) || (n == strlen(strategy_name[i]) && !strncmp(list, strategy_name[i], n)))
                 known = o->wanted[i] = 1;
-        if (!known) return complain("--strategy", "'%.*s' is none of uniform, cosine, brdf, env, mis, all", (int)n, list);
+        if (!known) return complain("--strategy", "'%.*s' is none of uniform, cosine, brdf, env, mis, product, all", (int)n, list);
         if (!list[n]) return 1;
         list += n + 1;
     }
@@ -824,6 +922,9 @@ static int parse_option(const char *name, const char *value, options *o) {
     if (!strcmp(name, "--size")) return parse_size(value, o);
     if (!strcmp(name, "--out")) return o->out = value, 1;
     if (!strcmp(name, "--spp")) return parse_number(name, value, 2, 1e6, 1, &v) && (o->spp = (uint32_t)v, 1);
+    if (!strcmp(name, "--stack")) return o->stack = value, 1;
+    if (!strcmp(name, "--lights")) return parse_number(name, value, 1, 4096, 1, &v) && (o->lights = (uint32_t)v, 1);
+    if (!strcmp(name, "--seconds")) return parse_number(name, value, 1e-3, 1e6, 0, &v) && (o->seconds = v, 1);
     if (!strcmp(name, "--error")) return parse_number(name, value, 1e-7, 1, 0, &v) && (o->error = v, 1);
     if (!strcmp(name, "--stops")) return parse_number(name, value, -20, 20, 0, &v) && (o->stops = (float)v, 1);
     if (!strcmp(name, "--threads")) return parse_number(name, value, 1, 1024, 1, &v) && (o->threads = (int)v, 1);
@@ -835,7 +936,7 @@ static int parse_option(const char *name, const char *value, options *o) {
 static int parse_arguments(int argc, char **argv, options *o) {
     int i;
     memset(o, 0, sizeof *o);
-    o->w = 960, o->h = 320, o->seed = 1, o->wanted[MIS] = 1, o->out = "render";
+    o->w = 960, o->h = 320, o->seed = 1, o->lights = 1, o->wanted[MIS] = 1, o->out = "render";
     for (i = 1; i < argc; i++) {
         if (!strcmp(argv[i], "--help")) return o->help = 1;
         if (argv[i][0] != '-') {
@@ -849,7 +950,7 @@ static int parse_arguments(int argc, char **argv, options *o) {
             i++;
         }
     }
-    if (!o->spp) o->spp = o->error > 0 ? 16384 : 64;
+    if (!o->spp) o->spp = o->error > 0 || o->seconds > 0 ? 16384 : 64;
 #ifdef _OPENMP
     if (!o->threads) o->threads = omp_get_max_threads();
 #else
@@ -879,17 +980,40 @@ static void print_table(const options *o, const outcome *result) {
            "deviation: from the mean of the most efficient, in standard errors of the difference\n");
 }
 
+/* Over the pixels that show nothing but that object. */
+static void print_objects(const options *o, const outcome *result) {
+    static const char *const name[] = {"matte", "Phong", "Ward.18", "Ward ani", "GGX.06", "GGX.12", "GGX.40", "A.-S.", "ground"};
+    int i, k;
+    if (!o->wanted[MIS]) return;
+    printf("\nmean squared error of a pixel x cpu s, over that of mis\nstrategy");
+    for (k = 0; k <= SPHERES; k++) printf(" %9s", name[k]);
+    putchar('\n');
+    for (i = 0; i < STRATEGIES; i++) {
+        if (!o->wanted[i] || i == MIS) continue;
+        printf("%-8s", strategy_name[i]);
+        for (k = 0; k <= SPHERES; k++) {
+            double mis = result[MIS].mse[k] * result[MIS].cpu;
+            printf(" %9.3g", mis > 0 ? result[i].mse[k] * result[i].cpu / mis : 0);
+        }
+        putchar('\n');
+    }
+}
+
 int main(int argc, char **argv) {
     options o;
     environment e;
     outcome result[STRATEGIES];
     pixel *image;
     scene s;
+    size_t pixels;
+    unsigned shown = 0, count = 0;
     int i, ok;
     if (!parse_arguments(argc, argv, &o)) return 2;
     if (o.help) return usage();
     memset(&e, 0, sizeof e);
-    image = malloc((size_t)o.w * o.h * sizeof *image);
+    for (i = 0; i < STRATEGIES; i++) count += o.wanted[i] != 0;
+    pixels = (size_t)o.w * o.h;
+    image = malloc((o.stack ? count : 1) * pixels * sizeof *image); /* a stack needs all of them at once */
     ok = image ? environment_make(&e, o.map) : complain("--size", "not enough memory for the picture");
     s = scene_make(o.w, o.h, e.main_light);
     if (ok)
@@ -897,13 +1021,14 @@ int main(int argc, char **argv) {
                o.threads > 1 ? "s" : "");
     for (i = 0; ok && i < STRATEGIES; i++) {
         if (!o.wanted[i]) continue;
-        result[i] = render(&o, &s, &e, (strategy)i, image);
-        ok = write_pictures(&o, (strategy)i, &e, image);
+        result[i] = render(&o, &s, &e, (strategy)i, image + (o.stack ? shown : 0) * pixels);
+        ok = write_pictures(&o, (strategy)i, &e, image + (o.stack ? shown++ : 0) * pixels);
     }
-    if (ok) print_table(&o, result);
+    if (ok && o.stack) ok = png_write(o.stack, image, o.w, shown * o.h, exposure_for(&o, &e));
+    if (ok) print_table(&o, result), print_objects(&o, result);
     for (i = 0; ok && i < STRATEGIES; i++)
         if (o.wanted[i] && o.error > 0 && !(result[i].error <= o.error * result[i].mean))
             ok = complain(strategy_name[i], "error %g not reached with %u samples per pixel", o.error, result[i].spp);
-    free(image), free(e.texel), free(e.table);
+    free(image), free(e.texel), free(e.table), free(e.tiles);
     return ok ? 0 : 1;
 }

@@ -1,9 +1,10 @@
 #!/bin/sh
 # analyze.sh: what tools say about mcsample.h. valgrind memcheck and clang's memory sanitizer on the tests of widths, tables and
-# environment maps at a small scale; gcc -fanalyzer, clang-tidy and cppcheck over the header. Run in the repository's root. Every finding
-# fails unless the list below explains it. What is not installed is skipped, loudly; "N passed, N failed" at the end.
+# environment maps at a small scale; gcc -fanalyzer, clang-tidy and cppcheck over the header. Run in the repository's root. Every
+# finding fails unless the list below explains it. What is not installed is skipped, loudly; "N passed, N failed" at the end.
 #
-# Arguments: names of parts (valgrind, msan, fanalyzer, tidy, cppcheck); none: all. Environment: BUILD (build), MCS_TEST_SCALE (0.02).
+# Arguments: names of parts (valgrind, msan, fanalyzer, tidy, cppcheck); none: all. Environment: BUILD (build), MCS_TEST_SCALE
+# (0.02).
 set -u
 LC_ALL=C
 export LC_ALL
@@ -68,7 +69,8 @@ if wanted valgrind; then
     fi
 fi
 if wanted msan; then
-    if have clang && echo 'int main(void) { return 0; }' | clang -fsanitize=memory -x c - -o "$dir/probe" 2>/dev/null && "$dir/probe"; then
+    if have clang && echo 'int main(void) { return 0; }' | clang -fsanitize=memory -x c - -o "$dir/probe" 2>/dev/null &&
+        "$dir/probe"; then
         for cut in $cuts; do
             t=${cut%:*} filter=${cut#*:}
             clang -std=c99 -O1 -g -fsanitize=memory -fno-omit-frame-pointer -ffp-contract=off -w -I. -Itests "tests/test_$t.c" \

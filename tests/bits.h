@@ -1,26 +1,35 @@
 /* The functions of mcsample.h that have no row in registry.h, in one uniform shape, for the hashes of test_bits.c.
  *
- * No include guard: test_bits.c includes this file once per width, with BITS_W lanes, F_ and U_ the types of floats and words, M_(x)
- * the name x of mcsample.h at that width and B_(x) the name of its adapter. As in adapters.h entry i of lane l is at i * W + l:
+ * No include guard: test_bits.c includes this file once per width, with BITS_W lanes, F_ and U_ the types of floats and words,
+ * M_(x) the name x of mcsample.h at that width and B_(x) the name of its adapter. As in adapters.h entry i of lane l is at
+ * i * W + l:
  *
  *     B_(x)(in, out)   in: 0..2 parameters, 3..5 a direction, 6, 7 random numbers, 8..10 a point, 11..13 words
  *                      out: BITS_OUT entries, set to 0 before
  *
- * Words travel as the bits of floats. A name needs its function here and its place in one of the three lists: floats at every width, words at every width, and what there is only once. */
+ * Words travel as the bits of floats. A name needs its function here and its place in one of the lists: floats at every width,
+ * words at every width, what there is only once, what needs the maps of the host (no kernels), and array forms of such: their
+ * bits1_x is what the scalar form gives, and bits_array_x computes all cases. */
+/* clang-format off */
 #ifndef BITS_WIDE
-#define BITS_WIDE(X)                                                                                                              \
-    X(u01)                                                                                                                        \
-    X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(to_world) X(to_local) X(reflect) X(reflect_pdf) X(half) X(cos_d) \
-        X(schlick) X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) X(ashikhmin_make) X(is_mirror) X(ggx_d) X(ggx_g1)      \
-            X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf)
+#define BITS_WIDE(X) \
+    X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(to_world) X(to_local) X(reflect) X(reflect_pdf) X(half) \
+    X(cos_d) X(schlick) X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) X(ashikhmin_make) X(is_mirror) X(ggx_d) \
+    X(ggx_g1) X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf)
 #define BITS_WORDS(X) X(hash) X(sobol_bits)
-#define BITS_SCALAR(X)                                                                                                         \
-    X(pcg32_make)                                                                                                              \
-    X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n) X(stratified) X(latin) \
-        X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) X(discrete_sample)    \
-            X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(alias_bytes)    \
-                X(alias_build) X(alias_sample) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) X(stat_error) X(stat_ci)
+#define BITS_SCALAR(X) \
+    X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n) \
+    X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) \
+    X(discrete_sample) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) \
+    X(alias_bytes) X(alias_build) X(alias_sample) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) X(stat_error) X(stat_ci)
+#define BITS_HOST(X) \
+    X(image_make) X(env_bytes) X(env_build) X(env_build_rows) X(env_finish) X(env_check) X(env_mean) X(env_sample) \
+    X(env_sample_bits) X(env_pdf) X(env_invert) X(env_texel) X(env_weight) X(env_window_bytes) X(env_window_build) \
+    X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(product_bytes) X(product_build) \
+    X(product_build_weights) X(product_sample) X(product_pdf) X(oneshot_sample) X(oneshot_pdf)
+#define BITS_ARRAYS(X) X(env_sample_n) X(env_pdf_n) X(env_window_sample_n) X(product_sample_n)
 #endif
+/* clang-format on */
 
 #define FN(name) BITS_HD static void B_(name)(const float *in, float *out)
 
@@ -130,7 +139,7 @@ BITS_HD static void bits_put_double(float *out, int i, double v) {
     bits_put_word2(out, i, word);
 }
 /* Arrays longer than `out` are seen through their hash. */
-BITS_HD static void bits_put_array(float *out, int i, const float *a, size_t n) {
+BITS_HD static void bits_put_array(float *out, int i, const void *a, size_t n) {
     bits_put_word2(out, i, bits_hash(BITS_START, a, n));
 }
 enum { BITS_LONG = 200, BITS_CELLS = 40 };
@@ -290,6 +299,379 @@ FN(stat_ci) {
     bits_put_double(out, 0, mcs_stat_ci(&s, 1.96));
 }
 #undef STAT
+
+/* --- environment maps ------------------------------------------------------------------------------------------------------- */
+
+#define HOST(name) static void bits1_##name(const float *in, float *out)
+/* Black, bad and very bright entries among others. */
+static void bits_picture(uint32_t seed, uint32_t n, float *f) {
+    uint32_t i;
+    for (i = 0; i < n; i++) {
+        const uint32_t h = mcs_hash(seed, i);
+        f[i] = h % 8 == 0     ? 0.0f
+               : h % 128 == 1 ? -1.0f
+               : h % 128 == 9 ? from_bits(0x7fc00000)
+                              : mcs_u01(h) * (h % 8 == 1 ? 1e4f : 1.0f);
+    }
+}
+static void *bits_memory(size_t bytes) {
+    void *p = calloc(1, bytes);
+    if (!p) {
+        fprintf(stderr, "out of memory\n");
+        exit(2);
+    }
+    return p;
+}
+static void bits_put_texel(float *out, int i, mcs_texel t) {
+    bits1_put3(out, i, t.w), PUT(i + 3, t.pdf), PUT_WORD(i + 4, t.col), PUT_WORD(i + 5, t.row);
+}
+
+/* Built once and kept until the end: maps, for each of them a window across the seam, tiles, and a product for each of some
+ * surfaces. Building one per case as for the tables above would take an emulator minutes. */
+enum { BITS_RANDOM, BITS_SUN, BITS_RGB, BITS_BILINEAR, BITS_FLOOR, BITS_CONSTANT, BITS_BLACK, BITS_MAPS, BITS_SURFACES = 4 };
+typedef struct {
+    mcs_env *env;
+    mcs_env_window *window;
+    mcs_tiles *tiles;
+    mcs_product *product[BITS_SURFACES];
+    mcs_status status[3 + BITS_SURFACES];
+    size_t tile_bytes;
+} bits_map;
+
+static void bits_map_build(int kind, bits_map *m) {
+    static const uint32_t size[BITS_MAPS][2] = {{40, 12}, {130, 33}, {24, 17}, {40, 12}, {130, 33}, {16, 16}, {7, 5}};
+    /* Roughness, matte part, cosine of the direction to the eye. */
+    static const float surface[BITS_SURFACES][4] = {
+        {1, 1, 1, 0.8f}, {0.6f, 0.3f, 0.3f, 0.5f}, {0.01f, 0.02f, 0, 0.9f}, {1, 1, 1, -0.1f}};
+    const uint32_t w = size[kind][0], h = size[kind][1], rows = kind == BITS_RGB ? 32 : 16;
+    float *const f = (float *)bits_memory((size_t)w * h * 7 * sizeof *f);
+    mcs_image im = mcs_image_make(f, w, h, 1);
+    size_t bytes = mcs_env_bytes(w, h);
+    uint32_t i;
+    int k;
+    if (kind == BITS_CONSTANT)
+        for (i = 0; i < w * h; i++) f[i] = 0.7f;
+    else if (kind != BITS_BLACK) bits_picture(kind == BITS_SUN || kind == BITS_FLOOR ? 1 : 0, w * h * 7, f);
+    if (kind == BITS_SUN || kind == BITS_FLOOR) {
+        for (i = 0; i < w; i++) f[i] = f[w + i] = f[20 * w + i] = f[21 * w + i] = f[(h - 1) * w + i] = 0.0f;
+        f[9 * w + w - 1] = 3e8f;
+    }
+    if (kind == BITS_RGB) { /* the last row of the picture first */
+        im.channels = 3, im.pixel_stride = 5, im.row_stride = -(ptrdiff_t)(5 * w + 2);
+        im.pixels = f + (h - 1) * (5 * w + 2);
+    }
+    if (kind == BITS_FLOOR) im.floor = mcs_env_mean(&im);
+    im.bilinear = kind == BITS_BILINEAR;
+    m->env = (mcs_env *)bits_memory(bytes), m->status[0] = mcs_env_build(m->env, bytes, &im);
+    free(f);
+    if (kind == BITS_RGB) m->env->frame = mcs_frame_make(mcsi_vec3(0.48f, -0.6f, 0.64f));
+    bytes = mcs_env_window_bytes(h), m->window = (mcs_env_window *)bits_memory(bytes);
+    m->status[1] = mcs_env_window_build(m->window, bytes, m->env, h / 4, h / 2 + 1, 3 * w / 4, w / 2);
+    m->tile_bytes = mcs_tiles_bytes(m->env, rows), m->tiles = (mcs_tiles *)bits_memory(m->tile_bytes);
+    m->status[2] = mcs_tiles_build(m->tiles, m->tile_bytes, m->env, rows);
+    for (k = 0; k < BITS_SURFACES; k++) {
+        const float *s = surface[k];
+        mcs_reflection r;
+        r.frame = mcs_frame_make(mcsi_vec3(0.6f, 0.48f, 0.64f));
+        r.wo = mcsi_vec3(0.0f, mcsi_sqrt(1.0f - s[3] * s[3]), s[3]), r.alpha_x = s[0], r.alpha_y = s[1], r.matte = s[2];
+        bytes = mcs_product_bytes(rows), m->product[k] = (mcs_product *)bits_memory(bytes);
+        m->status[3 + k] = mcs_product_build(m->product[k], bytes, m->tiles, m->env, &r);
+    }
+}
+static const bits_map *bits_map_at(int kind) {
+    static bits_map maps[BITS_MAPS];
+    if (!maps[kind].env) bits_map_build(kind, &maps[kind]);
+    return &maps[kind];
+}
+static int bits_map_of(const float *in) { return (int)(WORD(13) % BITS_MAPS); }
+static int bits_product_of(const float *in) { return (int)(WORD(13) % (BITS_MAPS * BITS_SURFACES)); }
+#define MAP const bits_map *const m = bits_map_at(bits_map_of(in))
+#define PRODUCT \
+    MAP;        \
+    const mcs_product *const p = m->product[bits_product_of(in) / BITS_MAPS]
+
+HOST(image_make) {
+    const mcs_image im = mcs_image_make(in, WORD(11), WORD(12), WORD(13));
+    PUT_WORD(0, im.pixels == in), PUT_WORD(1, im.w), PUT_WORD(2, im.h), PUT_WORD(3, im.channels);
+    PUT_WORD(4, (uint32_t)im.bilinear);
+    PUT_WORD(5, (uint32_t)im.pixel_stride), PUT_WORD(6, (uint32_t)im.row_stride), PUT(7, im.floor);
+}
+HOST(env_bytes) { /* of sizes that a machine of 32 bits has room for, or of none */
+    const uint32_t w = WORD(11) >> (WORD(13) & 31), h = WORD(12) >> (WORD(13) >> 5 & 31);
+    PUT_WORD(0, (uint32_t)mcs_env_bytes(w, 1 + h % 256)), PUT_WORD(1, (uint32_t)mcs_env_bytes(w % 256, h));
+}
+
+/* A small map of its own for each case; now and then one that is refused. */
+enum { BITS_SMALL = 9, BITS_ROOM = 600 };
+typedef struct {
+    uint64_t room[BITS_ROOM];
+    float pixels[5 * BITS_SMALL * BITS_SMALL];
+    size_t bytes;
+    mcs_image image;
+} bits_case;
+static void bits_case_make(const float *in, bits_case *c) {
+    const uint32_t h = WORD(11);
+    memset(c, 0, sizeof *c);
+    if (WORD(13) % 32) bits_picture(WORD(12), 5 * BITS_SMALL * BITS_SMALL, c->pixels);
+    c->image = mcs_image_make(c->pixels, 1 + h % BITS_SMALL, 1 + (h >> 8) % BITS_SMALL, h >> 16 & 1 ? 3 : 1);
+    c->image.bilinear = h >> 17 & 1, c->image.pixel_stride = h >> 18 & 1 ? 5 : 0;
+    if (h >> 19 & 1) c->image.row_stride = 5 * BITS_SMALL;
+    if ((h >> 20 & 3) == 0) c->image.floor = h >> 22 & 1 ? IN(0) : mcs_env_mean(&c->image);
+    c->bytes = mcs_env_bytes(c->image.w, c->image.h);
+    switch (h >> 24) {
+    case 0: c->image.channels = 2; break;
+    case 1: c->image.channels = 0; break;
+    case 2: c->image.w = 0; break;
+    case 3: c->image.h = 1u << 17; break;
+    case 4: c->image.row_stride = 1, c->image.w = BITS_SMALL; break;
+    case 5: c->image.pixel_stride = -1; break;
+    case 6: c->image.pixels = NULL; break;
+    case 7: c->bytes--; break;
+    default: break;
+    }
+}
+/* All that a map is, but its places in memory. */
+static void bits_put_env(const float *in, float *out, const bits_case *c, mcs_status status) {
+    const mcs_env *e = (const mcs_env *)(const void *)c->room;
+    const uint32_t words[] = {e->magic, e->version, e->w,    e->h,       e->bad,       e->row0,
+                              e->row1,  e->col0,    e->col1, e->uniform, e->incomplete};
+    float drawn[12] = {0};
+    PUT_WORD(0, (uint32_t)status);
+    if (status < 0) return;
+    bits_put_double(out, 1, e->total), bits_put_array(out, 3, words, MCST_COUNT(words));
+    bits_put_texel(drawn, 0, mcs_env_sample(e, IN(6), IN(7))), bits_put_texel(drawn, 6, mcs_env_texel(e, IN3(8)));
+    bits_put_array(out, 5, drawn, MCST_COUNT(drawn)), bits_put_array(out, 7, (const float *)(const void *)&e->frame, 9);
+}
+HOST(env_build) {
+    bits_case c;
+    bits_case_make(in, &c);
+    bits_put_env(in, out, &c, mcs_env_build((mcs_env *)(void *)c.room, c.bytes, &c.image));
+}
+/* The rows in two parts, the later first. */
+static mcs_status bits_rows(const float *in, bits_case *c) {
+    const uint32_t cut = WORD(13) % BITS_SMALL, middle = cut < c->image.h ? cut : c->image.h;
+    const mcs_status status = mcs_env_build_rows((mcs_env *)(void *)c->room, c->bytes, &c->image, middle, c->image.h);
+    return status ? status : mcs_env_build_rows((mcs_env *)(void *)c->room, c->bytes, &c->image, 0, middle);
+}
+HOST(env_build_rows) {
+    bits_case c;
+    mcs_status status;
+    bits_case_make(in, &c);
+    status = bits_rows(in, &c);
+    bits_put_env(in, out, &c, status ? status : mcs_env_finish((mcs_env *)(void *)c.room, c.bytes, &c.image));
+    PUT_WORD(9, (uint32_t)mcs_env_build_rows((mcs_env *)(void *)c.room, c.bytes, &c.image, WORD(12) % 16, WORD(13) % 16));
+}
+HOST(env_finish) { /* of a map whose rows are built, whatever its own answer */
+    bits_case c;
+    bits_case_make(in, &c);
+    bits_rows(in, &c);
+    bits_put_env(in, out, &c, mcs_env_finish((mcs_env *)(void *)c.room, c.bytes, &c.image));
+    PUT_WORD(9, (uint32_t)mcs_env_finish(NULL, c.bytes, &c.image));
+}
+HOST(env_check) {
+    bits_case c;
+    mcs_env *const e = (mcs_env *)(void *)c.room;
+    uint32_t *list;
+    bits_case_make(in, &c);
+    if (mcs_env_build(e, c.bytes, &c.image) < 0) {
+        PUT_WORD(0, (uint32_t)mcs_env_check(e, sizeof c.room)); /* zeros */
+        return;
+    }
+    PUT_WORD(1, (uint32_t)mcs_env_check(e, c.bytes)), PUT_WORD(2, (uint32_t)mcs_env_check(e, c.bytes - 1));
+    PUT_WORD(3, (uint32_t)mcs_env_check(e, WORD(12) % c.bytes)), PUT_WORD(4, (uint32_t)mcs_env_check(NULL, c.bytes));
+    switch (WORD(12) >> 8 & 7) { /* damage that is the same in every byte order */
+    case 0: e->magic ^= 1u << (WORD(13) & 31); break;
+    case 1: e->version++; break;
+    case 2: e->h++; break;
+    case 3: e->uniform = 2; break;
+    case 4: e->at.cdf += 8; break;
+    case 5: e->incomplete = 2; break;
+    default:
+        list = (uint32_t *)(void *)((char *)e + (WORD(12) >> 8 & 1 ? e->at.cdf : e->at.rows));
+        list[WORD(12) % (c.image.h + 1)] ^= 1u << (WORD(13) & 31);
+    }
+    PUT_WORD(5, (uint32_t)mcs_env_check(e, c.bytes));
+}
+HOST(env_mean) {
+    bits_case c;
+    bits_case_make(in, &c);
+    PUT(0, mcs_env_mean(&c.image));
+}
+HOST(env_sample) {
+    MAP;
+    bits_put_texel(out, 0, mcs_env_sample(m->env, IN(6), IN(7)));
+}
+HOST(env_sample_bits) {
+    MAP;
+    bits_put_texel(out, 0, mcs_env_sample_bits(m->env, WORD(11), WORD(12)));
+}
+HOST(env_pdf) {
+    MAP;
+    PUT(0, mcs_env_pdf(m->env, IN3(8)));
+}
+HOST(env_invert) {
+    MAP;
+    bits1_put2(out, 0, mcs_env_invert(m->env, IN3(8)));
+    bits1_put2(out, 2, mcs_env_invert(m->env, mcs_env_sample(m->env, IN(6), IN(7)).w));
+}
+HOST(env_texel) {
+    MAP;
+    const mcs_texel t = mcs_env_texel(m->env, IN3(8));
+    bits_put_texel(out, 0, mcs_env_texel(m->env, mcs_env_sample(m->env, IN(6), IN(7)).w));
+    PUT(6, t.pdf), PUT_WORD(7, t.col), PUT_WORD(8, t.row);
+}
+HOST(env_weight) {
+    MAP;
+    PUT(0, mcs_env_weight(m->env, IN(0))), PUT(1, mcs_env_weight(m->env, mcs_env_sample(m->env, IN(6), IN(7)).pdf));
+}
+HOST(env_window_bytes) { PUT_WORD(0, (uint32_t)mcs_env_window_bytes(WORD(11) >> (WORD(12) & 31))); }
+
+/* A window of its own for each case: some are refused, some go across the seam, some are black. */
+#define WINDOW                                                                                        \
+    MAP;                                                                                              \
+    uint64_t room[300] = {0};                                                                         \
+    mcs_env_window *const v = (mcs_env_window *)(void *)room;                                         \
+    const uint32_t row = WORD(11) % (m->env->h + 1), rows = (WORD(11) >> 16) % (m->env->h - row + 2); \
+    const uint32_t col = WORD(12) % (m->env->w + 1), cols = (WORD(12) >> 16) % (m->env->w + 2);       \
+    const size_t bytes = mcs_env_window_bytes(rows) - (WORD(13) >> 28 == 0 && rows);                  \
+    const mcs_status status = mcs_env_window_build(v, bytes, m->env, row, rows, col, cols);           \
+    const mcs_texel t = mcs_env_window_sample(status < 0 ? m->window : v, m->env, IN(6), IN(7))
+HOST(env_window_build) {
+    WINDOW;
+    PUT_WORD(0, (uint32_t)status), bits_put_texel(out, 1, t);
+}
+HOST(env_window_sample) {
+    MAP;
+    bits_put_texel(out, 0, mcs_env_window_sample(m->window, m->env, IN(6), IN(7))), PUT_WORD(6, (uint32_t)m->status[1]);
+}
+HOST(env_window_pdf) {
+    WINDOW;
+    PUT(0, mcs_env_window_pdf(status < 0 ? m->window : v, m->env, t.w)), PUT(1, mcs_env_window_pdf(m->window, m->env, IN3(8)));
+}
+#undef WINDOW
+
+/* --- products --------------------------------------------------------------------------------------------------------------- */
+
+static mcs_reflection bits_reflection(const float *in) {
+    mcs_reflection r;
+    r.frame = mcs_frame_make(IN3(8)), r.wo = IN3(3), r.alpha_x = IN(0), r.alpha_y = IN(1);
+    r.matte = WORD(12) % 4 ? mcs_u01(WORD(12)) : IN(6);
+    return r;
+}
+HOST(tiles_bytes) {
+    MAP;
+    PUT_WORD(0, (uint32_t)mcs_tiles_bytes(m->env, 16u << (WORD(11) & 3))), PUT_WORD(1, (uint32_t)mcs_tiles_bytes(m->env, WORD(12)));
+    PUT_WORD(2, (uint32_t)mcs_tiles_bytes(NULL, 16));
+}
+HOST(tiles_build) {
+    MAP;
+    PUT_WORD(0, (uint32_t)m->status[2]), bits_put_array(out, 1, m->tiles, 3);
+    PUT_WORD(3, (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes - 1 - WORD(11) % m->tile_bytes, m->env, m->tiles->rows));
+    PUT_WORD(4, (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes, m->env, WORD(11) % 16));
+    PUT_WORD(5, (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes, NULL, 16));
+    bits1_put3(out, 6, mcs_tiles_direction(m->tiles, m->env, WORD(12) % 512));
+}
+HOST(tiles_direction) {
+    MAP;
+    bits1_put3(out, 0, mcs_tiles_direction(m->tiles, m->env, WORD(11) % 600));
+    bits1_put3(out, 3, mcs_tiles_direction(m->tiles, m->env, WORD(12)));
+}
+HOST(product_bytes) { /* beyond the header, which holds pointers */
+    const size_t bytes = mcs_product_bytes(16u << (WORD(11) & 3));
+    PUT_WORD(0, (uint32_t)(bytes ? bytes - sizeof(mcs_product) : 0)), PUT_WORD(1, (uint32_t)mcs_product_bytes(WORD(12)));
+}
+static uint64_t bits_room[4096]; /* 32 rows of tiles */
+/* Its share of the lobe and a sample with its density show a product. */
+static void bits_put_product(const float *in, float *out, mcs_status status) {
+    const mcs_product *p = (const mcs_product *)(const void *)bits_room;
+    mcs_texel t;
+    PUT_WORD(0, (uint32_t)status);
+    if (status < 0) return;
+    t = mcs_product_sample(p, IN(6), IN(7));
+    PUT_WORD(1, p->lit), PUT(2, p->brdf_share), bits_put_texel(out, 3, t), PUT(9, mcs_product_pdf(p, t.w));
+}
+HOST(product_build) {
+    MAP;
+    const mcs_reflection r = bits_reflection(in);
+    const mcs_reflection *given_one = WORD(11) % 32 == 1 ? NULL : &r;
+    const size_t bytes = mcs_product_bytes(m->tiles->rows) - (WORD(11) % 32 == 0);
+    bits_put_product(in, out, mcs_product_build((mcs_product *)(void *)bits_room, bytes, m->tiles, m->env, given_one));
+}
+HOST(product_build_weights) {
+    MAP;
+    float weight[2048];
+    mcs_product *const p = (mcs_product *)(void *)bits_room;
+    bits_picture(WORD(12), m->tiles->rows * m->tiles->cols, weight);
+    bits_put_product(in, out, mcs_product_build_weights(p, sizeof bits_room, m->tiles, m->env, WORD(11) % 32 == 1 ? NULL : weight));
+}
+HOST(product_sample) {
+    PRODUCT;
+    bits_put_texel(out, 0, mcs_product_sample(p, IN(6), IN(7)));
+    PUT_WORD(6, (uint32_t)m->status[3 + bits_product_of(in) / BITS_MAPS]);
+}
+HOST(product_pdf) {
+    PRODUCT;
+    PUT(0, mcs_product_pdf(p, IN3(8))), PUT(1, mcs_product_pdf(p, mcs_product_sample(p, IN(6), IN(7)).w));
+}
+HOST(oneshot_sample) {
+    MAP;
+    const mcs_reflection r = bits_reflection(in);
+    bits_put_texel(out, 0, mcs_oneshot_sample(m->tiles, m->env, &r, IN(6), IN(7)));
+}
+HOST(oneshot_pdf) {
+    MAP;
+    const mcs_reflection r = bits_reflection(in);
+    PUT(0, mcs_oneshot_pdf(m->tiles, m->env, &r, IN3(8)));
+    PUT(1, mcs_oneshot_pdf(m->tiles, m->env, &r, mcs_oneshot_sample(m->tiles, m->env, &r, IN(6), IN(7)).w));
+}
+
+/* --- array forms: all cases of one map, or of one product, in one call ------------------------------------------------------- */
+
+static void bits_put_point(float *out, mcs_texel t) { bits1_put3(out, 0, t.w), PUT(3, t.pdf); }
+/* in: random numbers 0, 1, points 2, 3, 4. */
+typedef void (*bits_array_call)(int kind, size_t n, float (*in)[CASES], float (*out)[CASES]);
+static void bits_arrays(int kinds, int (*kind)(const float *in), bits_array_call call) {
+    static float in[5][CASES], out[4][CASES];
+    static int from[CASES];
+    int i, j, k, n;
+    for (k = 0; k < kinds; k++) {
+        for (i = n = 0; i < CASES; i++) {
+            if (kind(given[i]) != k) continue;
+            for (j = 0; j < 5; j++) in[j][n] = given[i][U + j];
+            from[n++] = i;
+        }
+        memset(out, 0, sizeof out);
+        call(k, (size_t)n, in, out);
+        for (i = 0; i < n; i++)
+            for (j = 0; j < 4; j++) result[from[i]][j] = out[j][i];
+    }
+}
+#define ARRAY(name, kinds, kind, ...)                                                                                 \
+    static void bits_call_##name(int k, size_t n, float(*in)[CASES], float(*out)[CASES]) { mcs_##name(__VA_ARGS__); } \
+    static void bits_array_##name(void) { bits_arrays(kinds, kind, bits_call_##name); }
+#define DRAWN n, in[0], in[1], out[0], out[1], out[2], out[3]
+HOST(env_sample_n) {
+    MAP;
+    bits_put_point(out, mcs_env_sample(m->env, IN(6), IN(7)));
+}
+ARRAY(env_sample_n, BITS_MAPS, bits_map_of, bits_map_at(k)->env, DRAWN)
+HOST(env_pdf_n) { bits1_env_pdf(in, out); }
+ARRAY(env_pdf_n, BITS_MAPS, bits_map_of, bits_map_at(k)->env, n, in[2], in[3], in[4], out[0])
+HOST(env_window_sample_n) {
+    MAP;
+    bits_put_point(out, mcs_env_window_sample(m->window, m->env, IN(6), IN(7)));
+}
+ARRAY(env_window_sample_n, BITS_MAPS, bits_map_of, bits_map_at(k)->window, bits_map_at(k)->env, DRAWN)
+HOST(product_sample_n) {
+    PRODUCT;
+    bits_put_point(out, mcs_product_sample(p, IN(6), IN(7)));
+}
+ARRAY(product_sample_n, BITS_MAPS *BITS_SURFACES, bits_product_of, bits_map_at(k % BITS_MAPS)->product[k / BITS_MAPS], DRAWN)
+#undef ARRAY
+#undef DRAWN
+#undef HOST
+#undef MAP
+#undef PRODUCT
 #undef WORD2
 #endif
 

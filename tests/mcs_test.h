@@ -106,13 +106,24 @@ static void mcst_fail(const char *file, int line, const char *what, const char *
 }
 
 /* 1 where this build contracts a*b + c: with c the rounded product, only a fused operation finds what the rounding took away. */
-static inline int mcst_contracts(void) {
-    volatile float v[3] = {1 + 0x1p-12f, 1 + 0x1p-12f, 0};
-    float a, b, c;
-    v[2] = -(v[0] * v[1]);
-    a = v[0], b = v[1], c = v[2];
-    return a * b + c != 0;
+#define MCST_CONTRACTS(function)                               \
+    static inline int function(void) {                         \
+        volatile float v[3] = {1 + 0x1p-12f, 1 + 0x1p-12f, 0}; \
+        float a, b, c;                                         \
+        v[2] = -(v[0] * v[1]);                                 \
+        a = v[0], b = v[1], c = v[2];                          \
+        return a * b + c != 0;                                 \
+    }
+MCST_CONTRACTS(mcst_contracts)
+/* The same for array forms, which may contract where nothing else does, by the units they pick at run time. */
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__CUDACC__)
+__attribute__((target("avx2,fma"))) MCST_CONTRACTS(mcst_contracts_fma)
+static inline int mcst_arrays_contract(void) {
+    return mcst_contracts() || (__builtin_cpu_supports("fma") && mcst_contracts_fma());
 }
+#else
+static inline int mcst_arrays_contract(void) { return mcst_contracts(); }
+#endif
 
 #define CHECK(cond, ...) ((void)(mcst.checks++, (cond) ? 0 : (mcst_fail(__FILE__, __LINE__, #cond, __VA_ARGS__), 0)))
 

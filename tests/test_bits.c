@@ -33,21 +33,22 @@
 #define BITS_HD
 #endif
 
-/* --- the hash: FNV-1a, 64 bits, over the bit patterns, low byte first ---------------------------------------------------------- */
+/* --- the hash: FNV-1a, 64 bits, over the bit patterns, low byte first ------------------------------------------------------- */
 
 #define BITS_START 0xcbf29ce484222325u
-BITS_HD static uint64_t bits_hash(uint64_t hash, const float *a, size_t n) {
+BITS_HD static uint64_t bits_hash(uint64_t hash, const void *words, size_t n) {
+    const char *a = (const char *)words;
     size_t i;
     int k;
     for (i = 0; i < n; i++) {
         uint32_t word;
-        memcpy(&word, &a[i], sizeof word);
+        memcpy(&word, a + i * sizeof word, sizeof word);
         for (k = 0; k < 32; k += 8) hash = (hash ^ (word >> k & 255)) * 0x100000001B3u;
     }
     return hash;
 }
 
-/* --- inputs: BLOCKS parameter sets with BLOCK cases each, so that an array form has two vectors of 8 and a rest ------------------ */
+/* --- inputs: BLOCKS parameter sets with BLOCK cases each, so that an array form has two vectors of 8 and a rest ------------- */
 
 enum { BLOCK = 19, BLOCKS = 128, CASES = BLOCK * BLOCKS, BITS_IN = 14, BITS_OUT = 10, P = 0, WO = 3, U = 6, X = 8, WORDS = 11 };
 static float given[CASES][BITS_IN], result[CASES][BITS_OUT];
@@ -80,7 +81,8 @@ static float any_u(uint64_t *state) {
     return z >> 8 & 31 ? edge[z >> 16 & 15] : from_bits(0x7fc00000);
 }
 
-/* A unit vector from the pole to the horizon, now and then below it or bad. Only + - * / and sqrt, which no machine rounds differently. */
+/* A unit vector from the pole to the horizon, now and then below it or bad. Only + - * / and sqrt, which no machine rounds
+ * differently. */
 static void any_direction(uint64_t *state, float w[3]) {
     static const double cosines[8] = {1, 0.7, 0.35, 0.0871557, 1e-2, 1e-3, 1e-6, 1e-7};
     const uint64_t z = mcst_mix(state);
@@ -165,12 +167,14 @@ static const char *const suffix[FORMS] = {"sample", "pdf", "invert", "eval", "we
 static const struct {
     const char *name;
     void (*fn[4])(const float *in, float *out);
-    int floats; /* all results are floats, and finite ones */
+    int floats;          /* all results are floats, and finite ones */
+    void (*array)(void); /* fills `result` from `given` by the array form */
 } others[] = {
-#define LISTED(x) {"mcs_" #x, FOUR(x), 1},
-#define LISTED_WORD(x) {"mcs_" #x, FOUR(x), 0},
-#define LISTED_ONCE(x) {"mcs_" #x, {bits1_##x, NULL, NULL, NULL}, 0},
-    BITS_WIDE(LISTED) BITS_WORDS(LISTED_WORD) BITS_SCALAR(LISTED_ONCE)};
+#define LISTED(x) {"mcs_" #x, FOUR(x), 1, NULL},
+#define LISTED_WORD(x) {"mcs_" #x, FOUR(x), 0, NULL},
+#define LISTED_ONCE(x) {"mcs_" #x, {bits1_##x, NULL, NULL, NULL}, 0, NULL},
+#define LISTED_ARRAY(x) {"mcs_" #x, {bits1_##x, NULL, NULL, NULL}, 1, bits_array_##x},
+    BITS_WIDE(LISTED) BITS_WORDS(LISTED_WORD) BITS_SCALAR(LISTED_ONCE) BITS_HOST(LISTED_ONCE) BITS_ARRAYS(LISTED_ARRAY)};
 
 typedef struct {
     int form, at; /* at: in mcst_rows, or in others */
@@ -206,6 +210,10 @@ static void evaluate_arrays(target t) {
     const mcst_row *row = &mcst_rows[t.at];
     int b, i, k;
     memset(result, 0, sizeof result);
+    if (t.form == OTHER) {
+        others[t.at].array();
+        return;
+    }
     for (b = 0; b < BLOCKS; b++) {
         float in[BITS_IN][BLOCK], out[5][BLOCK] = {{0}};
         float *const to[5] = {out[0], out[1], out[2], out[3], out[4]};
@@ -246,7 +254,10 @@ template <void (*F)(const float *, float *)> __global__ void other(const float *
 #define GPU_ROW(shape, row, fn, arg, base, coord, grid) GPU_##shape(row)
 static const kernel rows[][SAMPLE_N] = {MCST_ROWS(GPU_ROW)};
 #define GPU_OTHER(x) other<bits1_##x>,
-static const kernel rest[] = {BITS_WIDE(GPU_OTHER) BITS_WORDS(GPU_OTHER) BITS_SCALAR(GPU_OTHER)};
+#define GPU_NONE(x) NULL,
+static const kernel rest[] = {BITS_WIDE(GPU_OTHER) BITS_WORDS(GPU_OTHER) BITS_SCALAR(GPU_OTHER) BITS_HOST(GPU_NONE)
+                                  BITS_ARRAYS(GPU_NONE)};
+static int has(target t) { return t.form == OTHER ? rest[t.at] != NULL : t.form < SAMPLE_N; }
 
 static int present() {
     int count = 0;
@@ -269,9 +280,6 @@ static const char *evaluate(target t) {
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* What test_env.c still has to itself. */
-static const char *const exempt[] = {"mcs_env_"};
-
 enum { NAMES = 512 };
 static char header[1 << 20];
 static char names[NAMES][48], stored_name[NAMES][48];
@@ -286,13 +294,6 @@ static int is_type(const char *name) {
     if (strstr(header, text)) return 1;
     snprintf(text, sizeof text, "} MCS_(%s);", name + 4);
     return strstr(header, text) != NULL;
-}
-
-static int is_exempt(const char *name) {
-    size_t i;
-    for (i = 0; i < MCST_COUNT(exempt); i++)
-        if (!strncmp(name, exempt[i], strlen(exempt[i]))) return 1;
-    return 0;
 }
 
 /* The functions of the index; its first block, up to a tag, is types. */
@@ -310,7 +311,7 @@ static void read_index(void) {
         if (!is_word(at[-1]) && length < sizeof names[0] && name_count < NAMES) {
             memcpy(names[name_count], at, length);
             names[name_count][length] = 0;
-            if (!is_type(names[name_count]) && !is_exempt(names[name_count])) name_count++;
+            if (!is_type(names[name_count])) name_count++;
         }
         at += length;
     }
@@ -365,9 +366,9 @@ static const char *const way_name[WAYS] = {"scalar", "4 wide", "8 wide", "16 wid
 
 static int has_way(target t, int way) {
     const int arrays = t.form >= SAMPLE_N && t.form < FORMS;
-    if (way == ARRAYS) return arrays;
+    if (way == ARRAYS) return t.form == OTHER ? others[t.at].array != NULL : arrays;
 #ifdef __CUDACC__
-    if (way == GPU) return !arrays && gpu::present();
+    if (way == GPU) return gpu::has(t) && gpu::present();
 #endif
     if (arrays || way > ARRAYS) return 0;
     return t.form == OTHER ? others[t.at].fn[way] != NULL : mcst_rows[t.at].fn[way].sample != NULL;
@@ -420,22 +421,10 @@ static void print(void) {
     }
 }
 
-/* The array forms may contract where nothing else does, by the units they pick at run time. */
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__CUDACC__)
-__attribute__((target("avx2,fma"))) static int arrays_contract(void) {
-    volatile float v[3] = {1 + 0x1p-12f, 1 + 0x1p-12f, 0};
-    float a, b, c;
-    v[2] = -(v[0] * v[1]);
-    a = v[0], b = v[1], c = v[2];
-    return a * b + c != 0;
-}
-static int contracts(void) { return mcst_contracts() || (__builtin_cpu_supports("fma") && arrays_contract()); }
-#else
-static int contracts(void) { return mcst_contracts(); }
-#endif
-
 int main(int argc, char **argv) {
-    const char *reason = FLT_EVAL_METHOD > 0 ? "floats are not evaluated as floats" : contracts() ? "a*b + c is contracted" : NULL;
+    const char *reason = FLT_EVAL_METHOD > 0      ? "floats are not evaluated as floats"
+                         : mcst_arrays_contract() ? "a*b + c is contracted"
+                                                  : NULL;
     int i;
     read_index();
     read_stored();
@@ -446,7 +435,6 @@ int main(int argc, char **argv) {
     mcst_start(argc, argv);
     if (!mcst.list) {
         if (reason) printf("SKIPPED: %s in this build, so no hash is compared\n", reason);
-        for (i = 0; i < (int)MCST_COUNT(exempt); i++) printf("SKIPPED: %s*, not among the hashes\n", exempt[i]);
 #ifdef MCS_NO_WIDE
         puts("SKIPPED: 4, 8 and 16 wide, which this compiler does not have");
 #endif
