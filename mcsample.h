@@ -3632,7 +3632,7 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * distance of a tile's corners from its mean direction, weigh at least a ten-thousandth of what a white surface would make of them.
  * Below the horizon only parts of tiles that it crosses are drawn. The tables keep pointers to t and e. Bad u or a bad direction
  * give pdf 0, as does a surface that no light reaches (build returns MCS_UNIFORM).
- * Lobes narrower than a tile: a share p->brdf_share of the samples is drawn from the visible normals of the lobe instead, (1 -
+ * Lobes narrower than a tile: a share (p->brdf_share) of the samples is drawn from the visible normals of the lobe instead, (1 -
  * matte) m/(1 + m), at most 0.95, where m + 0.1 is the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of
  * the lobe; the density is that of the mixture, and what the lobe sends below the surface is lost. For wide lobes the share is 0
  * and the maps are monotone: stratified u stay stratified.
@@ -3717,12 +3717,16 @@ typedef struct {
     mcs_vec3 wo;
     float alpha_x, alpha_y, matte;
 } mcs_reflection;
+/* A lobe that is drawn from for itself. */
 typedef struct {
-    const mcs_tiles *t;
-    const mcs_env *e;
     mcs_frame frame;
     mcs_vec3 wo;
     mcs_ggx lobe;
+} mcsi_own_lobe;
+typedef struct {
+    const mcs_tiles *t;
+    const mcs_env *e;
+    mcsi_own_lobe own;
     float brdf_share;
     uint32_t lit;
 } mcs_product; /* then row_cum[rows + 1], cum[cols + 1][rows], weight[cols][rows], above[cols][rows] */
@@ -3926,6 +3930,26 @@ MCS_FN float mcsi_brdf_share(const mcsi_facing *s, size_t tiles) {
     float m = 1.0f / ((float)tiles * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z) - 0.1f;
     return m > 0.0f ? (1.0f - s->matte) * mcsi_min(m / (1.0f + m), 0.95f) : 0.0f;
 }
+MCSI_CORE mcsi_own_lobe mcsi_own_make(const mcs_reflection *r, const mcsi_facing *s) {
+    mcsi_own_lobe l;
+    l.frame = r->frame, l.wo = s->wo, l.lobe = mcs_ggx_make(mcsi_sqrt(s->ax2), mcsi_sqrt(s->ay2));
+    return l;
+}
+/* When u1 falls on the lobe's share, its direction in world space; else u1 becomes the place in the rest. */
+MCSI_CORE int mcsi_own_draw(const mcsi_own_lobe *l, float share, float *u1, float u2, mcs_vec3 *w, int32_t *kept) {
+    mcs_brdf b;
+    if (!(share > 0.0f)) return 0;
+    if (*u1 >= share) {
+        *u1 = mcsi_min((*u1 - share) / (1.0f - share), 0.99999994f);
+        return 0;
+    }
+    b = mcs_ggx_vndf_sample(&l->lobe, l->wo, mcsi_min(*u1 / share, 0.99999994f), u2);
+    *w = mcsi_to_world(&l->frame, b.wi), *kept &= b.pdf > 0.0f;
+    return 1;
+}
+MCSI_CORE float mcsi_own_mix(const mcsi_own_lobe *l, float share, mcs_vec3 w, float tiled) {
+    return share > 0.0f ? mcs_mix_pdf(share, mcs_ggx_vndf_pdf(&l->lobe, l->wo, mcs_to_local(&l->frame, w)), tiled) : tiled;
+}
 MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
     mcs_status status = mcsi_product_start(p, bytes, t, e);
     mcsi_facing s;
@@ -3934,8 +3958,7 @@ MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tile
     if (status) return status;
     if (!r || !mcsi_facing_make(e, r, &s)) return r ? MCS_UNIFORM : MCS_ERR_ARG;
     n = (size_t)t->rows * t->cols, weight = mcsi_product_weights(p);
-    p->frame = r->frame, p->wo = s.wo, p->lobe = mcs_ggx_make(mcsi_sqrt(s.ax2), mcsi_sqrt(s.ay2)),
-    p->brdf_share = mcsi_brdf_share(&s, n);
+    p->own = mcsi_own_make(r, &s), p->brdf_share = mcsi_brdf_share(&s, n);
     mcsi_tiles_weigh(&s, n, mcsi_tiles_fields(t), n, weight);
     return mcsi_product_finish(p);
 }
@@ -3974,9 +3997,7 @@ MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
     mcs_texel r = mcs_env_texel(p->e, w);
     int32_t ok = 1;
     mcsi_direction(w, &ok);
-    r.pdf = ok && p->lit ? mcsi_product_density(p, r.row, r.col) : 0.0f;
-    if (ok && p->brdf_share > 0.0f)
-        r.pdf = mcs_mix_pdf(p->brdf_share, mcs_ggx_vndf_pdf(&p->lobe, p->wo, mcs_to_local(&p->frame, w)), r.pdf);
+    r.pdf = ok ? mcsi_own_mix(&p->own, p->brdf_share, w, p->lit ? mcsi_product_density(p, r.row, r.col) : 0.0f) : 0.0f;
     return r;
 }
 MCS_FN float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
@@ -4008,25 +4029,22 @@ MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, d
 }
 MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
     int32_t ok = 1;
-    double part = 1.0;
-    double U1, U2;
+    double part = 1.0, U1, U2;
+    mcs_vec3 w;
+    mcs_texel r;
     u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
-    if (u1 < p->brdf_share) {
-        mcs_brdf b = mcs_ggx_vndf_sample(&p->lobe, p->wo, mcsi_min(u1 / p->brdf_share, 0.99999994f), u2);
-        mcs_texel r = mcsi_product_look_up(p, mcsi_to_world(&p->frame, b.wi));
-        r.pdf = ok && b.pdf > 0.0f ? r.pdf : 0.0f;
-        return r;
+    if (mcsi_own_draw(&p->own, p->brdf_share, &u1, u2, &w, &ok)) {
+        r = mcsi_product_look_up(p, w);
+    } else if (p->lit) {
+        const mcs_env_window *m;
+        U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE, m = mcsi_product_col(p, mcsi_product_row(p, &U2), &U1, &part);
+        r = mcsi_tiled_draw(p->e, m, U1, U2, part, ok);
+        r.pdf = mcsi_own_mix(&p->own, p->brdf_share, r.w, r.pdf);
+    } else {
+        return mcsi_nothing(p->e);
     }
-    if (!p->lit) return mcsi_nothing(p->e);
-    if (p->brdf_share > 0.0f) u1 = mcsi_min((u1 - p->brdf_share) / (1.0f - p->brdf_share), 0.99999994f);
-    U1 = mcsi_times_one(u1, &ok), U2 = mcsi_times_one(u2, &ok);
-    {
-        const mcs_env_window *m = mcsi_product_col(p, mcsi_product_row(p, &U2), &U1, &part);
-        mcs_texel r = mcsi_tiled_draw(p->e, m, U1, U2, part, ok);
-        if (p->brdf_share > 0.0f)
-            r.pdf = ok ? mcs_mix_pdf(p->brdf_share, mcs_ggx_vndf_pdf(&p->lobe, p->wo, mcs_to_local(&p->frame, r.w)), r.pdf) : 0.0f;
-        return r;
-    }
+    r.pdf = ok ? r.pdf : 0.0f;
+    return r;
 }
 #ifndef MCS_NO_BATCH
 MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
@@ -4114,17 +4132,14 @@ MCSI_CORE int mcsi_level_draw(const mcsi_facing *s, uint32_t rows, uint32_t cols
     return mcsi_list_draw(list, cols, U1, j, part);
 }
 /* Down both levels to tile (i, j) and the place in it; with U1, U2 < 0, the part of all draws that tile (i, j) gets. */
-MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, double *U1, double *U2, uint32_t *i,
-                                uint32_t *j, double *part) {
+MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcsi_facing *s, double *U1, double *U2, uint32_t *i, uint32_t *j,
+                                double *part) {
     enum { B = MCSI_TILE_BLOCK };
     float fields[MCSI_TILE_FIELDS * B * B];
     uint32_t I = *i / B, J = *j / B;
     const float *from;
     size_t k, c, n = (size_t)t->rows * t->cols;
-    mcsi_facing s;
-    if (!mcsi_facing_make(e, r, &s) ||
-        !mcsi_level_draw(&s, t->rows / B, t->cols / B, mcsi_tiles_blocks(t), 0, U1, U2, &I, &J, part))
-        return 0;
+    if (!mcsi_level_draw(s, t->rows / B, t->cols / B, mcsi_tiles_blocks(t), 0, U1, U2, &I, &J, part)) return 0;
     from = mcsi_tiles_fields(t) + (size_t)J * B * t->rows + (size_t)I * B;
     for (k = 0; k < MCSI_TILE_FIELDS; k++)
         for (c = 0; c < B; c++) {
@@ -4133,24 +4148,47 @@ MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcs_
             to[0] = column[0], to[1] = column[1], to[2] = column[2], to[3] = column[3];
         }
     *i %= B, *j %= B;
-    if (!mcsi_level_draw(&s, B, B, fields, 1, U1, U2, i, j, part)) return 0;
+    if (!mcsi_level_draw(s, B, B, fields, 1, U1, U2, i, j, part)) return 0;
     *i += I * B, *j += J * B;
     return 1;
 }
+/* Density of the tiles alone at texel (row, col). */
+MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s, uint32_t row, uint32_t col) {
+    double part = 1.0, U1 = -1.0, U2 = -1.0;
+    uint32_t i = mcsi_tile_of(row, t->rows, e->h), j = mcsi_tile_of(col, t->cols, e->w);
+    return mcsi_oneshot_tile(t, s, &U1, &U2, &i, &j, &part) ? mcsi_tiled_density(t, e, part, i, j, row, col) : 0.0f;
+}
 MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2) {
     int32_t ok = 1;
-    double part = 1.0, U1 = mcsi_times_one(u1, &ok), U2 = mcsi_times_one(u2, &ok);
+    double part = 1.0, U1, U2;
     uint32_t i = 0, j = 0;
-    if (!mcsi_oneshot_tile(t, e, r, &U1, &U2, &i, &j, &part)) return mcsi_nothing(e);
-    return mcsi_tiled_draw(e, mcsi_tiles_window(t, i, j), U1, U2, part, ok);
+    mcsi_facing s;
+    mcsi_own_lobe own;
+    mcs_texel x;
+    mcs_vec3 w;
+    float share;
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    if (!mcsi_facing_make(e, r, &s)) return mcsi_nothing(e);
+    share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols), own = mcsi_own_make(r, &s);
+    if (mcsi_own_draw(&own, share, &u1, u2, &w, &ok)) {
+        x = mcs_env_texel(e, w), x.pdf = mcsi_oneshot_density(t, e, &s, x.row, x.col);
+    } else {
+        U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE;
+        if (!mcsi_oneshot_tile(t, &s, &U1, &U2, &i, &j, &part)) return mcsi_nothing(e);
+        x = mcsi_tiled_draw(e, mcsi_tiles_window(t, i, j), U1, U2, part, ok);
+    }
+    x.pdf = ok ? mcsi_own_mix(&own, share, x.w, x.pdf) : 0.0f;
+    return x;
 }
 MCS_FN float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w) {
     mcs_texel at = mcs_env_texel(e, w);
     int32_t ok = 1;
-    double part = 1.0, U1 = -1.0, U2 = -1.0;
-    uint32_t i = mcsi_tile_of(at.row, t->rows, e->h), j = mcsi_tile_of(at.col, t->cols, e->w);
+    mcsi_facing s;
+    mcsi_own_lobe own;
     mcsi_direction(w, &ok);
-    return ok && mcsi_oneshot_tile(t, e, r, &U1, &U2, &i, &j, &part) ? mcsi_tiled_density(t, e, part, i, j, at.row, at.col) : 0.0f;
+    if (!ok || !mcsi_facing_make(e, r, &s)) return 0.0f;
+    own = mcsi_own_make(r, &s);
+    return mcsi_own_mix(&own, mcsi_brdf_share(&s, (size_t)t->rows * t->cols), w, mcsi_oneshot_density(t, e, &s, at.row, at.col));
 }
 #endif /* MCSI_W == 1 */
 #endif

@@ -207,7 +207,7 @@ static void evaluate(target t, int w) {
 }
 
 static void evaluate_arrays(target t) {
-    const mcst_row *row = &mcst_rows[t.at];
+    const mcst_row *row = &mcst_rows[t.form == OTHER ? 0 : t.at];
     int b, i, k;
     memset(result, 0, sizeof result);
     if (t.form == OTHER) {
