@@ -3618,8 +3618,9 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  *
  *   mcs_tiles_bytes(e, rows), mcs_tiles_build(t, bytes, e, rows)    once per map; rows 16, 32 or 64 (16: 11 degrees a tile)
  *   mcs_reflection               what the surface does with light: frame (normal, tangent in world space), wo (local, to the eye),
- *                                alpha_x, alpha_y of a GGX lobe like its own (Phong n: sqrt(2 / (n + 2))), matte: the matte
- *                                part of its reflectance, 0 to 1. Only the variance depends on how like it is.
+ *                                alpha_x, alpha_y of a GGX lobe like its own (mcs_phong: sqrt(1/(2n + 4)), Ashikhmin-Shirley:
+ *                                sqrt(2/(n + 2))), matte: the matte part of its reflectance, 0 to 1. Only the variance depends on
+ *                                how like it is.
  *   prepared form, for several samples at a point: about 5 KB for 16 rows
  *     mcs_product_bytes(rows), mcs_product_build(p, bytes, t, e, &reflection)
  *     mcs_product_build_weights(p, bytes, t, e, weight)             any reflection: weight[rows * 2 rows], one per tile, to be
@@ -3634,8 +3635,8 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * give pdf 0, as does a surface that no light reaches (build returns MCS_UNIFORM).
  * Lobes narrower than a tile: a share (p->brdf_share) of the samples is drawn from the visible normals of the lobe instead, (1 -
  * matte) m/(1 + m), at most 0.95, where m + 0.1 is the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of
- * the lobe; the density is that of the mixture, and what the lobe sends below the surface is lost. For wide lobes the share is 0
- * and the maps are monotone: stratified u stay stratified.
+ * the lobe; the density is that of the mixture, and what the lobe sends below the surface is lost. A caller who joins samplers of
+ * its own by MIS sets p->brdf_share to 0. For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified.
  * Tile weights: matte: E (c + r)^2/(4 r), or E c where c >= r, c the cosine of the mean direction and r the radius of the tile;
  * lobe: GGX at the mean direction with alpha^2 + s^2/4, s^2 the spread of the light's direction in the tile. Tile probabilities are
  * integers. Cost of a sample: that of the environment's and two short searches. Sources: Clarberg and Akenine-Moeller 2008,

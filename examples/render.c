@@ -526,7 +526,7 @@ static vec3 product_value(const scene *s, const environment *e, const surface *x
     return scale(1 / l.pdf, mul(material_eval(x->m, x->wo, wi), radiance_at(e, l.col, l.row)));
 }
 
-/* Several samples: the prepared form, which sees to sharp lobes by itself. */
+/* Several samples: the prepared form. */
 static vec3 sample_product(const scene *s, const environment *e, const surface *x, uint32_t lights, mcs_pcg32 *rng) {
     union {
         mcs_product p;
@@ -543,27 +543,11 @@ static vec3 sample_product(const scene *s, const environment *e, const surface *
     return sum;
 }
 
-/* One sample: the one-shot form. Where the lobe is narrower than a tile a share of the samples is drawn from the lobe instead, as
- * large as the prepared form takes it, with the density of the mixture of both. */
+/* One sample: the one-shot form. */
 static vec3 sample_oneshot(const scene *s, const environment *e, const surface *x, mcs_pcg32 *rng) {
-    const material *m = x->m;
     mcs_reflection r = reflection_of(x);
-    float u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng), share = 0, wide;
-    mcs_texel l;
-    if (m->p_lobe > 0) {
-        wide = 1 / ((float)(2 * TILES * TILES) * m->alpha_x * m->alpha_y * x->wo.z) - 0.1f; /* tile over lobe */
-        share = wide > 0 ? (1 - r.matte) * wide / (1 + wide) : 0;
-    }
-    if (share > 0 && mcs_pcg32_float(rng) < share) {
-        mcs_brdf b = lobe_sample(m, x->wo, u1, u2);
-        if (!(b.pdf > 0)) return vec(0, 0, 0);
-        l = mcs_env_texel(e->table, mcs_to_world(&x->frame, b.wi));
-        l.w = mcs_to_world(&x->frame, b.wi), l.pdf = mcs_mix_pdf(share, b.pdf, mcs_oneshot_pdf(e->tiles, e->table, &r, l.w));
-    } else {
-        l = mcs_oneshot_sample(e->tiles, e->table, &r, u1, u2);
-        if (share > 0) l.pdf = mcs_mix_pdf(share, lobe_pdf(m, x->wo, mcs_to_local(&x->frame, l.w)), l.pdf);
-    }
-    return product_value(s, e, x, l);
+    float u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng);
+    return product_value(s, e, x, mcs_oneshot_sample(e->tiles, e->table, &r, u1, u2));
 }
 
 /* The mean of so many estimates; *drawn counts the light samples. */

@@ -22,6 +22,9 @@ bugprone-implicit-widening-of-multiplication-result	4 * MCSI_W is 64 at most
 bugprone-macro-parentheses	the argument is the name of a parameter in a declaration, where parentheses do not stand
 redundantInitialization	mcs_sobol_bits: a variable that every branch overwrites has a value before them
 variableScope	C99 style of the header: declarations at the head of the function
+shiftTooManyBitsSigned	masks from signs: >> of a negative int keeps its sign with every compiler the header is for
+Condition 'k<[mn]' is always false	wrong: n was set by ?: a line before, and the tests run these loops
+clarifyCondition	!flag & (a > b): both are 0 or 1, and & saves a jump
 END
 }
 

@@ -43,7 +43,7 @@ try() {
         MCS_TEST_SCALE=$scale $runner "$dir/$t" $filter >"$dir/run.log" 2>&1
         status=$?
         tail -n 1 "$dir/run.log" | grep -q ' passed, 0 failed' || status=1
-        [ $status = 0 ] || grep -v '^ok' "$dir/run.log" | head -n 12
+        [ $status = 0 ] || grep -v '^ok' "$dir/run.log" | head -n 12 | sed 's/^/    /'
         grep '^SKIPPED' "$dir/run.log" | sort -u
         result $status "$target test_$t: $(tail -n 1 "$dir/run.log" | tr -d '\r')"
     done
@@ -171,7 +171,7 @@ EOF
             if $c -std=gnu99 $flags -ffast-math -w -I. -Itests "$dir/fast.c" -o "$dir/fast" -lm >"$dir/build.log" 2>&1; then
                 "$dir/fast" >"$dir/run.log" 2>&1
                 result $? "fast-math: $c $flags: $(tail -n 1 "$dir/run.log")"
-                grep -E '^holds|^does not|FAIL|^    ' "$dir/run.log" | head -n 12
+                grep -E '^holds|^does not|FAIL|^    ' "$dir/run.log" | head -n 12 | sed 's/^/    /'
             else
                 head -n 4 "$dir/build.log"
                 result 1 "fast-math: $c $flags does not build"
@@ -196,7 +196,7 @@ job() {
     aarch64) foreign qemu-aarch64 "" aarch64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
     arm) foreign qemu-arm "" arm-linux-gnueabihf-gcc -std=c99 -O1 -static $exact ;;
     riscv64) foreign qemu-riscv64 "" riscv64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
-    s390x) foreign qemu-s390x "env env_memory" s390x-linux-gnu-gcc -std=gnu99 -O1 -static $exact ;;
+    s390x) foreign qemu-s390x "env env_memory:files" s390x-linux-gnu-gcc -std=gnu99 -O1 -static $exact ;;
     ppc64) foreign qemu-ppc64 "" powerpc64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
     i386)
         if have i686-linux-gnu-gcc; then

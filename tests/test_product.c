@@ -1,0 +1,1410 @@
+/* Product of environment, reflection and cosine. The truth is the picture itself and GGX in double as the papers have it (Walter et
+ * al. 2007, Heitz 2014 and 2018), integrated over the texels by Gauss points in cells that shrink towards the lobe's peak and the
+ * horizon. MCS_TEST_MAPS: Radiance pictures, separated by spaces, for the table of variances; MCS_TEST_SCALE scales the number of
+ * samples, from 10 on there are 1e7 for every mean. */
+#include <float.h>
+#include <math.h>
+#include "arena.h"
+#include "hdr.h"
+#include "mcs_test.h"
+#include "mcsample.h"
+#include "stats.h"
+
+static const double pi = 3.14159265358979323846;
+static const double eps = 0x1p-24;     /* rounding of a float, relative */
+static const double quantum = 0x1p-31; /* probabilities of rows and of columns are integers over 2^31 */
+static const double level = 0.01;      /* of all statistical tests of a group together (Sidak) */
+
+static double scale(void) {
+    const char *s = getenv("MCS_TEST_SCALE");
+    const double f = s ? atof(s) : 1;
+    return f > 0 ? f : 1;
+}
+static float hash01(uint32_t i, uint32_t stream) { return mcs_u01(mcs_philox(mcst.seed, i, stream).v[0]); }
+
+/* ---- pictures and surfaces ---- */
+
+typedef struct {
+    const char *name;
+    uint32_t w, h;
+    float *light;
+    arena env, tiles;
+    uint32_t rows;
+} scene;
+
+static const mcs_env *env_of(const scene *m) { return (const mcs_env *)(const void *)m->env.at; }
+static const mcs_tiles *tiles_of(const scene *m) { return (const mcs_tiles *)(const void *)m->tiles.at; }
+
+static void *memory(size_t bytes) {
+    void *p = malloc(bytes);
+    if (!p) {
+        fprintf(stderr, "out of memory\n");
+        exit(2);
+    }
+    return p;
+}
+/* Takes the memory of `light`. */
+static scene scene_from(const char *name, uint32_t w, uint32_t h, float *light, uint32_t rows) {
+    scene m;
+    mcs_image image = mcs_image_make(light, w, h, 1);
+    mcs_status a, b;
+    m.name = name, m.w = w, m.h = h, m.light = light, m.rows = rows;
+    m.env = arena_make(mcs_env_bytes(w, h));
+    a = mcs_env_build((mcs_env *)(void *)m.env.at, m.env.bytes, &image);
+    m.tiles = arena_make(mcs_tiles_bytes(env_of(&m), rows));
+    b = mcs_tiles_build((mcs_tiles *)(void *)m.tiles.at, m.tiles.bytes, env_of(&m), rows);
+    CHECK(a == b && (a == MCS_OK || a == MCS_UNIFORM), "%s: build returns %d, of the tiles %d", name, (int)a, (int)b);
+    CHECK(arena_intact(&m.tiles), "%s: tiles wrote outside their %zu bytes", name, m.tiles.bytes);
+    return m;
+}
+static void scene_free(scene *m) {
+    arena_free(&m->env), arena_free(&m->tiles);
+    free(m->light);
+}
+
+typedef float (*light_fn)(uint32_t col, uint32_t row, uint32_t w, uint32_t h);
+
+static float up_of(uint32_t r, uint32_t h) { return (float)cos(pi * (r + 0.5) / h); }
+static float v_smooth(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return 1.0f + 0.6f * up_of(r, h) + 0.3f * (float)sin(2 * pi * (c + 0.5) / w) * (1 - up_of(r, h) * up_of(r, h));
+}
+static float v_sun(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return c == w / 5 && r == h / 4 ? 3000.0f : r < h / 2 ? v_smooth(c, r, w, h) : 0.1f;
+}
+static float v_noise(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)h, hash01(r * w + c, 3); }
+static float v_one_texel(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return c == w / 3 && r == h / 3 ? 5.0f : 0.0f; }
+static float v_half(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return c < w / 2 ? v_smooth(c, r, w, h) : 0.0f; }
+static float v_constant(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)c, (void)r, (void)w, (void)h, 2.0f; }
+static float v_black(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)c, (void)r, (void)w, (void)h, 0.0f; }
+static float v_sparse(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return (void)h, hash01(r * w + c, 4) < 0.1f ? 1.0f / (0.001f + hash01(r * w + c, 5)) : 0.0f;
+}
+static float v_poles(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return r == 0 || r == h - 1 ? 1.0f + (float)(c % 3) / (float)w : 0.0f;
+}
+/* Lights of a room: a dim room with four windows and a lamp. */
+static float v_room(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    const double x = 8.0 * (c + 0.5) / w, y = (r + 0.5) / h;
+    if (y > 0.35 && y < 0.45 && fmod(x, 2) < 0.6) return 30.0f;
+    if (y < 0.08) return 80.0f;
+    return 0.3f + 0.2f * hash01(r * w + c, 6) * (float)y;
+}
+
+/* Light from directions low over the horizon of the fifth normal below. */
+static float v_rim(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    const double t = pi * (r + 0.5) / h, p = 2 * pi * (c + 0.5) / w,
+                 z = 0.6 * sin(t) * cos(p) + 0.48 * sin(t) * sin(p) + 0.64 * cos(t);
+    return fabs(z) < 0.2 ? 0.5f + hash01(r * w + c, 18) : 0.0f;
+}
+
+static scene scene_make(const char *name, uint32_t w, uint32_t h, light_fn value, uint32_t rows) {
+    float *light = (float *)memory((size_t)w * h * sizeof *light);
+    uint32_t r, c;
+    for (r = 0; r < h; r++)
+        for (c = 0; c < w; c++) light[(size_t)r * w + c] = value(c, r, w, h);
+    return scene_from(name, w, h, light, rows);
+}
+
+typedef struct {
+    const char *name;
+    float ax, ay, matte;
+} lobe;
+static const lobe lobes[] = {
+    {"matte", 1, 1, 1},
+    {"alpha 1", 1, 1, 0},
+    {"alpha 0.5", 0.5f, 0.5f, 0},
+    {"alpha 0.2", 0.2f, 0.2f, 0},
+    {"alpha 0.1", 0.1f, 0.1f, 0},
+    {"alpha 0.03", 0.03f, 0.03f, 0},
+    {"alpha 0.4 x 0.1", 0.4f, 0.1f, 0},
+    {"half matte, alpha 0.2", 0.2f, 0.2f, 0.5f},
+    {"alpha 0.01", 0.01f, 0.01f, 0},
+    {"half matte, alpha 0.01", 0.01f, 0.01f, 0.5f},
+};
+enum { LOBES = (int)(sizeof lobes / sizeof *lobes) };
+
+typedef struct {
+    mcs_reflection r;
+    double s[3], t[3], n[3], wo[3], mirror[3], ax, ay, matte, width;
+} surface;
+
+static double dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static void to3(double *d, mcs_vec3 v) { d[0] = v.x, d[1] = v.y, d[2] = v.z; }
+
+static mcs_vec3 vec(double x, double y, double z) {
+    const double d = sqrt(x * x + y * y + z * z);
+    mcs_vec3 v;
+    v.x = (float)(x / d), v.y = (float)(y / d), v.z = (float)(z / d);
+    return v;
+}
+static mcs_vec3 local_wo(double cosine, double turn) {
+    const double s = sqrt(1 - cosine * cosine);
+    return vec(s * cos(2 * pi * turn), s * sin(2 * pi * turn), cosine);
+}
+static surface surface_make(mcs_vec3 normal, mcs_vec3 wo, lobe l) {
+    surface s;
+    mcs_frame f = mcs_frame_make(normal);
+    const float c = 0.8f, d = 0.6f; /* another tangent than the library's own */
+    mcs_vec3 a = f.s, b = f.t;
+    int k;
+    f.s.x = c * a.x + d * b.x, f.s.y = c * a.y + d * b.y, f.s.z = c * a.z + d * b.z;
+    f.t.x = c * b.x - d * a.x, f.t.y = c * b.y - d * a.y, f.t.z = c * b.z - d * a.z;
+    s.r.frame = f, s.r.wo = wo, s.r.alpha_x = l.ax, s.r.alpha_y = l.ay, s.r.matte = l.matte;
+    to3(s.s, f.s), to3(s.t, f.t), to3(s.n, f.n), to3(s.wo, wo);
+    s.ax = l.ax, s.ay = l.ay, s.matte = l.matte;
+    for (k = 0; k < 3; k++) s.mirror[k] = -s.s[k] * s.wo[0] - s.t[k] * s.wo[1] + s.n[k] * s.wo[2];
+    s.width = 2 * (s.ax < s.ay ? s.ax : s.ay) * (s.wo[2] > 0.05 ? s.wo[2] : 0.05);
+    return s;
+}
+/* Reflection times cosine; the density of the lobe's visible normals. */
+static double reflect(const surface *s, const double *w, double *visible) {
+    const double x = dot3(s->s, w), y = dot3(s->t, w), z = dot3(s->n, w);
+    const double hx = x + s->wo[0], hy = y + s->wo[1], hz = z + s->wo[2], hh = hx * hx + hy * hy + hz * hz;
+    double q, d, ti, to;
+    *visible = 0;
+    if (!(z > 0)) return 0;
+    if (s->matte >= 1) return z / pi;
+    q = hx * hx / (s->ax * s->ax) + hy * hy / (s->ay * s->ay) + hz * hz, d = hh * hh / (pi * s->ax * s->ay * q * q);
+    to = sqrt(s->ax * s->ax * s->wo[0] * s->wo[0] + s->ay * s->ay * s->wo[1] * s->wo[1] + s->wo[2] * s->wo[2]);
+    ti = sqrt(s->ax * s->ax * x * x + s->ay * s->ay * y * y + z * z);
+    *visible = d / (2 * (s->wo[2] + to));
+    return s->matte * z / pi + (1 - s->matte) * d * z / (2 * (s->wo[2] * ti + z * to));
+}
+static double reflect_f(const surface *s, mcs_vec3 w, double *visible) {
+    double d[3];
+    to3(d, w);
+    return reflect(s, d, visible);
+}
+
+/* ---- quadrature ---- */
+
+typedef struct {
+    double reflected, visible;
+} mass;
+/* Over a cell of azimuth and polar angle: three Gauss points each way, in cells half as large as their distance
+ * from the lobe's pole in the complex plane (error about (1/8)^6); at the horizon, where there is a kink, in cells of
+ * 0.005, each wrong by less than 0.005^3 / 10: 1256 of them, with both signs, by some 5e-7 together. */
+static void add_cell(const surface *s, double p0, double p1, double t0, double t1, mass *sum) {
+    static const double node[3] = {0.1127016653792583, 0.5, 0.8872983346207417}, weight[3] = {5 / 18.0, 8 / 18.0, 5 / 18.0};
+    const double t = 0.5 * (t0 + t1), p = 0.5 * (p0 + p1), high = t1 - t0, broad = (p1 - p0) * sin(t) + 1e-9,
+                 size = high > broad ? high : broad;
+    double w[3], away = 0, up, visible;
+    int i, j;
+    w[0] = sin(t) * cos(p), w[1] = sin(t) * sin(p), w[2] = cos(t), up = dot3(s->n, w);
+    if (up < -size) return;
+    for (i = 0; i < 3; i++) away += (w[i] - s->mirror[i]) * (w[i] - s->mirror[i]);
+    away = sqrt(away) > size ? sqrt(away) - size : 0;
+    if (size > 0.2 || (s->matte < 1 && size > 0.5 * sqrt(s->width * s->width + away * away)) || (up < size && size > 0.005)) {
+        const int down = high > 0.6 * size, across = broad > 0.6 * size;
+        for (i = 0; i <= down; i++)
+            for (j = 0; j <= across; j++) add_cell(s, j ? p : p0, across && !j ? p : p1, i ? t : t0, down && !i ? t : t1, sum);
+        return;
+    }
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++) {
+            const double a = t0 + high * node[i], b = p0 + (p1 - p0) * node[j], area = sin(a) * high * (p1 - p0);
+            w[0] = sin(a) * cos(b), w[1] = sin(a) * sin(b), w[2] = cos(a);
+            sum->reflected += weight[i] * weight[j] * area * reflect(s, w, &visible);
+            sum->visible += weight[i] * weight[j] * area * visible;
+        }
+}
+static mass texel_mass(const scene *m, const surface *s, uint32_t c, uint32_t r) {
+    mass sum = {0, 0};
+    add_cell(s, 2 * pi * c / m->w, 2 * pi * (c + 1) / m->w, pi * r / m->h, pi * (r + 1) / m->h, &sum);
+    return sum;
+}
+static double true_light(const scene *m, const surface *s) {
+    double sum = 0;
+    uint32_t r, c;
+    for (r = 0; r < m->h; r++)
+        for (c = 0; c < m->w; c++) {
+            const double light = m->light[(size_t)r * m->w + c];
+            if (light > 0) sum += light * texel_mass(m, s, c, r).reflected;
+        }
+    return sum;
+}
+
+/* ---- both forms under one roof ---- */
+
+typedef struct {
+    const scene *m;
+    const surface *s;
+    mcs_product *p; /* NULL: one-shot */
+    arena mem;
+    double share;
+    mcs_status status;
+} sampler;
+
+/* The one-shot form has the share that the prepared one shows. */
+static sampler sampler_make(const scene *m, const surface *s, int prepared) {
+    sampler d;
+    mcs_product *p;
+    memset(&d, 0, sizeof d);
+    d.m = m, d.s = s;
+    d.mem = arena_make(mcs_product_bytes(m->rows)), p = (mcs_product *)(void *)d.mem.at;
+    d.status = mcs_product_build(p, d.mem.bytes, tiles_of(m), env_of(m), &s->r);
+    d.share = (double)p->brdf_share;
+    CHECK(d.status == MCS_OK || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
+    CHECK(arena_intact(&d.mem), "wrote outside its %zu bytes", d.mem.bytes);
+    CHECK(d.share >= 0 && d.share <= 0.95f && (!(s->r.matte >= 1) || !(d.share > 0)), "share %g", d.share);
+    if (prepared) d.p = p;
+    return d;
+}
+static void sampler_free(sampler *d) { free(d->mem.raw); }
+static mcs_texel draw(const sampler *d, float u1, float u2) {
+    return d->p ? mcs_product_sample(d->p, u1, u2) : mcs_oneshot_sample(tiles_of(d->m), env_of(d->m), &d->s->r, u1, u2);
+}
+static double density(const sampler *d, mcs_vec3 w) {
+    return (double)(d->p ? mcs_product_pdf(d->p, w) : mcs_oneshot_pdf(tiles_of(d->m), env_of(d->m), &d->s->r, w));
+}
+/* What is left of the density without the lobe's share, the same all over a texel: taken where the lobe is weakest. */
+static double tile_density(const sampler *d, uint32_t c, uint32_t r, double *least) {
+    double best = DBL_MAX, rest = 0, visible;
+    int k;
+    for (k = 0; k < (d->share > 0 ? 4 : 1); k++) {
+        const mcs_vec3 w = d->share > 0 ? point(d->m->w, d->m->h, c, r, k & 1 ? 0.9 : 0.1, k & 2 ? 0.9 : 0.1)
+                                        : point(d->m->w, d->m->h, c, r, 0.5, 0.5);
+        const double p = density(d, w);
+        reflect_f(d->s, w, &visible);
+        if (!(p >= 0 && p <= FLT_MAX)) return p;
+        if (visible < best) best = visible, rest = p - d->share * visible;
+    }
+    if (least) *least = best;
+    return rest;
+}
+static void fill(mcs_pcg32 *rng, size_t n, float *u1, float *u2) {
+    mcs_pcg32_fill_n(rng, n, u1);
+    mcs_pcg32_fill_n(rng, n, u2);
+}
+
+/* ---- chi-square, mass, proportion ---- */
+
+static const mcs_vec3 normals[] = {
+    {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {0.6f, 0.48f, 0.64f}, {-0.8f, 0.6f, 0}, {0.36f, -0.48f, -0.8f}};
+enum { NORMALS = (int)(sizeof normals / sizeof *normals), CHUNK = 1000 };
+
+/* Probabilities of rows and of columns are integers, once of the map and once of the tile's window (its rows): each moves by one of
+ * rounding, its own one, and its share of those for all. */
+static double slack(const scene *m, const double *row_sum, double total, uint32_t c, uint32_t r) {
+    const double omega = (double)solid_angle(r, m->w, m->h), prow = row_sum[r] / total,
+                 pcol = m->light[(size_t)r * m->w + c] * omega / row_sum[r];
+    return (2 / prow + m->h) * quantum + (2 / pcol + m->w) * quantum;
+}
+
+static double *expected, *observed;
+
+/* Density times solid angle over the whole map is 1 less what the lobe loses; within a tile it goes with the light. */
+static void check_density(const sampler *d) {
+    const scene *m = d->m;
+    const uint32_t n = m->w * m->h;
+    double sum = 0, seen = 0, total = 0, *row_sum = (double *)memory(m->h * sizeof *row_sum);
+    double ratio[64 * 128], widest[64 * 128];
+    uint32_t r, c;
+    for (r = 0; r < m->rows * m->rows * 2; r++) ratio[r] = -1, widest[r] = 0;
+    for (r = 0; r < m->h; r++) {
+        row_sum[r] = 0;
+        for (c = 0; c < m->w; c++) row_sum[r] += m->light[(size_t)r * m->w + c] * (double)solid_angle(r, m->w, m->h);
+        total += row_sum[r];
+    }
+    for (r = 0; r < m->h; r++)
+        for (c = 0; c < m->w; c++) {
+            const double omega = (double)solid_angle(r, m->w, m->h), light = m->light[(size_t)r * m->w + c];
+            const uint32_t tile =
+                (uint32_t)(((c + 1.0) * 2 * m->rows - 1) / m->w) * m->rows + (uint32_t)(((r + 1.0) * m->rows - 1) / m->h);
+            double least = 0, rest = tile_density(d, c, r, &least), lobe_mass = 0;
+            /* 1e-6 (1 + |ln(pdf/peak)|) of the lobe's density, here at most 2e-5; the mixture's rounding */
+            const double blur = d->share * least * 2e-5 + 4 * eps * rest;
+            CHECK(rest >= -blur && rest <= FLT_MAX, "texel (%u, %u): density %g", c, r, rest);
+            if (!(light > 0)) CHECK(fabs(rest) <= blur, "black texel (%u, %u): density %g", c, r, rest);
+            if (d->share > 0) lobe_mass = texel_mass(m, d->s, c, r).visible, seen += lobe_mass;
+            expected[r * m->w + c] = (rest > blur ? rest : 0) * omega + d->share * lobe_mass;
+            sum += expected[r * m->w + c];
+            if (light > 0) {
+                const double tol = slack(m, row_sum, total, c, r) * 2 + 8 * eps + (rest > 0 ? blur / rest : 1);
+                if (ratio[tile] < 0) ratio[tile] = rest / light, widest[tile] = tol;
+                CHECK(fabs(rest / light - ratio[tile]) <= (tol + widest[tile]) * ratio[tile] + (rest > blur ? 0 : blur / light),
+                      "texel (%u, %u): density over light %g, elsewhere in its tile %g", c, r, rest / light, ratio[tile]);
+            }
+        }
+    expected[n] = d->share * (1 - seen);
+    CHECK(fabs(sum + expected[n] - 1) <= 1e-5, "the density integrates to %g, the lobe loses %g", sum, expected[n]);
+    free(row_sum);
+}
+
+static void check_counts(const sampler *d, int count, mcs_pcg32 *rng, double tests) {
+    static float u1[CHUNK], u2[CHUNK], x[CHUNK], y[CHUNK], z[CHUNK], pdf[CHUNK];
+    const uint32_t n = d->m->w * d->m->h;
+    double stat, p, all = 0;
+    int dof, i, k;
+    uint32_t j;
+    for (j = 0; j <= n; j++) observed[j] = 0, all += expected[j];
+    for (i = 0; i < count; i += CHUNK) {
+        fill(rng, CHUNK, u1, u2);
+        if (d->p) mcs_product_sample_n(d->p, CHUNK, u1, u2, x, y, z, pdf);
+        for (k = 0; k < CHUNK; k++) {
+            double col, row;
+            mcs_vec3 w;
+            if (d->p) {
+                w.x = x[k], w.y = y[k], w.z = z[k];
+            } else {
+                const mcs_texel t = draw(d, u1[k], u2[k]);
+                w = t.w, pdf[k] = t.pdf;
+            }
+            if (pdf[k] > 0) {
+                texel_of(d->m->w, d->m->h, w, &col, &row);
+                observed[(uint32_t)(row < d->m->h ? row : d->m->h - 1) * d->m->w + (uint32_t)(col < d->m->w ? col : d->m->w - 1)] +=
+                    1;
+            } else {
+                observed[n] += 1;
+                CHECK(d->share > 0, "u = %a, %a: lost", (double)u1[k], (double)u2[k]);
+            }
+            if (k % 16 == 0 && pdf[k] > 0)
+                CHECK(density(d, w) == (double)pdf[k], "u = %a, %a: pdf %g, returned %g", (double)u1[k], (double)u2[k],
+                      density(d, w), (double)pdf[k]);
+        }
+    }
+    for (j = 0; j <= n; j++) expected[j] *= i / all;
+    p = chi2_test(observed, expected, n + 1, &stat, &dof);
+    /* not a number: everything in one bin, where a miss has been counted as impossible */
+    CHECK(p >= sidak(level, tests) || (isnan(p) && dof == 0), "%s: p = %g, chi-square %g with %d degrees of freedom",
+          d->p ? "prepared" : "one-shot", p, stat, dof);
+}
+
+/* The highest of `sub` + 1 by `sub` + 1 points of a texel over the horizon. */
+static double highest(const scene *m, const double *n, uint32_t c, uint32_t r, int sub) {
+    double top = -1;
+    int i, j;
+    for (i = 0; i <= sub; i++) {
+        const double t = pi * (r + (double)i / sub) / m->h;
+        for (j = 0; j <= sub; j++) {
+            const double p = 2 * pi * (c + (double)j / sub) / m->w,
+                         z = n[0] * sin(t) * cos(p) + n[1] * sin(t) * sin(p) + n[2] * cos(t);
+            if (z > top) top = z;
+        }
+    }
+    return top;
+}
+/* How far light rises over the horizon. */
+static double rises(const scene *m, const surface *s) {
+    double top = -1;
+    uint32_t r, c;
+    for (r = 0; r < m->h; r++)
+        for (c = 0; c < m->w; c++)
+            if (m->light[(size_t)r * m->w + c] > 0) top = fmax(top, highest(m, s->n, c, r, 1));
+    return top;
+}
+
+static void test_chi2(void) {
+    static const struct {
+        const char *name;
+        light_fn value;
+    } maps[] = {{"smooth", v_smooth}, {"sun", v_sun}, {"noise", v_noise}, {"one texel", v_one_texel}, {"half", v_half}};
+    enum { MAPS = (int)(sizeof maps / sizeof *maps) };
+    const int count = (int)(10000 * scale()) + CHUNK;
+    int a, b, l, form, shared = 0;
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 71);
+    mcst_group("product, chi-square");
+    for (a = 0; a < MAPS; a++)
+        for (l = 0; l < LOBES; l++) {
+            const uint32_t rows = (a + l) % 3 ? 16 : 32, odd = (uint32_t)(a + l) % 4 == 3;
+            scene m;
+            if (!mcst_case("%s, %s", maps[a].name, lobes[l].name)) continue;
+            m = scene_make(maps[a].name, odd ? 50 : 64, odd ? 25 : 32, maps[a].value, rows);
+            expected = (double *)memory((m.w * m.h + 1) * sizeof *expected);
+            observed = (double *)memory((m.w * m.h + 1) * sizeof *observed);
+            for (b = 0; b < NORMALS; b++)
+                for (form = 0; form < 2; form++) {
+                    const surface s = surface_make(normals[b], local_wo(0.25 + 0.12 * b, 0.3 * b), lobes[l]);
+                    sampler d = sampler_make(&m, &s, form);
+                    const int lit = rises(&m, &s) > 1e-3;
+                    CHECK(!form || d.status == MCS_OK || (!lit && d.status == MCS_UNIFORM), "status %d", (int)d.status);
+                    {
+                        const double m1 = 1 / (2.0 * rows * rows * s.ax * s.ay * s.wo[2]) - 0.1,
+                                     share = m1 > 0 ? (1 - s.matte) * fmin(m1 / (1 + m1), 0.95) : 0;
+                        CHECK(fabs(d.share - share) <= 1e-5 * share, "share %g, not %g as documented", d.share, share);
+                    }
+                    shared += d.share > 0;
+                    if (d.status == MCS_OK && lit) {
+                        check_density(&d);
+                        check_counts(&d, count, &rng, MAPS * LOBES * NORMALS * 2.0);
+                    }
+                    sampler_free(&d);
+                }
+            free(expected), free(observed);
+            scene_free(&m);
+        }
+    if (mcst_case("a share for the lobe was tested")) CHECK(shared > 10 || mcst.filter, "%d times", shared);
+}
+
+/* ---- means ---- */
+
+typedef struct {
+    double mean, error;
+} estimate;
+
+static estimate estimate_of(const sampler *d, int count, uint64_t stream) {
+    static float u1[CHUNK], u2[CHUNK], x[CHUNK], y[CHUNK], z[CHUNK], pdf[CHUNK];
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, stream);
+    double sum = 0, sum2 = 0, shift = -1;
+    estimate r;
+    int i, k, n = 0;
+    for (i = 0; i < count; i += CHUNK) {
+        fill(&rng, CHUNK, u1, u2);
+        if (d->p) mcs_product_sample_n(d->p, CHUNK, u1, u2, x, y, z, pdf);
+        for (k = 0; k < CHUNK; k++, n++) {
+            double v = 0, visible;
+            mcs_vec3 w;
+            if (d->p) {
+                w.x = x[k], w.y = y[k], w.z = z[k];
+            } else {
+                const mcs_texel t = draw(d, u1[k], u2[k]);
+                w = t.w, pdf[k] = t.pdf;
+            }
+            if (pdf[k] > 0) {
+                double c, row;
+                uint32_t col, at;
+                texel_of(d->m->w, d->m->h, w, &c, &row);
+                col = c < d->m->w ? (uint32_t)c : d->m->w - 1, at = row < d->m->h ? (uint32_t)row : d->m->h - 1;
+                v = d->m->light[(size_t)at * d->m->w + col] * reflect_f(d->s, w, &visible) / (double)pdf[k];
+            }
+            if (shift < 0) shift = v; /* sums about a value of the right size keep their digits */
+            sum += v - shift, sum2 += (v - shift) * (v - shift);
+        }
+    }
+    r.mean = shift + sum / n;
+    r.error = sqrt(fmax(sum2 - sum * sum / n, 0) / ((double)n - 1) / n);
+    return r;
+}
+
+static void test_mean(void) {
+    static const struct {
+        const char *name;
+        light_fn value;
+        uint32_t w, h, rows;
+        int lobe, normal;
+        double cosine;
+    } cases[] = {
+        {"smooth", v_smooth, 64, 32, 16, 0, 4, 0.7}, {"sun", v_sun, 64, 32, 16, 0, 6, 0.7},
+        {"half", v_half, 50, 25, 16, 1, 2, 0.5},     {"noise", v_noise, 64, 32, 32, 2, 5, 0.4},
+        {"sun", v_sun, 100, 47, 16, 3, 0, 0.8},      {"smooth", v_smooth, 64, 32, 32, 4, 1, 0.6},
+        {"sparse", v_sparse, 40, 20, 32, 6, 3, 0.6}, {"room", v_room, 64, 32, 16, 7, 4, 0.9},
+        {"smooth", v_smooth, 64, 32, 16, 8, 4, 0.5}, {"room", v_room, 64, 32, 16, 9, 0, 0.6},
+    };
+    enum { CASES = (int)(sizeof cases / sizeof *cases) };
+    const double f = scale();
+    const int count = (int)(f >= 10 ? 1e7 : f < 1 ? 1e6 * f : 1e6);
+    int i, form;
+    mcst_group("product, means");
+    for (i = 0; i < CASES; i++)
+        for (form = 0; form < 2; form++) {
+            scene m;
+            surface s;
+            sampler d;
+            double truth;
+            estimate e;
+            if (!mcst_case("%s, %s, %s", form ? "prepared" : "one-shot", cases[i].name, lobes[cases[i].lobe].name)) continue;
+            m = scene_make(cases[i].name, cases[i].w, cases[i].h, cases[i].value, cases[i].rows);
+            s = surface_make(normals[cases[i].normal], local_wo(cases[i].cosine, 0.11 * i), lobes[cases[i].lobe]);
+            d = sampler_make(&m, &s, form);
+            truth = true_light(&m, &s);
+            e = estimate_of(&d, count, 80 + (uint64_t)i);
+            /* Four standard errors: 6e-5 for one, 1.2e-3 for all; 1e-6 for the quadrature and the densities as floats. */
+            CHECK(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth, "mean %.7g with error %.2g, not %.7g", e.mean, e.error,
+                  truth);
+            CHECK(lobes[cases[i].lobe].ax >= 0.03f || d.share > 0, "no share for the lobe");
+            if (getenv("MCS_TEST_VERBOSE"))
+                printf("    %-28s mean %.7g, off by %5.2f standard errors of %.1e\n", mcst.name, e.mean, (e.mean - truth) / e.error,
+                       e.error / truth);
+            sampler_free(&d);
+            scene_free(&m);
+        }
+}
+
+/* ---- support ---- */
+
+/* The tile of a texel as the block comment has it: rows x 2 rows of them, column by column. */
+static uint32_t tile_at(const scene *m, uint32_t c, uint32_t r) {
+    return (uint32_t)(((c + 1.0) * 2 * m->rows - 1) / m->w) * m->rows + (uint32_t)(((r + 1.0) * m->rows - 1) / m->h);
+}
+/* Number of texels with light above the horizon that cannot be drawn. A float direction is not told from the horizon within eps. */
+static int unsupported(const sampler *d, int sub, uint32_t *col, uint32_t *row) {
+    const scene *m = d->m;
+    int n = 0;
+    uint32_t r, c;
+    for (r = 0; r < m->h; r++)
+        for (c = 0; c < m->w; c++)
+            if (m->light[(size_t)r * m->w + c] > 0 && highest(m, d->s->n, c, r, sub) > 4 * eps &&
+                !(density(d, point(m->w, m->h, c, r, 0.5, 0.5)) > 0)) {
+                if (!n) *col = c, *row = r;
+                n++;
+            }
+    return n;
+}
+
+static void test_support(void) {
+    static const struct {
+        const char *name;
+        light_fn value;
+        uint32_t w, h;
+        int normals, sub;
+    } maps[] = {
+        {"1 x 1", v_constant, 1, 1, 50, 32},
+        {"7 x 5", v_noise, 7, 5, 50, 16},
+        {"33 x 17", v_noise, 33, 17, 50, 4},
+        {"50 x 25, sparse", v_sparse, 50, 25, 50, 4},
+        {"64 x 32, sun", v_sun, 64, 32, 30, 3},
+        {"64 x 32, poles", v_poles, 64, 32, 50, 3},
+        {"100 x 1000, sparse", v_sparse, 100, 1000, 2, 2},
+        {"2 x 40, poles", v_poles, 2, 40, 50, 8},
+        {"3 x 2", v_noise, 3, 2, 50, 16},
+        {"41 x 21, one texel", v_one_texel, 41, 21, 50, 4},
+    };
+    int a, i, form;
+    uint32_t rows, c = 0, r = 0;
+    mcst_group("product, support");
+    for (a = 0; a < (int)(sizeof maps / sizeof *maps); a++)
+        for (rows = 16; rows <= 64; rows *= 2) {
+            scene m;
+            if (!mcst_case("%s, %u rows of tiles", maps[a].name, rows)) continue;
+            m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, rows);
+            for (i = 0; i < maps[a].normals; i++) {
+                const float u1 = hash01((uint32_t)i, 7), u2 = hash01((uint32_t)i, 8);
+                /* the axes, then random ones; every other one nearly a pole or nearly on the equator */
+                mcs_vec3 n =
+                    i < 6 ? vec(i / 2 == 0 ? 1 - i % 2 * 2 : 0, i / 2 == 1 ? 1 - i % 2 * 2 : 0, i / 2 == 2 ? 1 - i % 2 * 2 : 0)
+                          : mcs_sphere_sample(u1, u2).w;
+                const surface s = surface_make(i % 4 == 3   ? vec(n.x, n.y, n.z * 1e-3)
+                                               : i % 4 == 1 ? vec(n.x * 1e-3, n.y * 1e-3, n.z + 1e-9)
+                                                            : n,
+                                               local_wo(0.05 + 0.019 * i, 0.07 * i), lobes[i % 6]);
+                for (form = 0; form < 2; form++) {
+                    sampler d = sampler_make(&m, &s, form);
+                    const int bad = d.share > 0 ? 0 : unsupported(&d, maps[a].sub, &c, &r);
+                    CHECK(bad == 0, "%s, normal %a %a %a: %d texels cannot be drawn, the first (%u, %u) that rises to %g",
+                          form ? "prepared" : "one-shot", s.n[0], s.n[1], s.n[2], bad, c, r, highest(&m, s.n, c, r, maps[a].sub));
+                    sampler_free(&d);
+                }
+            }
+            scene_free(&m);
+        }
+    /* A texel, alone in its tile, of which just one corner rises over the horizon, and a sun below it. */
+    for (a = 0; a < 3; a++)
+        for (rows = 16; rows <= 64; rows *= 2) {
+            static const char *const beside[] = {"", " beside a sun", " beside a sun, in a row with another"};
+            const uint32_t w = 2 * rows, h = rows, col = rows * 5 / 8, row = rows * 5 / 16;
+            if (!mcst_case("barely visible%s, %u rows of tiles", beside[a], rows)) continue;
+            for (i = 2; i <= 24; i++) {
+                float *light = (float *)memory(w * h * sizeof *light);
+                scene m;
+                surface s;
+                double corner[3], middle[3], n[3], z;
+                int k;
+                /* the normal: at right angles to the corner, away from the middle, then towards the corner by 2^-i */
+                to3(corner, point(w, h, col, row, 0, 1)), to3(middle, point(w, h, col, row, 0.5, 0.5));
+                for (k = 0; k < 3; k++) n[k] = dot3(corner, middle) * corner[k] - middle[k];
+                z = sqrt(dot3(n, n));
+                for (k = 0; k < 3; k++) n[k] = n[k] / z + ldexp(corner[k], -i);
+                s = surface_make(vec(n[0], n[1], n[2]), local_wo(0.5, 0.1), lobes[i % 5]);
+                memset(light, 0, w * h * sizeof *light);
+                light[row * w + col] = 1;
+                if (a) { /* a sun far below; and another light in the row where that lies deepest */
+                    uint32_t deep[2] = {0, 0};
+                    double low[2] = {1, 1};
+                    for (r = 0; r < h; r++)
+                        for (c = 0; c < w; c++) {
+                            double v[3];
+                            to3(v, point(w, h, c, r, 0.5, 0.5));
+                            if (dot3(s.n, v) < low[0] && r != row) low[0] = dot3(s.n, v), deep[0] = r * w + c;
+                            if (dot3(s.n, v) < low[1] && r == row) low[1] = dot3(s.n, v), deep[1] = r * w + c;
+                        }
+                    CHECK(low[0] < -0.8 && low[1] < -0.8, "the other lights at %g, %g", low[0], low[1]);
+                    light[deep[0]] = 1e18f;
+                    if (a == 2) light[deep[1]] = 1e9f;
+                }
+                m = scene_from("texel", w, h, light, rows);
+                z = highest(&m, s.n, col, row, 4);
+                for (k = 0; k < 2; k++) {
+                    sampler d = sampler_make(&m, &s, k);
+                    const int bad = d.share > 0 ? 0 : unsupported(&d, 4, &c, &r);
+                    int j;
+                    CHECK(bad == 0, "%s: %d texels cannot be drawn, the first rises to %g", k ? "prepared" : "one-shot", bad, z);
+                    for (j = 0; j < 64; j++) {
+                        const mcs_texel t = draw(&d, hash01((uint32_t)j, 9), hash01((uint32_t)j, 10));
+                        CHECK(t.pdf >= 0 && t.pdf <= FLT_MAX && density(&d, t.w) == (double)t.pdf,
+                              "2^-%d over the horizon: pdf %g, again %g", i, (double)t.pdf, density(&d, t.w));
+                        if (z > 4 * eps && !(d.share > 0))
+                            CHECK(t.pdf > 0 && t.row == row && t.col == col, "2^-%d over the horizon: texel (%u, %u), pdf %g", i,
+                                  t.col, t.row, (double)t.pdf);
+                    }
+                    sampler_free(&d);
+                }
+                scene_free(&m);
+            }
+        }
+}
+
+/* ---- extremes ---- */
+
+static const float hard_u[] = {0.0f, 1.4e-45f, FLT_MIN, 0x1p-32f, 0x1p-24f, 0.25f, 0.5f, 0x0.fffffep0f, 0x0.ffffffp0f};
+static const float bad_u[] = {-1.0f, -1e-9f, 1.0f, 2.0f, INFINITY, -INFINITY, NAN};
+enum { HARD = (int)(sizeof hard_u / sizeof *hard_u), BAD = (int)(sizeof bad_u / sizeof *bad_u) };
+
+static int sane(const mcs_texel *t, const scene *m) {
+    const double len = sqrt((double)t->w.x * t->w.x + (double)t->w.y * t->w.y + (double)t->w.z * t->w.z);
+    return t->pdf >= 0 && t->pdf <= FLT_MAX && fabs(len - 1) <= 8 * eps && t->col < m->w && t->row < m->h;
+}
+/* Whatever the surface is: finite, not negative, of unit length; sample and density agree; bad u give 0. `frame_ok`: a lobe can be
+ * placed. */
+static void check_sane(const sampler *d, int frame_ok) {
+    int i, j;
+    for (i = 0; i < HARD + 40; i++)
+        for (j = 0; j < (i < HARD ? HARD : 1); j++) {
+            const float u1 = i < HARD ? hard_u[i] : hash01((uint32_t)i, 11), u2 = i < HARD ? hard_u[j] : hash01((uint32_t)i, 12);
+            const mcs_texel t = draw(d, u1, u2);
+            if (frame_ok)
+                CHECK(sane(&t, d->m), "u = %a, %a: (%g, %g, %g), pdf %g", (double)u1, (double)u2, (double)t.w.x, (double)t.w.y,
+                      (double)t.w.z, (double)t.pdf);
+            else
+                CHECK(t.pdf >= 0 && t.pdf <= FLT_MAX && isfinite(t.w.x) && isfinite(t.w.y) && isfinite(t.w.z) && t.col < d->m->w &&
+                          t.row < d->m->h,
+                      "u = %a, %a: (%g, %g, %g), pdf %g", (double)u1, (double)u2, (double)t.w.x, (double)t.w.y, (double)t.w.z,
+                      (double)t.pdf);
+            if (t.pdf > 0)
+                CHECK(density(d, t.w) == (double)t.pdf && d->m->light[(size_t)t.row * d->m->w + t.col] * (1 - d->share) >= 0,
+                      "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2, density(d, t.w), (double)t.pdf);
+        }
+    for (i = 0; i < BAD; i++)
+        for (j = 0; j < 2; j++) {
+            const mcs_texel t = draw(d, j ? 0.5f : bad_u[i], j ? bad_u[i] : 0.5f);
+            CHECK(!(t.pdf > 0) && t.pdf >= 0 && (!frame_ok || sane(&t, d->m)), "u%d = %g: pdf %g, (%g, %g, %g)", j + 1,
+                  (double)bad_u[i], (double)t.pdf, (double)t.w.x, (double)t.w.y, (double)t.w.z);
+        }
+    {
+        static const float bad_w[][3] = {{0, 0, 0},        {NAN, 0, 1},       {0, NAN, 1}, {0, 0, NAN},
+                                         {INFINITY, 0, 0}, {0, 0, -INFINITY}, {3, 0, 0},   {0, 0.4f, 0}};
+        for (i = 0; i < (int)(sizeof bad_w / sizeof *bad_w); i++) {
+            mcs_vec3 w;
+            w.x = bad_w[i][0], w.y = bad_w[i][1], w.z = bad_w[i][2];
+            CHECK(density(d, w) == 0, "density of (%g, %g, %g): %g", (double)w.x, (double)w.y, (double)w.z, density(d, w));
+        }
+    }
+}
+
+static void test_extremes(void) {
+    static const struct {
+        const char *name;
+        light_fn value;
+        uint32_t w, h;
+    } maps[] = {{"sun", v_sun, 64, 32},        {"one texel", v_one_texel, 41, 21}, {"constant", v_constant, 30, 20},
+                {"black", v_black, 30, 20},    {"1 x 1", v_constant, 1, 1},        {"poles", v_poles, 64, 32},
+                {"sparse", v_sparse, 100, 200}};
+    static const float alphas[] = {1e-6f, 1e-4f, 1e-3f, 0.0f, 1e4f, 1e10f, INFINITY, NAN, -1.0f, 0.3f};
+    static const float mattes[] = {0.0f, 1.0f, 0.5f, NAN, -1.0f, 2.0f};
+    int a, i, j, form;
+    mcst_group("product, extremes");
+    for (a = 0; a < (int)(sizeof maps / sizeof *maps); a++) {
+        scene m;
+        if (!mcst_case("%s", maps[a].name)) continue;
+        m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, a % 2 ? 32 : 16);
+        for (form = 0; form < 2; form++)
+            for (i = 0; i < 10 * 6; i++) {
+                surface s = surface_make(normals[i % NORMALS], local_wo(i % 5 ? 0.2 * (i % 5) : 1e-6, 0.1 * i), lobes[0]);
+                sampler d;
+                s.r.alpha_x = alphas[i % 10], s.r.alpha_y = alphas[i % 3 ? i % 10 : 9 - i % 10], s.r.matte = mattes[i / 10];
+                d = sampler_make(&m, &s, form);
+                check_sane(&d, 1);
+                for (j = 0; j < 20 && maps[a].value == v_black && !(d.share > 0); j++)
+                    CHECK(density(&d, mcs_sphere_sample(hash01((uint32_t)j, 13), 0.3f).w) == 0, "a black map has a density");
+                if (maps[a].value == v_black && form) CHECK(d.status == MCS_UNIFORM, "black: build returns %d", (int)d.status);
+                sampler_free(&d);
+            }
+        scene_free(&m);
+    }
+    if (mcst_case("eye below the surface")) {
+        scene m = scene_make("sun", 64, 32, v_sun, 16);
+        static const float bad_wo[][3] = {{0, 0, -1},  {1, 0, 0},        {0.6f, 0, -0.8f}, {0, 0, 0},
+                                          {NAN, 0, 1}, {0, 0, INFINITY}, {0, 0, 5}};
+        for (form = 0; form < 2; form++)
+            for (i = 0; i < (int)(sizeof bad_wo / sizeof *bad_wo); i++) {
+                surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[2]);
+                sampler d;
+                s.r.wo.x = bad_wo[i][0], s.r.wo.y = bad_wo[i][1], s.r.wo.z = bad_wo[i][2];
+                d = sampler_make(&m, &s, form);
+                CHECK(!form || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
+                check_sane(&d, 1);
+                for (j = 0; j < HARD; j++)
+                    CHECK(!(draw(&d, hard_u[j], 0.3f).pdf > 0) && density(&d, normals[4]) == 0, "eye (%g, %g, %g): density",
+                          (double)s.r.wo.x, (double)s.r.wo.y, (double)s.r.wo.z);
+                sampler_free(&d);
+            }
+        scene_free(&m);
+    }
+    if (mcst_case("light below the surface")) {
+        scene m = scene_make("one texel", 64, 32, v_one_texel, 16);
+        for (form = 0; form < 2; form++)
+            for (i = 0; i < 4; i++) {
+                const mcs_vec3 to = point(64, 32, 21, 10, 0.5, 0.5);
+                const surface s = surface_make(vec(-(double)to.x, -(double)to.y, -(double)to.z), local_wo(0.5, 0), lobes[i]);
+                sampler d = sampler_make(&m, &s, form);
+                CHECK(!form || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
+                CHECK(!(draw(&d, 0.3f, 0.6f).pdf > 0) && density(&d, to) == 0, "%s: the light behind has density %g",
+                      form ? "prepared" : "one-shot", density(&d, to));
+                check_sane(&d, 1);
+                sampler_free(&d);
+            }
+        scene_free(&m);
+    }
+    if (mcst_case("bad frames")) {
+        scene m = scene_make("sun", 64, 32, v_sun, 16);
+        for (form = 0; form < 2; form++)
+            for (i = 0; i < 60; i++) {
+                static const float wrong[] = {NAN, INFINITY, 0.0f, 1e30f, -INFINITY};
+                surface s = surface_make(normals[i % NORMALS], local_wo(0.6, 0.2), lobes[i % 2 ? 3 : i % 4 ? 0 : 8]);
+                sampler d;
+                mcs_vec3 *at = i % 3 == 0 ? &s.r.frame.s : i % 3 == 1 ? &s.r.frame.t : &s.r.frame.n;
+                if (i % 4 < 2) at->x = wrong[i % 5];
+                if (i % 4 != 1) at->y = wrong[i % 5];
+                if (i % 4 > 1) at->z = wrong[i % 5];
+                d = sampler_make(&m, &s, form);
+                check_sane(&d, 0);
+                sampler_free(&d);
+            }
+        scene_free(&m);
+    }
+}
+
+/* ---- memory ---- */
+
+static void test_memory(void) {
+    uint32_t rows;
+    mcst_group("product, memory");
+    for (rows = 16; rows <= 64; rows *= 2) {
+        const surface s = surface_make(normals[4], local_wo(0.7, 0.2), lobes[2]);
+        scene m;
+        arena moved;
+        sampler d;
+        size_t bytes;
+        uint32_t i;
+        if (!mcst_case("%u rows of tiles", rows)) continue;
+        m = scene_make("sun", 100, 47, v_sun, rows), d = sampler_make(&m, &s, 1), bytes = mcs_product_bytes(rows);
+        CHECK(m.tiles.bytes % 4 == 0 && d.mem.bytes % 4 == 0, "%zu and %zu bytes", m.tiles.bytes, d.mem.bytes);
+        CHECK(mcs_product_build(d.p, bytes - 1, tiles_of(&m), env_of(&m), &s.r) == MCS_ERR_MEMORY, "one byte too few");
+        CHECK(mcs_product_build(NULL, bytes, tiles_of(&m), env_of(&m), &s.r) == MCS_ERR_ARG, "no memory");
+        CHECK(mcs_product_build(d.p, bytes, NULL, env_of(&m), &s.r) == MCS_ERR_ARG, "no tiles");
+        CHECK(mcs_product_build(d.p, bytes, tiles_of(&m), NULL, &s.r) == MCS_ERR_ARG, "no map");
+        CHECK(mcs_product_build(d.p, bytes, tiles_of(&m), env_of(&m), NULL) == MCS_ERR_ARG, "no reflection");
+        CHECK(mcs_product_build((mcs_product *)(void *)(d.mem.at + 4), bytes, tiles_of(&m), env_of(&m), &s.r) == MCS_ERR_ARG,
+              "misaligned");
+        CHECK(mcs_product_build_weights(d.p, bytes, tiles_of(&m), env_of(&m), NULL) == MCS_ERR_ARG, "no weights");
+        CHECK(arena_intact(&d.mem), "refused arguments, yet wrote outside");
+        CHECK(mcs_product_build(d.p, bytes, tiles_of(&m), env_of(&m), &s.r) == MCS_OK, "the same again");
+        moved = arena_make(m.tiles.bytes);
+        CHECK(mcs_tiles_build(NULL, moved.bytes, env_of(&m), rows) == MCS_ERR_ARG, "no memory");
+        CHECK(mcs_tiles_build((mcs_tiles *)(void *)moved.at, moved.bytes, NULL, rows) == MCS_ERR_ARG, "no map");
+        CHECK(mcs_tiles_build((mcs_tiles *)(void *)(moved.at + 4), moved.bytes, env_of(&m), rows) == MCS_ERR_ARG, "misaligned");
+        CHECK(mcs_tiles_build((mcs_tiles *)(void *)moved.at, moved.bytes - 1, env_of(&m), rows) == MCS_ERR_MEMORY,
+              "one byte too few");
+        CHECK(untouched(moved.at, moved.bytes), "refused arguments, yet wrote");
+        memcpy(moved.at, m.tiles.at, moved.bytes);
+        for (i = 0; i < 200; i++) {
+            const float u1 = hash01(i, 14), u2 = hash01(i, 15);
+            const mcs_texel a = mcs_oneshot_sample(tiles_of(&m), env_of(&m), &s.r, u1, u2),
+                            b = mcs_oneshot_sample((const mcs_tiles *)(const void *)moved.at, env_of(&m), &s.r, u1, u2);
+            CHECK(!memcmp(&a, &b, sizeof a), "u = %a, %a: moved tiles draw another", (double)u1, (double)u2);
+        }
+        {
+            scene other = m;
+            sampler e;
+            other.tiles = moved, e = sampler_make(&other, &s, 1);
+            CHECK(!memcmp(e.mem.at + sizeof(mcs_product), d.mem.at + sizeof(mcs_product), bytes - sizeof(mcs_product)),
+                  "moved tiles give another table");
+            sampler_free(&e);
+        }
+        arena_free(&moved);
+        sampler_free(&d);
+        scene_free(&m);
+    }
+    if (mcst_case("refused sizes")) {
+        static const uint32_t wrong[] = {0, 1, 8, 15, 17, 24, 48, 65, 128, 0x80000000u, 0xffffffffu};
+        scene m = scene_make("sun", 64, 32, v_sun, 16);
+        int i;
+        for (i = 0; i < (int)(sizeof wrong / sizeof *wrong); i++) {
+            CHECK(mcs_tiles_bytes(env_of(&m), wrong[i]) == 0, "%u rows: %zu bytes", wrong[i],
+                  mcs_tiles_bytes(env_of(&m), wrong[i]));
+            CHECK(mcs_product_bytes(wrong[i]) == 0, "%u rows: %zu bytes", wrong[i], mcs_product_bytes(wrong[i]));
+            CHECK(mcs_tiles_build((mcs_tiles *)(void *)m.tiles.at, m.tiles.bytes, env_of(&m), wrong[i]) == MCS_ERR_SIZE, "%u rows",
+                  wrong[i]);
+        }
+        CHECK(mcs_tiles_bytes(NULL, 16) == 0, "no map");
+        scene_free(&m);
+    }
+}
+
+/* ---- arrays ---- */
+
+static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
+    enum { MOST = 150 };
+    float u1[MOST + 1], u2[MOST + 1], out[4][MOST + 1], *x, *y, *z, *pdf;
+    int n, k, i, off;
+    for (n = 0; n <= 72; n++) {
+        const int count = n <= 70 ? n : n == 71 ? 129 : MOST;
+        for (k = 0; k < 18; k++) { /* bit 0 to 3: outputs that are wanted; 16, 17: over the inputs */
+            const int wanted = k < 16 ? k : 15;
+            if (n % 7 && k < 15 && k) continue;
+            off = n & 1;
+            fill(rng, (size_t)count + 1, u1, u2);
+            if (count > 3) u1[off + 2] = NAN, u2[off + 3] = 1.0f;
+            if (count > 4) u1[off + 4] = 0.0f;
+            {
+                float v1[MOST + 1], v2[MOST + 1];
+                memcpy(v1, u1, sizeof v1), memcpy(v2, u2, sizeof v2);
+                x = k == 16 ? u1 : k == 17 ? u2 : out[0], y = k == 16 ? u2 : k == 17 ? u1 : out[1], z = out[2], pdf = out[3];
+                mcs_product_sample_n(d->p, (size_t)count, u1 + off, u2 + off, wanted & 1 ? x + off : NULL,
+                                     wanted & 2 ? y + off : NULL, wanted & 4 ? z + off : NULL, wanted & 8 ? pdf + off : NULL);
+                for (i = off; i < count + off; i++) {
+                    const mcs_texel t = mcs_product_sample(d->p, v1[i], v2[i]);
+                    CHECK((!(wanted & 1) || !memcmp(&t.w.x, x + i, 4)) && (!(wanted & 2) || !memcmp(&t.w.y, y + i, 4)) &&
+                              (!(wanted & 4) || !memcmp(&t.w.z, z + i, 4)) && (!(wanted & 8) || !memcmp(&t.pdf, pdf + i, 4)),
+                          "n = %d, entry %d, outputs %d: not those of sample(%a, %a)", count, i, k, (double)v1[i], (double)v2[i]);
+                }
+            }
+        }
+    }
+}
+
+static void test_arrays(void) {
+    int i;
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 72);
+    mcst_group("product, arrays");
+    for (i = 0; i < 5; i++) {
+        scene m;
+        surface s;
+        sampler d;
+        static const int of[] = {0, 2, 8, 1, 2};
+        if (!mcst_case("%s%s", lobes[of[i]].name, i == 3 ? ", black" : i == 4 ? ", constant" : "")) continue;
+        m = scene_make("sun", 64, 32, i == 3 ? v_black : i == 4 ? v_constant : v_sun, 16);
+        s = surface_make(normals[i], local_wo(0.5, 0.1), lobes[of[i]]);
+        d = sampler_make(&m, &s, 1);
+        CHECK((i == 2) == (d.share > 0), "share %g", d.share);
+        check_arrays(&d, &rng);
+        sampler_free(&d);
+        scene_free(&m);
+    }
+}
+
+/* ---- a turned map ---- */
+
+static void test_turned(void) {
+    int form, i;
+    uint32_t r, c;
+    mcst_group("product, turned map");
+    for (form = 0; form < 2; form++) {
+        scene m;
+        surface s, turned;
+        sampler d, e;
+        const mcs_frame f = mcs_frame_make(vec(0.48, -0.6, 0.64));
+        mcs_env *env;
+        if (!mcst_case("%s", form ? "prepared" : "one-shot")) continue;
+        m = scene_make("sun", 64, 32, v_sun, 16), s = surface_make(normals[4], local_wo(0.7, 0.2), lobes[2]), turned = s;
+        env = (mcs_env *)(void *)m.env.at;
+        turned.r.frame.s = mcs_to_world(&f, s.r.frame.s), turned.r.frame.t = mcs_to_world(&f, s.r.frame.t);
+        turned.r.frame.n = mcs_to_world(&f, s.r.frame.n);
+        expected = (double *)memory(64 * 32 * sizeof *expected);
+        d = sampler_make(&m, &s, form);
+        for (r = 0; r < 32; r++)
+            for (c = 0; c < 64; c++) expected[r * 64 + c] = density(&d, point(64, 32, c, r, 0.5, 0.5));
+        env->frame = f;
+        e = sampler_make(&m, &turned, form);
+        for (r = 0; r < 32; r++)
+            for (c = 0; c < 64; c++) {
+                const double p = density(&e, mcs_to_world(&f, point(64, 32, c, r, 0.5, 0.5))), want = expected[r * 64 + c];
+                /* Cosines move by some 4 eps, weights by that over a cosine; tiles on the horizon have one of a hundredth at least
+                 * where they are not at the floor; shares are integers over 2^24 */
+                CHECK(fabs(p - want) <= 1e-4 * want + 1e-6, "texel (%u, %u): density %g, not %g", c, r, p, want);
+            }
+        for (i = 0; i < 500; i++) {
+            const mcs_texel t = draw(&e, hash01((uint32_t)i, 16), hash01((uint32_t)i, 17));
+            mcs_vec3 local = mcs_to_local(&f, t.w);
+            double col, row;
+            texel_of(64, 32, local, &col, &row);
+            /* a place within rounding of a border of its texel: 4 eps of a turn */
+            CHECK(fabs(col - t.col - 0.5) <= 0.5 + 64 * 8 * eps / sin(pi * (row + 1e-3) / 32) &&
+                      fabs(row - t.row - 0.5) <= 0.5 + 32 * 8 * eps,
+                  "texel (%u, %u), direction at (%g, %g)", t.col, t.row, col, row);
+        }
+        sampler_free(&d), sampler_free(&e);
+        free(expected);
+        scene_free(&m);
+    }
+}
+
+/* ---- weights of the caller; mutants ---- */
+
+enum { PHONG, WARD, BECKMANN, ASHIKHMIN, MODELS };
+/* Reflection times cosine of a lobe of the header. */
+static double model(int k, mcs_vec3 wo, mcs_vec3 wi) {
+    double f = 0;
+    if (k == PHONG) {
+        const mcs_phong m = mcs_phong_make(20);
+        f = (double)mcs_phong_eval(&m, wo, wi);
+    } else if (k == WARD) {
+        const mcs_ward m = mcs_ward_make(0.3f, 0.2f, MCS_WARD_GMD);
+        f = (double)mcs_ward_eval(&m, wo, wi);
+    } else if (k == BECKMANN) {
+        const mcs_beckmann m = mcs_beckmann_make(0.4f, 0.4f);
+        f = (double)mcs_beckmann_eval(&m, wo, wi);
+    } else {
+        const mcs_ashikhmin m = mcs_ashikhmin_make(30, 10);
+        f = (double)mcs_ashikhmin_eval(&m, wo, wi);
+    }
+    return wi.z > 0 ? f * (double)wi.z : 0;
+}
+
+/* A product from weights; sampler's surface places it. */
+static sampler sampler_weights(const scene *m, const surface *s, const float *weight) {
+    sampler d;
+    memset(&d, 0, sizeof d);
+    d.m = m, d.s = s;
+    d.mem = arena_make(mcs_product_bytes(m->rows)), d.p = (mcs_product *)(void *)d.mem.at;
+    d.status = mcs_product_build_weights(d.p, d.mem.bytes, tiles_of(m), env_of(m), weight);
+    CHECK(arena_intact(&d.mem), "wrote outside its %zu bytes", d.mem.bytes);
+    CHECK(!(d.p->brdf_share > 0), "share %g", (double)d.p->brdf_share);
+    return d;
+}
+
+static void test_weights(void) {
+    static const char *const names[] = {"Phong 20", "Ward 0.3 x 0.2", "Beckmann 0.4", "Ashikhmin-Shirley 30, 10"};
+    enum { SUB = 16 };
+    const double f = scale();
+    const int count = (int)(f >= 10 ? 1e7 : f < 1 ? 3e5 * f : 3e5);
+    int k, i, j;
+    uint32_t r, c, q;
+    mcst_group("product, weights");
+    for (k = 0; k < MODELS; k++) {
+        scene m;
+        surface s;
+        sampler d;
+        float *weight;
+        double truth = 0, sum = 0, sum2 = 0, density_sum = 0, error;
+        mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 73);
+        if (!mcst_case("%s", names[k])) continue;
+        m = scene_make("sun", 64, 32, k % 2 ? v_sun : v_room, k < 2 ? 16 : 32);
+        s = surface_make(normals[3 + k], local_wo(0.5 + 0.1 * k, 0.2 * k), lobes[0]);
+        weight = (float *)memory(2 * m.rows * m.rows * sizeof *weight);
+        for (q = 0; q < 2 * m.rows * m.rows; q++) {
+            mcs_vec3 w = mcs_to_local(&s.r.frame, mcs_tiles_direction(tiles_of(&m), env_of(&m), q));
+            /* a tile may reach above the horizon when its mean direction does not */
+            w = w.z < 0.1f ? vec(w.x, w.y, 0.1) : w;
+            weight[q] = (float)model(k, s.r.wo, w) + 1e-3f;
+        }
+        d = sampler_weights(&m, &s, weight);
+        CHECK(d.status == MCS_OK, "build returns %d", (int)d.status);
+        for (r = 0; r < m.h; r++)
+            for (c = 0; c < m.w; c++) {
+                const double light = m.light[r * m.w + c], omega = (double)solid_angle(r, m.w, m.h);
+                const double p = density(&d, point(m.w, m.h, c, r, 0.5, 0.5));
+                CHECK((p > 0) == (light > 0), "texel (%u, %u): density %g of light %g", c, r, p, light);
+                density_sum += p * omega;
+                for (i = 0; i < SUB; i++)
+                    for (j = 0; j < SUB; j++)
+                        truth +=
+                            light * omega / (SUB * SUB) *
+                            model(k, s.r.wo, mcs_to_local(&s.r.frame, point(m.w, m.h, c, r, (i + 0.5) / SUB, (j + 0.5) / SUB)));
+            }
+        CHECK(fabs(density_sum - 1) <= 1e-5, "the density integrates to %g", density_sum);
+        for (i = 0; i < count; i++) {
+            const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+            const mcs_texel t = mcs_product_sample(d.p, u1, u2);
+            const double v =
+                t.pdf > 0 ? m.light[t.row * m.w + t.col] * model(k, s.r.wo, mcs_to_local(&s.r.frame, t.w)) / (double)t.pdf : 0;
+            sum += v, sum2 += v * v;
+            if (i % 64 == 0)
+                CHECK(t.pdf > 0 && density(&d, t.w) == (double)t.pdf, "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2,
+                      density(&d, t.w), (double)t.pdf);
+        }
+        error = sqrt(fmax(sum2 - sum * sum / count, 0) / count / (count - 1.0));
+        /* midpoints 1/16 of a texel apart, 0.006, in lobes wider than 0.1: (0.006/0.1)^2 / 24 */
+        CHECK(fabs(sum / count - truth) <= 4 * error + 1.5e-4 * truth, "mean %g with error %g, not %g", sum / count, error, truth);
+        free(weight);
+        sampler_free(&d);
+        scene_free(&m);
+    }
+    if (mcst_case("weights far from 1")) {
+        static const float sizes[] = {1e-44f, 1e-38f, 1e-35f, 1e-30f, 1e-10f, 1, 1e10f, 1e30f, 3e38f};
+        scene m = scene_make("sun", 64, 32, v_sun, 16);
+        const surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[0]);
+        float weight[512];
+        for (i = 0; i < (int)(sizeof sizes / sizeof *sizes); i++)
+            for (k = 0; k < 2; k++) { /* 1: one tile alone has weight */
+                sampler d;
+                uint32_t bad = 0;
+                double sum = 0;
+                for (q = 0; q < 512; q++) weight[q] = k && q != 100 ? 0 : sizes[i];
+                d = sampler_weights(&m, &s, weight);
+                CHECK(d.status == MCS_OK, "%g: build returns %d", (double)sizes[i], (int)d.status);
+                for (r = 0; r < 32; r++)
+                    for (c = 0; c < 64; c++) {
+                        const double p = density(&d, point(64, 32, c, r, 0.5, 0.5));
+                        bad += !(p >= 0) || (p > 0) != (weight[tile_at(&m, c, r)] > 0), sum += p * (double)solid_angle(r, 64, 32);
+                    }
+                CHECK(bad == 0, "weights of %g: %u texels that can be drawn and should not, or the other way", (double)sizes[i],
+                      bad);
+                CHECK(fabs(sum - 1) <= 1e-5, "weights of %g: the density integrates to %g", (double)sizes[i], sum);
+                check_sane(&d, 1);
+                sampler_free(&d);
+            }
+        scene_free(&m);
+    }
+    if (mcst_case("bad weights")) {
+        static const float wrong[] = {NAN, INFINITY, -1, -0.0f, -INFINITY};
+        scene m = scene_make("sun", 64, 32, v_sun, 16);
+        const surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[0]);
+        float weight[512];
+        sampler d;
+        for (k = 0; k < 2; k++) { /* 1: none is good */
+            for (q = 0; q < 512; q++) weight[q] = k || q % 3 ? wrong[q % 5] : 1;
+            d = sampler_weights(&m, &s, weight);
+            CHECK(d.status == (k ? MCS_UNIFORM : MCS_OK), "build returns %d", (int)d.status);
+            check_sane(&d, 1);
+            for (r = 0; r < 32; r++)
+                for (c = 0; c < 64; c++) {
+                    const double p = density(&d, point(64, 32, c, r, 0.5, 0.5)), want = weight[tile_at(&m, c, r)];
+                    CHECK(p >= 0 && p <= FLT_MAX && (p > 0) == (want > 0 && want < INFINITY),
+                          "texel (%u, %u): density %g of weight %g", c, r, p, want);
+                }
+            sampler_free(&d);
+        }
+        scene_free(&m);
+    }
+}
+
+/* What drops a part of the support must be seen: by the support test, and as bias. */
+static void test_mutants(void) {
+    static const char *const names[] = {"tile weight by the mean direction alone", "a low tile dropped", "a bright tile dropped"};
+    const double f = scale();
+    const int count = (int)(f >= 10 ? 1e7 : f < 1 ? 2e6 * f : 2e6);
+    int k;
+    mcst_group("product, mutants");
+    for (k = 0; k < 3; k++) {
+        scene m;
+        surface s;
+        sampler d;
+        float weight[512];
+        uint32_t q, c = 0, r = 0, drop = 512;
+        double truth, best = 2;
+        estimate e;
+        int bad;
+        if (!mcst_case("%s", names[k])) continue;
+        m = scene_make("", 64, 32, k ? v_noise : v_rim, 16), s = surface_make(normals[4], local_wo(0.7, 0.1), lobes[0]);
+        for (q = 0; q < 512; q++) {
+            const mcs_vec3 w = mcs_tiles_direction(tiles_of(&m), env_of(&m), q);
+            const double z = s.n[0] * w.x + s.n[1] * w.y + s.n[2] * w.z;
+            weight[q] = z > 0 ? (float)z : 0;
+            if (k) weight[q] = (float)fmax(z, 0.02);
+            if (fabs(z - (k == 1 ? 0.3 : 0.9)) < best) best = fabs(z - (k == 1 ? 0.3 : 0.9)), drop = q;
+        }
+        d = sampler_weights(&m, &s, weight);
+        truth = true_light(&m, &s);
+        if (k) {
+            CHECK(unsupported(&d, 4, &c, &r) == 0, "the whole one fails");
+            e = estimate_of(&d, count, 90);
+            CHECK(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth, "the whole one: mean %g with error %g, not %g", e.mean,
+                  e.error, truth);
+            sampler_free(&d);
+            weight[drop] = 0, d = sampler_weights(&m, &s, weight);
+        }
+        bad = unsupported(&d, 4, &c, &r);
+        CHECK(bad > 0, "not seen by the support");
+        e = estimate_of(&d, count, 91);
+        /* At least 0.2 % of the integral is missed and more of the rim; the error is about a third of the mean over sqrt(n),
+         * 0.023 % here: 8 of it. The fewer samples of a small MCS_TEST_SCALE cannot tell. */
+        if (count >= 2000000)
+            CHECK(!(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth), "mean %g with error %g, truth %g", e.mean, e.error, truth);
+        if (getenv("MCS_TEST_VERBOSE"))
+            printf("    %-48s %4d texels, mean off by %.1f standard errors\n", names[k], bad, (e.mean - truth) / e.error);
+        sampler_free(&d);
+        scene_free(&m);
+    }
+}
+
+/* ---- directions of tiles ---- */
+
+static void test_directions(void) {
+    static const struct {
+        const char *name;
+        light_fn value;
+        uint32_t w, h, rows;
+    } maps[] = {{"sun", v_sun, 64, 32, 16},           {"sparse", v_sparse, 50, 25, 16}, {"room", v_room, 200, 100, 64},
+                {"constant", v_constant, 64, 32, 32}, {"half", v_half, 7, 5, 16},       {"1 x 1", v_constant, 1, 1, 16},
+                {"black", v_black, 64, 32, 16}};
+    int a;
+    mcst_group("product, directions");
+    for (a = 0; a < (int)(sizeof maps / sizeof *maps); a++) {
+        scene m;
+        uint32_t i, j;
+        if (!mcst_case("%s", maps[a].name)) continue;
+        m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, maps[a].rows);
+        for (j = 0; j < 2 * m.rows; j++)
+            for (i = 0; i < m.rows; i++) {
+                const mcs_vec3 w = mcs_tiles_direction(tiles_of(&m), env_of(&m), j * m.rows + i);
+                const double len = sqrt((double)w.x * w.x + (double)w.y * w.y + (double)w.z * w.z);
+                const uint32_t c0 = j * m.w / (2 * m.rows), c1 = (j + 1) * m.w / (2 * m.rows), r0 = i * m.h / m.rows,
+                               r1 = (i + 1) * m.h / m.rows;
+                double col, row, bulge, t0 = pi * r0 / m.h, t1 = pi * r1 / m.h;
+                CHECK(fabs(len - 1) <= 8 * eps, "tile %u: length 1 + %g", j * m.rows + i, len - 1);
+                texel_of(m.w, m.h, w, &col, &row);
+                /* The mean of directions at one height lies nearer to the pole: tan(theta) of it is at least their tan times the
+                 * cosine of half their azimuths' range. */
+                bulge = c1 > c0 && c1 - c0 < m.w / 2 + 1 ? cos(pi * (c1 - c0) / m.w) : 0;
+                if (t1 <= pi / 2) t0 = atan(tan(t0) * bulge);
+                if (t0 >= pi / 2) t1 = pi - atan(tan(pi - t1) * bulge);
+                CHECK(row * pi / m.h >= t0 - 1e-6 && row * pi / m.h <= t1 + 1e-6, "tile (%u, %u): row %g, not in %u to %u", i, j,
+                      row, r0, r1);
+                if (fabs((double)w.x) + fabs((double)w.y) > 1e-4)
+                    CHECK((col >= c0 - 1e-2 && col <= c1 + 1e-2) || col >= m.w + c0 - 1e-2,
+                          "tile (%u, %u): column %g, not in %u to %u", i, j, col, c0, c1);
+            }
+        scene_free(&m);
+    }
+}
+
+/* ---- well-spread points ---- */
+
+static void test_spread(void) {
+    enum { SEEDS = 64, MOST = 4096, STEPS = 7 };
+    const int seeds = scale() < 1 ? 32 : SEEDS;
+    int k, form;
+    mcst_group("product, spread points");
+    for (k = 0; k < 4; k++)
+        for (form = 0; form < 2; form++) {
+            scene m;
+            surface s;
+            sampler d;
+            double truth, square[STEPS] = {0}, sx = 0, sy = 0, sxx = 0, sxy = 0, slope;
+            int seed, step;
+            uint32_t i;
+            lobe l = lobes[0];
+            if (k % 2) l.matte = 0, l.ax = l.ay = 0.3f, l.name = "alpha 0.3";
+            if (!mcst_case("%s, %s, %s", form ? "prepared" : "one-shot", k < 2 ? "smooth" : "room", l.name)) continue;
+            m = scene_make("", 256, 128, k < 2 ? v_smooth : v_room, 16);
+            s = surface_make(normals[4], local_wo(0.7, 0.3), l), d = sampler_make(&m, &s, form), truth = true_light(&m, &s);
+            CHECK(!(d.share > 0), "share %g", d.share);
+            for (seed = 0; seed < seeds; seed++) {
+                double sum = 0;
+                for (i = 0, step = 0; i < MOST; i++) {
+                    const uint32_t key = (uint32_t)(mcst.seed + 7919u * (uint32_t)seed);
+                    const mcs_texel t = draw(&d, mcs_sobol(i, 0, key), mcs_sobol(i, 1, key));
+                    double visible;
+                    if (t.pdf > 0) sum += m.light[t.row * m.w + t.col] * reflect_f(&s, t.w, &visible) / (double)t.pdf;
+                    if (i + 1 == 64u << step) square[step] += pow(sum / (i + 1) / truth - 1, 2), step++;
+                }
+            }
+            for (step = 0; step < STEPS; step++) {
+                const double x = log(64u << step), y = 0.5 * log(square[step] / seeds);
+                sx += x, sy += y, sxx += x * x, sxy += x * y;
+            }
+            slope = (STEPS * sxy - sx * sy) / (STEPS * sxx - sx * sx);
+            if (getenv("MCS_TEST_VERBOSE"))
+                printf("    %-32s error %.2e at 64, %.2e at 4096: N^%.3f\n", mcst.name, sqrt(square[0] / seeds),
+                       sqrt(square[STEPS - 1] / seeds), slope);
+            CHECK(slope < -0.9, "the error falls as N^%.3f only", slope);
+            sampler_free(&d);
+            scene_free(&m);
+        }
+}
+
+/* ---- variances ---- */
+
+typedef struct {
+    double env, brdf, mis, product, oneshot; /* per sample, over the square of the mean */
+} variances;
+
+/* Density over light of every tile, without the lobe's share: from the texel of the tile where light over lobe is most. */
+static void tile_ratios(const sampler *d, double *ratio) {
+    const scene *m = d->m;
+    double best[64 * 128];
+    uint32_t k, r, c;
+    for (k = 0; k < 2 * m->rows * m->rows; k++) best[k] = 0, ratio[k] = 0;
+    for (r = 0; r < m->h; r++)
+        for (c = 0; c < m->w; c++) {
+            const double light = m->light[(size_t)r * m->w + c];
+            const uint32_t tile = tile_at(m, c, r);
+            double visible = 0, pick;
+            mcs_vec3 w;
+            if (!(light > 0)) continue;
+            if (d->share > 0) w = point(m->w, m->h, c, r, 0.5, 0.5), reflect_f(d->s, w, &visible);
+            pick = light / (d->share * visible + 1e-9);
+            if (!(pick > best[tile])) continue;
+            best[tile] = pick, w = point(m->w, m->h, c, r, 0.5, 0.5);
+            ratio[tile] = fmax(density(d, w) - d->share * visible, 0) / light;
+        }
+}
+static variances variance_of(const scene *m, const surface *s, double total) {
+    static double ratio[64 * 128], one_ratio[64 * 128];
+    sampler d = sampler_make(m, s, 1), o = sampler_make(m, s, 0);
+    double I = 0, env = 0, brdf = 0, product = 0, oneshot = 0, a_env = 0, a_brdf = 0, m_env = 0;
+    variances v;
+    uint32_t r, c;
+    tile_ratios(&d, ratio), tile_ratios(&o, one_ratio);
+    for (r = 0; r < m->h; r++) {
+        const double omega = (double)solid_angle(r, m->w, m->h), t = pi * (r + 0.5) / m->h, size = pi / m->h, st = sin(t),
+                     ct = cos(t);
+        for (c = 0; c < m->w; c++) {
+            const double light = m->light[(size_t)r * m->w + c], q = ratio[tile_at(m, c, r)] * light,
+                         q1 = one_ratio[tile_at(m, c, r)] * light, p = 2 * pi * (c + 0.5) / m->w, pe = light / total;
+            double w[3], away = 0, visible;
+            int sub, i, j, k;
+            if (!(light > 0)) continue;
+            w[0] = st * cos(p), w[1] = st * sin(p), w[2] = ct;
+            if (dot3(s->n, w) < -size) continue;
+            for (k = 0; k < 3; k++) away += (w[k] - s->mirror[k]) * (w[k] - s->mirror[k]);
+            sub = s->matte >= 1 ? 1 : (int)ceil(size / (0.35 * sqrt(s->width * s->width + away / 4)));
+            sub = sub < 16 ? sub : 16;
+            for (i = 0; i < sub; i++)
+                for (j = 0; j < sub; j++) {
+                    double F, pb, pp, a = omega / (sub * sub);
+                    if (sub > 1) {
+                        const double th = pi * (r + (i + 0.5) / sub) / m->h, ph = 2 * pi * (c + (j + 0.5) / sub) / m->w;
+                        w[0] = sin(th) * cos(ph), w[1] = sin(th) * sin(ph), w[2] = cos(th);
+                    }
+                    F = light * reflect(s, w, &visible);
+                    if (!(F > 0)) continue;
+                    pb = s->matte >= 1 ? F / light : visible, pp = q + d.share * visible;
+                    I += a * F, env += a * F * F / pe, brdf += a * F * F / pb;
+                    product += a * F * F / pp, oneshot += a * F * F / (q1 + o.share * visible);
+                    a_env += a * F * F * pe / ((pe + pb) * (pe + pb)), a_brdf += a * F * F * pb / ((pe + pb) * (pe + pb));
+                    m_env += a * F * pe / (pe + pb);
+                }
+        }
+    }
+    v.env = env / I / I - 1, v.brdf = brdf / I / I - 1, v.product = product / I / I - 1, v.oneshot = oneshot / I / I - 1;
+    /* two samples, one of each: times two for the same number of samples */
+    v.mis = 2 * (a_env - m_env * m_env + a_brdf - (I - m_env) * (I - m_env)) / I / I;
+    sampler_free(&d), sampler_free(&o);
+    return v;
+}
+
+typedef struct {
+    double env, brdf, mis, env_one, mis_one, worst, worst_one;
+} ratios;
+
+enum { VARIED = 7, TWELVE = 12 };
+static const float varied[VARIED] = {0, 0.8f, 0.5f, 0.3f, 0.2f, 0.1f, 0.05f};
+static const float sharpest = 0.02f;
+
+static void add_map(const scene *m, ratios *sum, int *n) {
+    double total = 0;
+    uint32_t r, c;
+    int k, i;
+    for (r = 0; r < m->h; r++)
+        for (c = 0; c < m->w; c++) total += m->light[(size_t)r * m->w + c] * (double)solid_angle(r, m->w, m->h);
+    for (k = 0; k <= VARIED; k++)
+        for (i = 0; i < TWELVE; i++) {
+            /* normals spread over the sphere by the golden angle, the eye at cosines of 0.35 to 0.95 */
+            const double z = 1 - (2 * i + 1.0) / TWELVE, turn = 0.381966 * i, golden = fmod(0.618034 * i, 1);
+            const float alpha = k < VARIED ? varied[k] : sharpest;
+            lobe l = lobes[0];
+            surface s;
+            variances v;
+            if (k) l.ax = l.ay = alpha, l.matte = 0;
+            s = surface_make(vec(sqrt(1 - z * z) * cos(2 * pi * turn), sqrt(1 - z * z) * sin(2 * pi * turn), z),
+                             local_wo(0.35 + 0.6 * golden, 2.4 * i), l);
+            v = variance_of(m, &s, total);
+            CHECK(v.product > -1e-6 && v.oneshot > -1e-6 && v.env > 0 && v.mis > 0,
+                  "%s, alpha %g, normal %d: variances %g, %g, %g, %g", m->name, (double)alpha, i, v.product, v.oneshot, v.env,
+                  v.mis);
+            sum[k].env += log(v.env / v.product), sum[k].brdf += log(v.brdf / v.product), sum[k].mis += log(v.mis / v.product);
+            sum[k].env_one += log(v.env / v.oneshot), sum[k].mis_one += log(v.mis / v.oneshot);
+            sum[k].worst = fmin(sum[k].worst, v.mis / v.product), sum[k].worst_one = fmin(sum[k].worst_one, v.mis / v.oneshot);
+            n[k]++;
+        }
+}
+
+static void finish(const char *what, ratios *sum, const int *n) {
+    int k;
+    printf("    %s: variance per sample, geometric means over %d\n", what, n[0]);
+    printf("    %-8s %10s %10s %10s %10s | %10s %10s %10s\n", "alpha", "env/prod", "BRDF/prod", "MIS/prod", "worst", "env/one",
+           "MIS/one", "worst");
+    for (k = 0; k <= VARIED; k++) {
+        ratios *q = sum + k;
+        q->env = exp(q->env / n[k]), q->brdf = exp(q->brdf / n[k]), q->mis = exp(q->mis / n[k]);
+        q->env_one = exp(q->env_one / n[k]), q->mis_one = exp(q->mis_one / n[k]);
+        printf("    %-8.3g %10.4g %10.4g %10.4g %10.3g | %10.4g %10.4g %10.3g\n",
+               k ? (double)(k < VARIED ? varied[k] : sharpest) : INFINITY, q->env, q->brdf, q->mis, q->worst, q->env_one,
+               q->mis_one, q->worst_one);
+    }
+}
+
+static void start(ratios *sum, int *n) {
+    int k;
+    for (k = 0; k <= VARIED; k++) memset(sum + k, 0, sizeof *sum), sum[k].worst = sum[k].worst_one = 1e300, n[k] = 0;
+}
+
+static void test_variance(void) {
+    const char *list = getenv("MCS_TEST_MAPS");
+    ratios sum[VARIED + 1];
+    int n[VARIED + 1], k;
+    mcst_group("product, variance");
+    if (mcst_case("own maps")) {
+        static const struct {
+            const char *name;
+            light_fn value;
+        } maps[] = {{"smooth", v_smooth}, {"sun", v_sun}, {"room", v_room}};
+        start(sum, n);
+        for (k = 0; k < 3; k++) {
+            scene m = scene_make(maps[k].name, 128, 64, maps[k].value, 16);
+            add_map(&m, sum, n);
+            scene_free(&m);
+        }
+        finish("own maps, 16 x 32 tiles", sum, n);
+        /* Quadrature without noise: half of what it gave when this was written (102 of the environment; 70.6, 53.7, 25.5, 10.8,
+         * 2.58, 1.14, 0.874 of MIS), so that weights may be changed a little, but not lose a factor. */
+        CHECK(sum[0].env >= 50, "matte: environment / product %g", sum[0].env);
+        for (k = 1; k <= VARIED; k++) {
+            static const double least[VARIED] = {35, 26, 12, 5, 1.2, 0.5, 0.4};
+            CHECK(sum[k].mis >= least[k - 1], "row %d: MIS / product %g", k, sum[k].mis);
+        }
+    }
+    if (list && *list && mcst_case("captured maps")) {
+        char *names = (char *)memory(strlen(list) + 1), *name;
+        start(sum, n);
+        memcpy(names, list, strlen(list) + 1);
+        for (name = strtok(names, " "); name; name = strtok(NULL, " ")) {
+            hdr_picture p;
+            const char *why = hdr_read(&p, name);
+            scene m;
+            float *light;
+            size_t i;
+            CHECK(!why, "%s %s", name, why);
+            if (why) continue;
+            light = (float *)memory((size_t)p.w * p.h * sizeof *light);
+            for (i = 0; i < (size_t)p.w * p.h; i++)
+                light[i] = 0.2126f * p.rgb[3 * i] + 0.7152f * p.rgb[3 * i + 1] + 0.0722f * p.rgb[3 * i + 2];
+            free(p.rgb);
+            m = scene_from(name, p.w, p.h, light, 16);
+            add_map(&m, sum, n);
+            scene_free(&m);
+        }
+        finish("captured maps, 16 x 32 tiles", sum, n);
+        CHECK(sum[0].env >= 60, "matte: environment / product %g", sum[0].env);
+        for (k = 1; k <= 4; k++) CHECK(sum[k].mis >= 20, "alpha %g: MIS / product %g", (double)varied[k], sum[k].mis);
+        free(names);
+    }
+}
+
+int main(int argc, char **argv) {
+    mcst_start(argc, argv);
+    test_chi2();
+    test_mean();
+    test_support();
+    test_extremes();
+    test_memory();
+    test_arrays();
+    test_turned();
+    test_weights();
+    test_mutants();
+    test_directions();
+    test_spread();
+    test_variance();
+    return mcst_finish();
+}
