@@ -1624,12 +1624,12 @@ MCSI_CORE int MCSI_(rarely)(MCSI_I m) {
 #endif
 }
 #if MCSI_W == 1
-/* (sin, cos)(2 pi t), t in [0,1], in double, to 1e-9. The detours take their lanes one by one: all widths share this code. */
+/* (sin, cos)(2 pi t), t in [0,1], in double, to 1e-12. The detours take their lanes one by one: all widths share this code. */
 MCS_FN void mcsi_sincos_d(double t, double *sine, double *cosine) {
     int k = (int)(4.0 * t + 0.5);
     double x = 6.283185307179586 * (t - 0.25 * k), z = x * x;
-    double s = 1.0 - z * (1.0 / 42) * (1.0 - z * (1.0 / 72) * (1.0 - z * (1.0 / 110)));
-    double c = 1.0 - z * (1.0 / 30) * (1.0 - z * (1.0 / 56) * (1.0 - z * (1.0 / 90)));
+    double s = 1.0 - z * (1.0 / 42) * (1.0 - z * (1.0 / 72) * (1.0 - z * (1.0 / 110) * (1.0 - z * (1.0 / 156))));
+    double c = 1.0 - z * (1.0 / 30) * (1.0 - z * (1.0 / 56) * (1.0 - z * (1.0 / 90) * (1.0 - z * (1.0 / 132))));
     s = x * (1.0 - z * (1.0 / 6) * (1.0 - z * (1.0 / 20) * s)), c = 1.0 - z * (1.0 / 2) * (1.0 - z * (1.0 / 12) * c);
     *sine = k & 1 ? c : s, *cosine = k & 1 ? s : c;
     if (k & 2) *sine = -*sine;
@@ -2030,7 +2030,7 @@ MCSI_FN MCSI_F MCS_(beckmann_weight)(const MCS_(beckmann) * m, MCS_(vec3) wo, MC
     MCSI_F lo, li;
     wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
     lo = MCSI_(beckmann_shadow)(&m->s, wo), li = MCSI_(beckmann_shadow)(&m->s, wi);
-    return MCSI_(keep)(ok, wi.z * MCSI_(dot)(h, h) / (2.0f * h.z * (wo.z * wi.z + wi.z * lo + wo.z * li)));
+    return MCSI_(keep)(ok, wi.z * (MCSI_(dot)(h, h) / h.z) / (2.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
 }
 #ifndef MCS_NO_BATCH
 MCSI_CORE MCS_(beckmann) MCSI_(beckmann_spread)(const mcs_beckmann *m) {
@@ -2176,18 +2176,17 @@ MCSI_CORE MCSI_(visible) MCSI_(visible_make)(const MCSI_(slopes) * m, MCS_(vec3)
 #if MCSI_W == 1
 /* The unnormalised half-vector p in double, with |p|^2 and, in the stretched frame, |c + i|^2. */
 MCS_FN void mcsi_visible_d(double ax, double ay, double x, double y, double z, double u1, double u2, int bounded, double p[5]) {
-    double rim = 1.0 + mcsi_sqrt_d(x * x + y * y), a = ax < ay ? ax : ay, less = 0.0, t, sine, cosine, q, s;
+    double rim = 1.0 + mcsi_sqrt_d(x * x + y * y), a = ax < ay ? ax : ay, less = 0.0, t, r, sine, cosine, q, s, along, across;
     a = a < 1.0 ? a : 1.0;
     if (bounded) less = a * a * (rim * rim + z * z) / (rim * rim + a * a * z * z);
-    x = ax * x, y = ay * y, t = mcsi_sqrt_d(x * x + y * y + z * z), x = x / t, y = y / t, z = z / t;
-    t = mcsi_sqrt_d(x * x + y * y);
+    x = ax * x, y = ay * y, t = mcsi_sqrt_d(x * x + y * y + z * z), r = mcsi_sqrt_d(x * x + y * y);
+    x = r > 0.0 ? x / r : 1.0, y = r > 0.0 ? y / r : 0.0, r = r / t, z = z / t;
     q = u2 * (1.0 + (1.0 - less) * z), p[2] = (1.0 - u2) * (1.0 + (1.0 - less) * z) + less * z;
-    s = mcsi_sqrt_d(q * (t * t / (1.0 + z) + p[2]));
+    s = mcsi_sqrt_d(q * (r * r / (1.0 + z) + p[2]));
     mcsi_sincos_d(u1, &sine, &cosine);
-    s = t > 0.0 ? s / t : s, cosine = s * cosine, sine = s * sine;
-    if (t > 0.0) s = x + (cosine * x - sine * y), y = y + (cosine * y + sine * x), x = s;
-    else x = cosine, y = sine;
-    p[4] = x * x + y * y + p[2] * p[2], p[0] = ax * x, p[1] = ay * y, p[3] = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+    along = cosine < 0.0 && p[2] < 1.0 ? s * (sine * sine / (1.0 - cosine)) + (p[2] - 2.0 * z) * p[2] / (r + s) : r + s * cosine;
+    across = s * sine, s = along * x - across * y, y = along * y + across * x;
+    p[4] = s * s + y * y + p[2] * p[2], p[0] = ax * s, p[1] = ay * y, p[3] = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
 }
 #endif
 /* The unnormalised half-vector p, p2 = |p|^2 and, in the stretched frame, n2 = scale^2 |c + i|^2; p is `scale` times too long. */
@@ -2223,7 +2222,7 @@ MCSI_CORE MCSI_(visible_half)
     behind = behind & (hz < 1.0f);
     h.scale = MCSI_(sel)(behind, v->i_sin + s, MCSI_(set)(1.0f));
     r = s * h.scale;
-    along = MCSI_(sel)(behind, r * one_plus + (v->one_minus_iz - q) * hz, s * cosine + v->i_sin);
+    along = MCSI_(sel)(behind, r * one_plus + (hz - 2.0f * v->i_z) * hz, s * cosine + v->i_sin);
     across = r * sine, hz = hz * h.scale;
     h.n2 = along * along + across * across + hz * hz;
     h.p = MCSI_(vec3)(m->s.ax * (along * v->x_dir - across * v->y_dir), m->s.ay * (along * v->y_dir + across * v->x_dir), hz);
