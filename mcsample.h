@@ -664,17 +664,25 @@ MCSI_CORE MCSI_F MCSI_(atan2_turns)(MCSI_F y, MCSI_F x) {
     return MCSI_(min)(t, MCSI_(set)(0.99999994f));
 }
 
-/* ln(w + c) for w in [FLT_MIN, 1e38] and a correction |c| <= ulp(w). 1 ulp. */
-MCSI_CORE MCSI_F MCSI_(log_of_sum)(MCSI_F w, MCSI_F c) {
-    MCSI_I i = MCSI_(bits)(w), k = (i - 0x3f3504f3) & (-0x7fffffff - 1 + 0x7f800000); /* the exponent in its place: 2^23 of it */
-    MCSI_F m = MCSI_(from_bits)(i - k), e = MCSI_(to_float)(k);
-    MCSI_F f = (m - 1.0f) + c * MCSI_(from_bits)(0x3f800000 - k), ff = f * f;
+/* The exponent of a positive normal float's bits, for a significand in [sqrt(1/2), sqrt(2)), in its place: 2^23 of it. */
+MCSI_CORE MCSI_I MCSI_(exponent)(MCSI_I i) { return (i - 0x3f3504f3) & (-0x7fffffff - 1 + 0x7f800000); }
+/* ln(1 + f) + k ln(2), f in [sqrt(1/2) - 1, sqrt(2) - 1], k in its place. */
+MCSI_CORE MCSI_F MCSI_(log_series)(MCSI_F f, MCSI_I k) {
+    MCSI_F e = MCSI_(to_float)(k), ff = f * f;
     MCSI_F p = ((0.333333313f + f * -0.250008196f) + ff * (0.200012416f + f * -0.166234091f)) +
                ff * ff * ((0.142015815f + f * -0.131596133f) + ff * (0.127621993f + f * -0.0763639957f));
     return e * (0.693145752f / 8388608) + (f + (f * ff * p + (e * (1.42860677e-06f / 8388608) - 0.5f * ff)));
 }
-/* ln(x), normal x > 0. */
-MCSI_CORE MCSI_F MCSI_(log)(MCSI_F x) { return MCSI_(log_of_sum)(x, MCSI_(set)(0.0f)); }
+/* ln(x), normal x > 0. 1 ulp. */
+MCSI_CORE MCSI_F MCSI_(log)(MCSI_F x) {
+    MCSI_I i = MCSI_(bits)(x), k = MCSI_(exponent)(i);
+    return MCSI_(log_series)(MCSI_(from_bits)(i - k) - 1.0f, k);
+}
+/* ln(w + c) for w in [FLT_MIN, 1e38] and a correction |c| <= ulp(w). 1.5 ulp. */
+MCSI_CORE MCSI_F MCSI_(log_of_sum)(MCSI_F w, MCSI_F c) {
+    MCSI_I i = MCSI_(bits)(w), k = MCSI_(exponent)(i);
+    return MCSI_(log_series)((MCSI_(from_bits)(i - k) - 1.0f) + c * MCSI_(from_bits)(0x3f800000 - k), k);
+}
 /* ln(1 + x), x in (-1, 1e38]. */
 MCSI_CORE MCSI_F MCSI_(log1p)(MCSI_F x) {
     MCSI_F w = 1.0f + x;
@@ -719,7 +727,7 @@ MCSI_CORE MCSI_F MCSI_(exp_both)(MCSI_F x, MCSI_F *minus_one) {
  * (m - 1)/(m + 1), and 2^r = cosh + sinh. In double, so that the product of exponent and logarithm loses nothing. 1 ulp. *over, for
  * roots, is x over the result, by 2^-r = cosh - sinh, relatively accurate where both are subnormal too. */
 MCSI_CORE MCSI_F MCSI_(pow_unit)(MCSI_F x, MCSI_F n, double plus, int root, MCSI_F *over) {
-    MCSI_I i = MCSI_(bits)(x * 16777216.0f), exponent = (i - 0x3f3504f3) & (-0x7fffffff - 1 + 0x7f800000), some = -i >> 31, k, j;
+    MCSI_I i = MCSI_(bits)(x * 16777216.0f), exponent = MCSI_(exponent)(i), some = -i >> 31, k, j;
     MCSI_F head = MCSI_(from_bits)(i - exponent), q;
     MCSI_D m = MCSI_WIDEN(head), e = MCSI_WIDEN(n) + plus, s = (m - 1.0) / (m + 1.0), z = s * s, y, r, whole, even, odd;
     k = (exponent >> 23) - 24;
@@ -991,7 +999,7 @@ MCSI_CORE MCSI_U MCSI_(scramble_reversed)(MCSI_U x, uint32_t seed) {
     return x ^ (x * 0x53a22864u);
 }
 MCSI_FN MCSI_U MCS_(sobol_bits)(MCSI_U index, uint32_t dim, uint32_t seed) {
-    static const uint32_t mcsi_direction[3][32] = {
+    static const uint32_t matrix[3][32] = {
         /* columns of the generator matrices, bits reversed */
         {0x00000001u, 0x00000003u, 0x00000005u, 0x0000000fu, 0x00000011u, 0x00000033u, 0x00000055u, 0x000000ffu,
          0x00000101u, 0x00000303u, 0x00000505u, 0x00000f0fu, 0x00001111u, 0x00003333u, 0x00005555u, 0x0000ffffu,
@@ -1011,7 +1019,7 @@ MCSI_FN MCSI_U MCS_(sobol_bits)(MCSI_U index, uint32_t dim, uint32_t seed) {
     if (group) index = MCSI_(reverse_bits)(MCSI_(scramble_reversed)(MCSI_(reverse_bits)(index), mcs_hash(group, seed)));
     if (axis == 0) x = index;
     else
-        for (x = index & 0u, k = 0; k < 32; k++) x = x ^ ((0u - ((index >> k) & 1u)) & mcsi_direction[axis - 1][k]);
+        for (x = index & 0u, k = 0; k < 32; k++) x = x ^ ((0u - ((index >> k) & 1u)) & matrix[axis - 1][k]);
     return MCSI_(reverse_bits)(MCSI_(scramble_reversed)(x, mcs_hash(dim, ~seed)));
 }
 MCSI_FN MCSI_F MCS_(sobol)(MCSI_U index, uint32_t dim, uint32_t seed) { return MCS_(u01)(MCS_(sobol_bits)(index, dim, seed)); }
@@ -1066,12 +1074,13 @@ MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed) 
 #ifndef MCS_NO_1D
 /* ==== [1d] densities on a line =================================================================================================
  * domain u in [0,1); codomain and density per length as below; every map increases with u, so stratified u give stratified x.
- * `_invert` is the cumulative distribution, clamped into [0, 1 - 2^-24]. One random number each. Bad parameters: pdf 0, x 0.
+ * `_invert` is the cumulative distribution, clamped into [0, 1 - 2^-24]. One random number each. Bad parameters: pdf 0, x 0; a
+ * mean is good within [-1e30, 1e30].
  *
  *   linear(a, b)          2 lerp(a,b,x)/(a+b) on [0,1]          a, b >= 0, not both 0          1 sqrt, 2 div
  *   tent(r)               (1-|x|/r)/r on [-r,r]                 r in [1e-18, 1e18]             1 sqrt, 1 div
  *   exponential(rate)     rate e^(-rate x), x >= 0              rate in [1e-18, 1e18]          1 log, 1 div
- *   truncexp(rate, m)     the same cut off at m                 rate >= 0 (0: uniform), m in [1e-18, 1e18]; rate m up to 80
+ *   truncexp(rate, m)     the same cut off at m                 rate in [0, 1e18] (0: uniform), m in [1e-18, 1e18]; rate m up to 80
  *                         counts as is, above the cut is far below 2^-24 and left out          1 log, 1 exp, 2 div
  *   normal(mean, sd)      by inversion, u = 0 taken as 2^-126   sd in [1e-18, 1e18]            1 log, 1 sqrt, 1 div, 1 exp (pdf)
  *   logistic(mean, s)     e^-z/(s (1+e^-z)^2), z=(x-mean)/s     s in [1e-18, 1e18]             1 log, 2 div; u = 0 as 2^-126
@@ -2641,9 +2650,9 @@ MCS_FN float mcsi_in_cell(uint32_t i, double f, uint32_t n) {
     while ((double)x * n < (double)i) x = mcsi_from_bits(mcsi_bits(x) + 1);
     return x;
 }
-MCS_FN mcs_status mcsi_table_check(const void *t, size_t bytes, const void *source, uint32_t n, uint32_t n_max, size_t need) {
+MCS_FN mcs_status mcsi_table_check(const void *t, size_t bytes, const void *source, size_t need) {
     if (!t || !source || ((uintptr_t)t & 7u)) return MCS_ERR_ARG;
-    if (n == 0 || n > n_max) return MCS_ERR_SIZE;
+    if (need == 0) return MCS_ERR_SIZE;
     return bytes < need ? MCS_ERR_MEMORY : MCS_OK;
 }
 enum { MCSI_CELLS_MAX = 1 << 28 };
@@ -2664,11 +2673,11 @@ MCS_FN mcs_status mcsi_pwc_fill(mcs_pwc *t, uint32_t n, uint32_t bad) {
     return t->total > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 MCS_FN mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n) {
-    mcs_status e = mcsi_table_check(t, bytes, f, n, MCSI_CELLS_MAX, mcs_pwc_bytes(n));
+    mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwc_bytes(n));
     return e ? e : mcsi_pwc_fill(t, n, mcsi_weights_in((uint32_t *)(void *)(t + 1), f, n));
 }
 MCS_FN mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context, uint32_t n) {
-    mcs_status e = mcsi_table_check(t, bytes, f ? (const void *)t : NULL, n, MCSI_CELLS_MAX, mcs_pwc_bytes(n));
+    mcs_status e = mcsi_table_check(t, bytes, f ? (const void *)t : NULL, mcs_pwc_bytes(n));
     uint32_t i, bad = 0;
     if (e) return e;
     for (i = 0; i < n; i++) {
@@ -2752,7 +2761,7 @@ MCS_FN size_t mcs_pwl_bytes(uint32_t n) {
     return n && n <= MCSI_CELLS_MAX ? (sizeof(mcs_pwl) + (mcsi_pwc_words(n) + n + 1) * sizeof(uint32_t) + 7) / 8 * 8 : 0;
 }
 MCS_FN mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n) {
-    mcs_status e = mcsi_table_check(t, bytes, f, n, MCSI_CELLS_MAX, mcs_pwl_bytes(n));
+    mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwl_bytes(n));
     uint32_t *words, *vertex, i, bad;
     float top = 0.0f;
     double total = 0.0;
@@ -2829,11 +2838,14 @@ typedef struct {
     uint32_t n, bad;
 } mcs_alias; /* then column[n] */
 MCS_FN mcsi_column *mcsi_columns(const mcs_alias *t) { return (mcsi_column *)(void *)((char *)(uintptr_t)t + sizeof(mcs_alias)); }
-MCS_FN size_t mcs_alias_bytes(uint32_t n) { return n && n <= MCSI_CELLS_MAX ? sizeof(mcs_alias) + n * sizeof(mcsi_column) : 0; }
+MCS_FN size_t mcs_alias_bytes(uint32_t n) { /* the largest do not fit the size_t of a 32-bit machine */
+    uint64_t bytes = sizeof(mcs_alias) + (uint64_t)n * sizeof(mcsi_column);
+    return n && n <= MCSI_CELLS_MAX && (size_t)bytes == bytes ? (size_t)bytes : 0;
+}
 MCS_FN uint64_t mcsi_column_left(const mcsi_column *c) { return ((uint64_t)c->alias << 32) | c->cut; }
 MCS_FN void mcsi_column_leave(mcsi_column *c, uint64_t left) { c->cut = (uint32_t)left, c->alias = (uint32_t)(left >> 32); }
 MCS_FN mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n) {
-    mcs_status e = mcsi_table_check(t, bytes, w, n, MCSI_CELLS_MAX, mcs_alias_bytes(n));
+    mcs_status e = mcsi_table_check(t, bytes, w, mcs_alias_bytes(n));
     mcsi_column *c;
     double sum = 0.0;
     uint64_t all = (uint64_t)n << 31, given = 0;

@@ -553,7 +553,7 @@ static void test_build_fn(void) {
 
 static void test_errors(const kind *k) {
     const uint32_t n = 100;
-    const uint32_t many[] = {0xffffffffu, 0xfffffffeu, 0x80000000u, 0x7fffffffu};
+    const uint32_t many[] = {0xffffffffu, 0xfffffffeu, 0x80000000u, 0x7fffffffu, 0x10000000u, 0x0fffffffu};
     arena a = arena_make(k->bytes(n) + 8);
     size_t i;
     load(&sets[RAMP], 1);
