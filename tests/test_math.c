@@ -107,7 +107,7 @@ static const kernel kernels[] = {
     {"sin", sin_turns, exact_sin_turns, 0x1p-30f, 1.0f, 13, 1.5, 0},
     {"sin, t < 0", sin_turns, exact_sin_turns, -0x1p-30f, -0.125f, 31, 1.5, 1},
     {"cos", cos_turns, exact_cos_turns, 0x1p-30f, 1.0f, 13, 1.5, 0},
-    {"log", log_of, log, FLT_MIN, 1e38f, 257, 1.5, 1},
+    {"log", log_of, log, FLT_MIN, FLT_MAX, 257, 1.5, 1},
     {"log1p, x > 0", log1p_of, log1p, FLT_MIN, 1e38f, 257, 1.5, 1},
     {"log1p, x < 0", log1p_of, log1p, -0x1p-60f, -0.99999994f, 67, 1.5, 1},
     {"exp", exp_of, exp, -0x1p-40f, -103.9f, 67, 1.5, 1},
