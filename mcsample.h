@@ -3146,7 +3146,7 @@ MCS_FN size_t mcs_env_bytes(uint32_t w, uint32_t h) {
 }
 /* How many floats a row or an image spans must be a size that memory can have. */
 MCS_FN int mcsi_image_ok(const mcs_image *im) {
-    const uint64_t most = PTRDIFF_MAX / sizeof(float) / (MCSI_ENV_MAX + 1);
+    const uint64_t most = PTRDIFF_MAX / sizeof(float) / ((uint64_t)im->h + 1);
     uint64_t row = im->row_stride < 0 ? -(uint64_t)im->row_stride : (uint64_t)im->row_stride;
     uint64_t step = im->pixel_stride ? (uint64_t)im->pixel_stride : im->channels;
     if (im->pixel_stride < 0 || step < im->channels || step > most || step * im->w > most) return 0;
@@ -3429,6 +3429,23 @@ MCSI_CORE mcs_texel mcsi_env_draw_u(const mcs_env *e, const mcsi_env_view *v, fl
     double U1 = mcsi_times_one(u1, &ok), U2 = mcsi_times_one(u2, &ok);
     return mcsi_env_draw(e, v, U1, U2, 1.0, ok);
 }
+/* Texel of a direction and the place in it, down from its upper border and across from its first azimuth; 0 for bad directions. */
+typedef struct {
+    uint32_t row, col;
+    double down, across;
+} mcsi_env_place_of;
+MCSI_CORE int mcsi_env_find(const mcs_env *e, mcs_vec3 w, mcsi_env_place_of *at) {
+    const double *edge = mcsi_env_edge(e);
+    float off_pole, polar, turns;
+    double t;
+    uint32_t m;
+    mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
+    if (!(off_pole < 4.0f)) return 0;
+    at->row = mcsi_env_row_at(e, off_pole, polar), at->col = mcsi_env_col_at(e, turns), m = mcsi_env_from_pole(at->row, e->h);
+    t = ((double)mcsi_abs(off_pole) - edge[m]) / (edge[m + 1] - edge[m]), t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
+    at->down = mcsi_bits(off_pole) < 0 ? 1.0 - t : t, at->across = (double)turns * e->w - at->col;
+    return 1;
+}
 MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, mcs_vec3 w) {
     float off_pole, polar, turns;
     mcs_texel r;
@@ -3535,25 +3552,18 @@ MCS_FN mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w) {
 MCS_FN float mcs_env_pdf(const mcs_env *e, mcs_vec3 w) { return mcs_env_texel(e, w).pdf; }
 MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
     mcsi_env_view v = mcsi_env_whole(e);
-    float off_pole, polar, turns;
-    double u1, u2, place, t;
-    uint32_t row, m;
-    mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
-    if (!(off_pole < 4.0f)) return mcsi_vec2(0.0f, 0.0f);
-    t = (double)mcsi_min(mcsi_abs(off_pole), 2.0f);
+    mcsi_env_place_of at;
+    double u1, u2;
+    if (!mcsi_env_find(e, w, &at)) return mcsi_vec2(0.0f, 0.0f);
     if (v.uniform) {
-        u1 = (double)turns * MCSI_ONE, u2 = 0.5 * (mcsi_bits(off_pole) < 0 ? 2.0 - t : t) * MCSI_ONE;
+        double a = mcsi_env_top(e, at.row);
+        u1 = (at.col + at.across) / e->w, u2 = 0.5 * (a + at.down * (mcsi_env_top(e, at.row + 1) - a));
     } else {
-        const uint32_t *cdf;
-        uint32_t col = mcsi_env_col_at(e, turns);
-        row = mcsi_env_row_at(e, off_pole, polar), m = mcsi_env_from_pole(row, e->h), cdf = mcsi_env_cdf(e, row) + col;
-        place = (t - mcsi_env_edge(e)[m]) / (mcsi_env_edge(e)[m + 1] - mcsi_env_edge(e)[m]);
-        place = place < 0.0 ? 0.0 : place > 1.0 ? 1.0 : place;
-        place = mcsi_bits(off_pole) < 0 ? 1.0 - place : place;
-        u1 = v.line[row].scale > 0.0 ? cdf[0] + ((double)turns * e->w - col) * (cdf[1] - cdf[0]) : 0.0;
-        u2 = v.rows[row] + place * (v.rows[row + 1] - v.rows[row]);
+        const uint32_t *cdf = mcsi_env_cdf(e, at.row) + at.col;
+        u1 = v.line[at.row].scale > 0.0 ? (cdf[0] + at.across * (cdf[1] - cdf[0])) / MCSI_ONE : 0.0;
+        u2 = (v.rows[at.row] + at.down * (v.rows[at.row + 1] - v.rows[at.row])) / MCSI_ONE;
     }
-    return mcsi_vec2(mcsi_below_one(u1 / MCSI_ONE), mcsi_below_one(u2 / MCSI_ONE));
+    return mcsi_vec2(mcsi_below_one(u1), mcsi_below_one(u2));
 }
 MCS_FN float mcs_env_weight(const mcs_env *e, float pdf) {
     MCS_ASSERT(!e->incomplete);
@@ -3656,8 +3666,21 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * "Practical product importance sampling for direct illumination"; Cline et al. 2006, "Two stage importance sampling". */
 
 #if MCSI_W == 1
-/* What is known of tiles, column by column: light, mean direction and its length's inverse, spread, radius. */
-enum { MCSI_TILE_E, MCSI_TILE_X, MCSI_TILE_Y, MCSI_TILE_Z, MCSI_TILE_UNIT, MCSI_TILE_SPREAD, MCSI_TILE_RADIUS, MCSI_TILE_FIELDS };
+/* What is known of tiles, column by column: light, mean direction of it and its length's inverse, spread; radius of the tile and of
+ * its light about that direction; how far the light reaches towards the corners: 1 when it is even, 0 when it is in one place. */
+enum {
+    MCSI_TILE_E,
+    MCSI_TILE_X,
+    MCSI_TILE_Y,
+    MCSI_TILE_Z,
+    MCSI_TILE_UNIT,
+    MCSI_TILE_SPREAD,
+    MCSI_TILE_RADIUS,
+    MCSI_TILE_REACH,
+    MCSI_TILE_PULL,
+    MCSI_TILE_FIELDS
+};
+#define MCSI_ROW_LEAST 1e-30f           /* below it a sum of weights has too few digits left for shares */
 #define MCSI_TILE_LEAST 3.18309873e-05f /* a ten-thousandth of a white matte surface that faces the light */
 /* The reflection as seen from the map: axes of the surface in its frame. */
 typedef struct {
@@ -3675,32 +3698,41 @@ MCSI_CORE MCSI_F MCSI_(tile_lobe)(const mcsi_facing *s, MCS_(vec3) w, MCSI_F spr
                     w.z * MCSI_(sqrt)(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
     return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / shadow;
 }
-/* Weight of tiles: light times reflection; more than 0 wherever there is light that may be above the horizon. */
-MCSI_CORE MCSI_F MCSI_(tile_weight)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride) {
-    MCSI_F energy = MCSI_(load)(tile), r = MCSI_(load)(tile + MCSI_TILE_RADIUS * stride), zero = MCSI_(set)(0.0f);
+/* Reflection towards the light of tiles; more than 0 wherever there may be light above the horizon. */
+MCSI_CORE MCSI_F MCSI_(tile_value)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride) {
+    MCSI_F r = MCSI_(load)(tile + MCSI_TILE_RADIUS * stride), zero = MCSI_(set)(0.0f);
     MCS_(vec3)
     m = MCSI_(vec3)(MCSI_(load)(tile + MCSI_TILE_X * stride), MCSI_(load)(tile + MCSI_TILE_Y * stride),
                     MCSI_(load)(tile + MCSI_TILE_Z * stride));
-    MCSI_F c = MCSI_(dot)(axes->n, m), crossing = MCSI_(max)(c + r, zero);
-    MCSI_F cosine = MCSI_(sel)(c >= r, c, crossing * crossing / (4.0f * r)), f = MCSI_1_PI * cosine;
+    MCSI_F c = MCSI_(dot)(axes->n, m), reach = MCSI_(load)(tile + MCSI_TILE_REACH * stride), crossing = MCSI_(max)(c + reach, zero);
+    MCSI_F cosine = MCSI_(sel)(c >= reach, c, crossing * crossing / (4.0f * reach)), f = MCSI_1_PI * cosine;
     if (s->matte < 1.0f) {
         MCSI_F unit = MCSI_(load)(tile + MCSI_TILE_UNIT * stride);
         MCS_(vec3) w = MCSI_(vec3)(MCSI_(dot)(axes->s, m) * unit, MCSI_(dot)(axes->t, m) * unit, MCSI_(max)(c * unit, cosine));
         f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCSI_(load)(tile + MCSI_TILE_SPREAD * stride));
     }
-    return MCSI_(sel)(crossing > 0.0f, energy * (f + MCSI_TILE_LEAST), zero);
+    return MCSI_(sel)(c + r > 0.0f, f + MCSI_TILE_LEAST, zero);
 }
-/* A grid of weights, column by column, as integers: cum[j][i] is the sum of row i's shares before column j, cum[cols][i] that of
+/* Reflection towards the corners of tiles. */
+MCSI_CORE MCSI_F MCSI_(corner_value)(const MCS_(frame) * axes, const mcsi_facing *s, MCS_(vec3) w) {
+    MCSI_F z = MCSI_(max)(MCSI_(dot)(axes->n, w), MCSI_(set)(0.0f)), f = MCSI_1_PI * z;
+    if (s->matte < 1.0f) {
+        w = MCSI_(vec3)(MCSI_(dot)(axes->s, w), MCSI_(dot)(axes->t, w), z);
+        f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCSI_(set)(0.0f));
+    }
+    return f + MCSI_TILE_LEAST;
+}
+/* A grid of weights, light times value, column by column, as integers: cum[j][i] is the sum of row i's shares before column j, cum[cols][i] that of
  * the whole row. row[i] is the weight of a row. */
-MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *weight, uint32_t *cum, float *row) {
+MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
     size_t i, j;
     for (i = 0; i < rows; i += MCSI_W) {
         MCSI_F sum = MCSI_(set)(0.0f), scale;
         MCSI_I at = MCSI_(trunc)(sum);
-        for (j = 0; j < cols; j++) sum = sum + MCSI_(load)(weight + j * rows + i);
-        scale = (16777216.0f - (float)cols) / MCSI_(max)(sum, MCSI_(set)(FLT_MIN));
+        for (j = 0; j < cols; j++) sum = sum + MCSI_(load)(light + j * rows + i) * MCSI_(load)(value + j * rows + i);
+        scale = (16777216.0f - (float)cols) / MCSI_(max)(sum, MCSI_(set)(MCSI_ROW_LEAST));
         for (j = 0; j < cols; j++) {
-            MCSI_F w = MCSI_(load)(weight + j * rows + i);
+            MCSI_F w = MCSI_(load)(light + j * rows + i) * MCSI_(load)(value + j * rows + i);
             MCSI_(store_int)(cum + j * rows + i, at);
             at = at + MCSI_(trunc)(MCSI_(sel)(w > 0.0f, w * scale + 1.0f, MCSI_(set)(0.0f)));
         }
@@ -3708,24 +3740,34 @@ MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *weight, u
     }
 }
 #ifndef MCS_NO_BATCH
-MCSI_BATCH_AS(mcsi_tile_weights_n, tile_weights_n,
-              (const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *weight), (s, n, tile, stride, weight), {
+MCSI_BATCH_AS(mcsi_tile_values_n, tile_values_n, (const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value),
+              (s, n, tile, stride, value), {
                   MCS_(frame) axes = MCSI_(spread_frame)(&s->axes);
                   size_t i;
-                  for (i = 0; i < n; i += MCSI_W) MCSI_(store)(weight + i, MCSI_(tile_weight)(&axes, s, tile + i, stride));
+                  for (i = 0; i < n; i += MCSI_W) MCSI_(store)(value + i, MCSI_(tile_value)(&axes, s, tile + i, stride));
               })
-MCSI_BATCH_AS(mcsi_grid_rows_n, grid_rows_n, (size_t rows, size_t cols, const float *weight, uint32_t *cum, float *row),
-              (rows, cols, weight, cum, row), {
+MCSI_BATCH_AS(mcsi_corner_values_n, corner_values_n,
+              (const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value), (s, n, corner, stride, value), {
+                  MCS_(frame) axes = MCSI_(spread_frame)(&s->axes);
+                  size_t i;
+                  for (i = 0; i < n; i += MCSI_W) {
+                      const float *c = corner + i;
+                      MCS_(vec3) w = MCSI_(vec3)(MCSI_(load)(c), MCSI_(load)(c + stride), MCSI_(load)(c + 2 * stride));
+                      MCSI_(store)(value + i, MCSI_(corner_value)(&axes, s, w));
+                  }
+              })
+MCSI_BATCH_AS(mcsi_grid_rows_n, grid_rows_n,
+              (size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row),
+              (rows, cols, light, value, cum, row), {
                   MCSI_(grid_rows)
-                  (rows, cols, weight, cum, row);
+                  (rows, cols, light, value, cum, row);
               })
 #endif
 
 #if MCSI_W == 1
 typedef struct {
-    uint32_t rows, cols, window_bytes,
-        unused; /* of tiles; then field[MCSI_TILE_FIELDS] of the tiles, the same of blocks of 4 x 4, windows */
-} mcs_tiles;
+    uint32_t rows, cols, window_bytes, unused;
+} mcs_tiles; /* then field[MCSI_TILE_FIELDS] of tiles, the same of blocks of 4 x 4, corner[3][cols][rows + 1] (x, y, z), windows */
 typedef struct {
     mcs_frame frame;
     mcs_vec3 wo;
@@ -3742,7 +3784,7 @@ typedef struct {
     const mcs_env *e;
     mcsi_own_lobe own;
     float brdf_share;
-    uint32_t lit;
+    uint32_t lit, warped;
 } mcs_product; /* then row_cum[rows + 1], cum[cols + 1][rows], weight[cols][rows], above[cols][rows] */
 
 enum { MCSI_TILE_BLOCK = 4, MCSI_TILES_MAX = 64 };
@@ -3750,16 +3792,20 @@ MCSI_CORE const float *mcsi_tiles_fields(const mcs_tiles *t) { return (const flo
 MCSI_CORE const float *mcsi_tiles_blocks(const mcs_tiles *t) {
     return mcsi_tiles_fields(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols;
 }
+MCSI_CORE const float *mcsi_tiles_corners(const mcs_tiles *t) {
+    return mcsi_tiles_blocks(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols / (MCSI_TILE_BLOCK * MCSI_TILE_BLOCK);
+}
+MCSI_CORE size_t mcsi_corners(const mcs_tiles *t) { return (size_t)t->cols * (t->rows + 1); }
 MCSI_CORE const mcs_env_window *mcsi_tiles_window(const mcs_tiles *t, uint32_t row, uint32_t col) {
-    size_t n = (size_t)t->rows * t->cols;
-    const char *p = (const char *)(mcsi_tiles_fields(t) + MCSI_TILE_FIELDS * (n + n / (MCSI_TILE_BLOCK * MCSI_TILE_BLOCK)));
+    const char *p = (const char *)(mcsi_tiles_corners(t) + 3 * mcsi_corners(t));
     return (const mcs_env_window *)(const void *)(p + ((size_t)col * t->rows + row) * t->window_bytes);
 }
 MCS_FN int mcsi_tiles_ok(uint32_t rows) { return rows == 16 || rows == 32 || rows == MCSI_TILES_MAX; }
 MCS_FN size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows) {
     size_t n = 2 * (size_t)rows * rows;
     if (!e || !mcsi_tiles_ok(rows)) return 0;
-    return sizeof(mcs_tiles) + MCSI_TILE_FIELDS * (n + n / 16) * sizeof(float) + n * mcs_env_window_bytes(e->h / rows + 1);
+    return sizeof(mcs_tiles) + (MCSI_TILE_FIELDS * (n + n / 16) + 3 * (n + 2 * (size_t)rows)) * sizeof(float) +
+           n * mcs_env_window_bytes(e->h / rows + 1);
 }
 /* First texel row or column of a tile, and the tile of a texel. */
 MCSI_CORE uint32_t mcsi_tile_begin(uint32_t tile, uint32_t tiles, uint32_t texels) {
@@ -3768,9 +3814,10 @@ MCSI_CORE uint32_t mcsi_tile_begin(uint32_t tile, uint32_t tiles, uint32_t texel
 MCSI_CORE uint32_t mcsi_tile_of(uint32_t texel, uint32_t tiles, uint32_t texels) {
     return (uint32_t)((((uint64_t)texel + 1) * tiles - 1) / texels);
 }
-/* Light, first and second moments of its direction, and the corners of the rectangle that holds it. */
+/* Light, the sum of its directions and of its spread within texels; area, the sum of its directions about the mean azimuth; the
+ * rectangle that holds it. */
 typedef struct {
-    double e, x, y, z;
+    double e, x, y, z, within, area, across, up;
     uint32_t row0, row1, col0, col1;
 } mcsi_patch;
 MCS_FN void mcsi_patch_corner(const mcs_env *e, uint32_t row, uint32_t col, mcs_vec3 *w) {
@@ -3780,7 +3827,7 @@ MCS_FN void mcsi_patch_corner(const mcs_env *e, uint32_t row, uint32_t col, mcs_
     *w = mcsi_vec3(sine * c, sine * s, (float)(1.0 - t));
 }
 MCS_FN void mcsi_patch_store(const mcs_env *e, const mcsi_patch *p, float *field, size_t stride) {
-    double d = mcsi_sqrt_d(p->x * p->x + p->y * p->y + p->z * p->z), r2 = 0.0;
+    double d = mcsi_sqrt_d(p->x * p->x + p->y * p->y + p->z * p->z), r2 = 0.0, spread, reach, pull = 1.0;
     mcs_vec3 m, corner;
     int k;
     if (d > 0.0) {
@@ -3789,18 +3836,28 @@ MCS_FN void mcsi_patch_store(const mcs_env *e, const mcsi_patch *p, float *field
         mcsi_patch_corner(e, (p->row0 + p->row1) / 2, (p->col0 + p->col1) / 2, &m);
     }
     for (k = 0; k < 4; k++) {
-        double x, y, z, far2;
+        double x, y, z;
         mcsi_patch_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0, &corner);
-        x = (double)corner.x - m.x, y = (double)corner.y - m.y, z = (double)corner.z - m.z, far2 = x * x + y * y + z * z;
-        r2 = far2 > r2 ? far2 : r2;
+        x = (double)corner.x - m.x, y = (double)corner.y - m.y, z = (double)corner.z - m.z, x = x * x + y * y + z * z;
+        r2 = x > r2 ? x : r2;
     }
     d = p->e > 0.0 && d > 0.0 ? d / p->e : 1.0;
     d = d < 1.0 ? d : 1.0;
+    spread = 1.0 - d * d + (p->e > 0.0 ? p->within / p->e : 0.0), r2 = mcsi_sqrt_d(r2), reach = 1.5 * mcsi_sqrt_d(spread);
+    if (p->area > 0.0) {
+        float s, c;
+        double even = p->up * p->up, turns = 0.5 * (p->col1 - p->col0) / e->w;
+        mcsi_sincos_turns((float)turns, &s, &c); /* a column's mean lies sin(x)/x from the axis, x half its width */
+        even += p->across * p->across * ((double)s * (double)s / (turns * turns * 39.478417604357432));
+        even = 1.0 - even / (p->area * p->area), pull = even > 1e-12 ? spread / even : 1.0;
+        pull = pull < 1.0 ? mcsi_sqrt_d(pull) : 1.0;
+    }
+    field[MCSI_TILE_PULL * stride] = (float)pull;
     field[MCSI_TILE_E * stride] = (float)p->e;
     field[MCSI_TILE_X * stride] = m.x * (float)d, field[MCSI_TILE_Y * stride] = m.y * (float)d;
     field[MCSI_TILE_Z * stride] = m.z * (float)d, field[MCSI_TILE_UNIT * stride] = (float)(1.0 / d);
-    field[MCSI_TILE_SPREAD * stride] = (float)(1.0 - d * d);
-    field[MCSI_TILE_RADIUS * stride] = (float)mcsi_sqrt_d(r2) + 1e-6f;
+    field[MCSI_TILE_SPREAD * stride] = (float)spread, field[MCSI_TILE_RADIUS * stride] = (float)r2 + 1e-6f;
+    field[MCSI_TILE_REACH * stride] = (float)(reach < r2 ? reach : r2) + 1e-6f;
 }
 /* Light of a tile: of row y, the texels of a window's columns. */
 MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_env_view *all, uint32_t y, mcsi_patch *p) {
@@ -3808,6 +3865,8 @@ MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_env_view *all, uint3
            cy = 0.0;
     uint32_t mass = all->rows[y + 1] - all->rows[y], x;
     const uint32_t *cdf = mcsi_env_cdf(e, y);
+    double height = mcsi_env_height(y, e->h);
+    p->area += height, p->across += height * sine, p->up += height * (1.0 - t);
     if (!e->uniform && mass == 0) return;
     for (x = p->col0; x < p->col1; x++) {
         float s, c;
@@ -3816,15 +3875,15 @@ MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_env_view *all, uint3
         mcsi_sincos_turns((float)((x + 0.5) / e->w), &s, &c);
         row += w, cx += w * c, cy += w * s;
     }
-    t = (e->uniform ? 0.5 * mcsi_env_height(y, e->h) : mass / (double)MCSI_ONE) / MCSI_ONE;
-    p->e += t * row, p->x += t * sine * cx, p->y += t * sine * cy;
-    p->z += t * row * (1.0 - 0.5 * (mcsi_env_top(e, y) + mcsi_env_top(e, y + 1)));
+    height = (e->uniform ? 0.5 * height : mass / (double)MCSI_ONE) / MCSI_ONE;
+    p->e += height * row, p->x += height * sine * cx, p->y += height * sine * cy, p->z += height * row * (1.0 - t);
+    p->within += height * row * 0.82246703342411322 * (1.0 / ((double)e->h * e->h) + 4.0 * sine * sine / ((double)e->w * e->w));
 }
 MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows) {
     mcsi_env_view all;
     mcsi_patch block;
     uint32_t I, J, k, n = 2 * rows * rows;
-    float *field;
+    float *field, *corner;
     if (!t || !e || ((uintptr_t)t & 7u)) return MCS_ERR_ARG;
     if (!mcsi_tiles_ok(rows)) return MCS_ERR_SIZE;
     if (bytes < mcs_tiles_bytes(e, rows)) return MCS_ERR_MEMORY;
@@ -3849,6 +3908,13 @@ MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, 
             }
             mcsi_patch_store(e, &block, field + MCSI_TILE_FIELDS * (size_t)n + J * (rows / MCSI_TILE_BLOCK) + I, n / 16);
         }
+    corner = (float *)(uintptr_t)mcsi_tiles_corners(t);
+    for (J = 0; J < t->cols; J++)
+        for (I = 0; I <= rows; I++, corner++) {
+            mcs_vec3 w;
+            mcsi_patch_corner(e, mcsi_tile_begin(I, rows, e->h), mcsi_tile_begin(J, t->cols, e->w), &w);
+            corner[0] = w.x, corner[mcsi_corners(t)] = w.y, corner[2 * mcsi_corners(t)] = w.z;
+        }
     return e->total > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 /* World direction in which the light of tile k (column by column) lies. */
@@ -3864,7 +3930,7 @@ MCSI_CORE uint32_t mcsi_shares(uint32_t *cum, const float *weight, uint32_t n) {
     float sum = 0.0f, scale;
     uint32_t i, at = 0;
     for (i = 0; i < n; i++) sum += weight[i];
-    scale = (16777216.0f - (float)n) / mcsi_max(sum, FLT_MIN);
+    scale = (16777216.0f - (float)n) / mcsi_max(sum, MCSI_ROW_LEAST);
     for (i = 0; i < n; i++) {
         cum[i] = at;
         at += (uint32_t)(int32_t)(weight[i] * scale) + (uint32_t)(weight[i] > 0.0f);
@@ -3899,16 +3965,18 @@ MCS_FN int mcsi_facing_make(const mcs_env *e, const mcs_reflection *r, mcsi_faci
 MCS_FN size_t mcs_product_bytes(uint32_t rows) {
     size_t n = 2 * (size_t)rows * rows;
     if (!mcsi_tiles_ok(rows)) return 0;
-    return sizeof(mcs_product) + rows * sizeof(double) + (n + 2 * (size_t)rows + 2) * sizeof(uint32_t) + (n + rows) * sizeof(float);
+    return sizeof(mcs_product) + rows * sizeof(double) + (n + 2 * (size_t)rows + 2) * sizeof(uint32_t) +
+           (2 * n + 3 * (size_t)rows) * sizeof(float);
 }
-/* Where a product keeps its parts: of each row the density of a unit of its shares; shares of rows; of the columns of each row;
- * weights, which drawing does not need. */
+/* Where a product keeps its parts: of each row the density of a unit of its shares; shares of rows; of the columns of each row; the
+ * reflection of tiles, and towards their corners; sums of rows. */
 MCSI_CORE double *mcsi_product_units(const mcs_product *p) { return (double *)(uintptr_t)(p + 1); }
 MCSI_CORE uint32_t *mcsi_product_rows(const mcs_product *p) { return (uint32_t *)(void *)(mcsi_product_units(p) + p->t->rows); }
 MCSI_CORE uint32_t *mcsi_product_cum(const mcs_product *p) { return mcsi_product_rows(p) + p->t->rows + 2; }
-MCSI_CORE float *mcsi_product_weights(const mcs_product *p) {
+MCSI_CORE float *mcsi_product_values(const mcs_product *p) {
     return (float *)(void *)(mcsi_product_cum(p) + (size_t)p->t->rows * (p->t->cols + 1));
 }
+MCSI_CORE float *mcsi_product_corners(const mcs_product *p) { return mcsi_product_values(p) + (size_t)p->t->rows * p->t->cols; }
 MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e) {
     if (!p || !t || !e || ((uintptr_t)p & 7u)) return MCS_ERR_ARG;
     if (bytes < mcs_product_bytes(t->rows)) return MCS_ERR_MEMORY;
@@ -3918,12 +3986,13 @@ MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_til
 }
 MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
     size_t n = (size_t)p->t->rows * p->t->cols;
-    float *weight = mcsi_product_weights(p), *row = weight + n;
+    const float *light = mcsi_tiles_fields(p->t);
+    float *row = mcsi_product_corners(p) + mcsi_corners(p->t);
     uint32_t *rows, i;
 #ifndef MCS_NO_BATCH
-    mcsi_grid_rows_n(p->t->rows, p->t->cols, weight, mcsi_product_cum(p), row);
+    mcsi_grid_rows_n(p->t->rows, p->t->cols, light, mcsi_product_values(p), mcsi_product_cum(p), row);
 #else
-    mcsi_grid_rows(p->t->rows, p->t->cols, weight, mcsi_product_cum(p), row);
+    mcsi_grid_rows(p->t->rows, p->t->cols, light, mcsi_product_values(p), mcsi_product_cum(p), row);
 #endif
     rows = mcsi_product_rows(p), p->lit = mcsi_shares(rows, row, p->t->rows);
     for (i = 0; i < p->t->rows; i++)
@@ -3931,12 +4000,21 @@ MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
             rows[i + 1] > rows[i] ? (rows[i + 1] - rows[i]) / ((double)p->lit * mcsi_product_cum(p)[n + i]) : 0.0;
     return p->lit ? MCS_OK : MCS_UNIFORM;
 }
-MCSI_CORE void mcsi_tiles_weigh(const mcsi_facing *s, size_t n, const float *fields, size_t stride, float *weight) {
+MCSI_CORE void mcsi_tiles_value(const mcsi_facing *s, size_t n, const float *fields, size_t stride, float *value) {
 #ifndef MCS_NO_BATCH
-    mcsi_tile_weights_n(s, n, fields, stride, weight);
+    mcsi_tile_values_n(s, n, fields, stride, value);
 #else
     size_t i;
-    for (i = 0; i < n; i++) weight[i] = mcsi_tile_weight(&s->axes, s, fields + i, stride);
+    for (i = 0; i < n; i++) value[i] = mcsi_tile_value(&s->axes, s, fields + i, stride);
+#endif
+}
+MCSI_CORE void mcsi_corners_value(const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value) {
+#ifndef MCS_NO_BATCH
+    mcsi_corner_values_n(s, n, corner, stride, value);
+#else
+    size_t i;
+    for (i = 0; i < n; i++)
+        value[i] = mcsi_corner_value(&s->axes, s, mcsi_vec3(corner[i], corner[i + stride], corner[i + 2 * stride]));
 #endif
 }
 /* The part of the samples that a lobe narrower than the tiles gets for itself. */
@@ -3946,7 +4024,9 @@ MCS_FN float mcsi_brdf_share(const mcsi_facing *s, size_t tiles) {
 }
 MCSI_CORE mcsi_own_lobe mcsi_own_make(const mcs_reflection *r, const mcsi_facing *s) {
     mcsi_own_lobe l;
-    l.frame = r->frame, l.wo = s->wo, l.lobe = mcs_ggx_make(mcsi_sqrt(s->ax2), mcsi_sqrt(s->ay2));
+    l.frame = r->frame, l.wo = s->wo;
+    l.lobe = mcs_ggx_make(mcsi_within(r->alpha_x >= 0.0f, r->alpha_x, 1e-7f, 1e4f),
+                          mcsi_within(r->alpha_y >= 0.0f, r->alpha_y, 1e-7f, 1e4f));
     return l;
 }
 /* When u1 falls on the lobe's share, its direction in world space; else u1 becomes the place in the rest. */
@@ -3968,50 +4048,116 @@ MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tile
     mcs_status status = mcsi_product_start(p, bytes, t, e);
     mcsi_facing s;
     size_t n;
-    float *weight;
     if (status) return status;
     if (!r || !mcsi_facing_make(e, r, &s)) return r ? MCS_UNIFORM : MCS_ERR_ARG;
-    n = (size_t)t->rows * t->cols, weight = mcsi_product_weights(p);
-    p->own = mcsi_own_make(r, &s), p->brdf_share = mcsi_brdf_share(&s, n);
-    mcsi_tiles_weigh(&s, n, mcsi_tiles_fields(t), n, weight);
+    n = (size_t)t->rows * t->cols;
+    p->own = mcsi_own_make(r, &s), p->brdf_share = mcsi_brdf_share(&s, n), p->warped = 1;
+    mcsi_tiles_value(&s, n, mcsi_tiles_fields(t), n, mcsi_product_values(p));
+    mcsi_corners_value(&s, mcsi_corners(t), mcsi_tiles_corners(t), mcsi_corners(t), mcsi_product_corners(p));
     return mcsi_product_finish(p);
 }
 MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                             const float *weight) {
     mcs_status status = mcsi_product_start(p, bytes, t, e);
     size_t n, k;
+    float *value, top = 0.0f;
     uint32_t bad = 0;
-    float *w;
     if (status) return status;
     if (!weight) return MCS_ERR_ARG;
-    n = (size_t)t->rows * t->cols, w = mcsi_product_weights(p);
-    for (k = 0; k < n; k++) w[k] = mcsi_tiles_fields(t)[k] * mcsi_min(mcsi_clean(weight[k], &bad), 1e30f);
+    n = (size_t)t->rows * t->cols, value = mcsi_product_values(p);
+    for (k = 0; k < n; k++) value[k] = mcsi_clean(weight[k], &bad), top = mcsi_max(top, value[k]);
+    for (k = 0; k < n; k++) /* of the size of reflections, and none lost to underflow */
+        value[k] = value[k] > 0.0f ? mcsi_max((float)((double)value[k] / (double)top), 1e-18f) : 0.0f;
     return mcsi_product_finish(p);
 }
-/* Density of the tiles alone. */
-MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, uint32_t i, uint32_t j, uint32_t row,
-                                   uint32_t col) {
+/* The density within a tile, relative to that of its light: bilinear in the places t1 of the columns and t2 of the rows among the
+ * light, from the reflection v towards the corners (column by column) as far as the light reaches them; its mean is 1. */
+typedef struct {
+    float v[4];
+} mcsi_warp;
+MCSI_CORE mcsi_warp mcsi_warp_make(float value, float pull, float v00, float v01, float v10, float v11) {
+    mcsi_warp w;
+    float least, mean;
+    w.v[0] = value + pull * (v00 - value), w.v[1] = value + pull * (v01 - value);
+    w.v[2] = value + pull * (v10 - value), w.v[3] = value + pull * (v11 - value);
+    mean = (w.v[0] + w.v[1]) + (w.v[2] + w.v[3]), least = 0.0075f * mean, mean = 1.0f / (0.25f * mean + least);
+    w.v[0] = (w.v[0] + least) * mean, w.v[1] = (w.v[1] + least) * mean, w.v[2] = (w.v[2] + least) * mean,
+    w.v[3] = (w.v[3] + least) * mean;
+    return w;
+}
+MCSI_CORE float mcsi_warp_density(const mcsi_warp *w, float t1, float t2) {
+    float a = w->v[0] + t2 * (w->v[1] - w->v[0]), b = w->v[2] + t2 * (w->v[3] - w->v[2]);
+    return a + t1 * (b - a);
+}
+/* Linear densities: the place of U in [0, 2^31) when the ends are a and b. */
+MCSI_CORE float mcsi_linear_place(float a, float b, double U) {
+    float u = (float)(U * (1.0 / MCSI_ONE));
+    return mcsi_min(u * (a + b) / (a + mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b))), 0.99999994f);
+}
+MCSI_CORE void mcsi_warp_draw(const mcsi_warp *w, double *U1, double *U2, double *part) {
+    float t2 = mcsi_linear_place(w->v[0] + w->v[2], w->v[1] + w->v[3], *U2);
+    float a = w->v[0] + t2 * (w->v[1] - w->v[0]), b = w->v[2] + t2 * (w->v[3] - w->v[2]), t1 = mcsi_linear_place(a, b, *U1);
+    *U1 = (double)t1 * MCSI_ONE, *U2 = (double)t2 * MCSI_ONE, *part *= (double)(a + t1 * (b - a));
+}
+MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, uint32_t i, uint32_t j) {
+    const mcs_tiles *t = p->t;
+    const float *corner = mcsi_product_corners(p) + i, *a = corner + j * (t->rows + 1),
+                *b = corner + (j + 1 < t->cols ? j + 1 : 0) * (t->rows + 1);
+    size_t k = (size_t)j * t->rows + i;
+    return mcsi_warp_make(mcsi_product_values(p)[k], mcsi_tiles_fields(t)[MCSI_TILE_PULL * (size_t)t->rows * t->cols + k], a[0],
+                          a[1], b[0], b[1]);
+}
+/* Where among a tile's light the place of a direction lies, for mcsi_warp_density. */
+MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const mcsi_env_place_of *at, float *t1, float *t2) {
+    const uint32_t *rows = v->rows + (at->row - v->row), *cdf;
+    const mcsi_env_line *line = v->line + (at->row - v->row);
+    double P;
+    if (v->uniform) {
+        double a = mcsi_env_top(e, v->row), b = mcsi_env_top(e, v->row + v->count);
+        P = mcsi_env_top(e, at->row), P += at->down * (mcsi_env_top(e, at->row + 1) - P);
+        *t1 = (float)((at->col + at->across - v->col) / v->cols), *t2 = (float)((P - a) / (b - a));
+        return;
+    }
+    cdf = mcsi_env_cdf(e, at->row) + at->col;
+    P = cdf[0] + at->across * (cdf[1] - cdf[0]) - line->begin;
+    *t1 = (float)((P < 0.0 ? P + MCSI_ONE : P) / line->mass), *t2 = (float)((rows[0] + at->down * (rows[1] - rows[0])) / MCSI_ONE);
+}
+/* Density of the tiles alone; `part` of all draws fall on tile (i, j). */
+MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, const mcsi_warp *warp, uint32_t i, uint32_t j,
+                                   const mcsi_env_place_of *at) {
     mcsi_env_view v = mcsi_env_part(mcsi_tiles_window(t, i, j));
     const uint32_t *cdf;
     double scale;
+    if (warp) {
+        float t1, t2;
+        mcsi_tiled_place(e, &v, at, &t1, &t2), part *= (double)mcsi_warp_density(warp, t1, t2);
+    }
     if (v.uniform) return (float)(part * (double)mcsi_env_uniform_pdf(e, &v));
-    scale = part * v.line[row - v.row].scale;
-    cdf = mcsi_env_cdf(e, row) + col;
+    scale = part * v.line[at->row - v.row].scale, cdf = mcsi_env_cdf(e, at->row) + at->col;
     return scale > 0.0 ? (float)((cdf[1] - cdf[0]) * scale) : 0.0f;
 }
-MCSI_CORE float mcsi_product_density(const mcs_product *p, uint32_t row, uint32_t col) {
+MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcsi_env_place_of *at) {
     const mcs_tiles *t = p->t;
-    uint32_t i = mcsi_tile_of(row, t->rows, p->e->h), j = mcsi_tile_of(col, t->cols, p->e->w);
+    uint32_t i = mcsi_tile_of(at->row, t->rows, p->e->h), j = mcsi_tile_of(at->col, t->cols, p->e->w);
     const uint32_t *cum = mcsi_product_cum(p) + j * t->rows + i;
     double part = mcsi_product_units(p)[i] * (int32_t)(cum[t->rows] - cum[0]);
-    return part > 0.0 ? mcsi_tiled_density(t, p->e, part, i, j, row, col) : 0.0f;
+    mcsi_warp warp;
+    if (!(part > 0.0)) return 0.0f;
+    if (p->warped) warp = mcsi_product_warp(p, i, j);
+    return mcsi_tiled_density(t, p->e, part, p->warped ? &warp : NULL, i, j, at);
+}
+MCSI_CORE mcs_texel mcsi_nothing(const mcs_env *e) {
+    mcs_texel r;
+    r.w = e->frame.n, r.pdf = 0.0f, r.col = r.row = 0;
+    return r;
 }
 /* The same for a direction, with the lobe's share. */
 MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
-    mcs_texel r = mcs_env_texel(p->e, w);
-    int32_t ok = 1;
-    mcsi_direction(w, &ok);
-    r.pdf = ok ? mcsi_own_mix(&p->own, p->brdf_share, w, p->lit ? mcsi_product_density(p, r.row, r.col) : 0.0f) : 0.0f;
+    mcsi_env_place_of at;
+    mcs_texel r;
+    if (!mcsi_env_find(p->e, w, &at)) return mcsi_nothing(p->e);
+    r.w = w, r.row = at.row, r.col = at.col;
+    r.pdf = mcsi_own_mix(&p->own, p->brdf_share, w, p->lit ? mcsi_product_density(p, &at) : 0.0f);
     return r;
 }
 MCS_FN float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
@@ -4023,19 +4169,18 @@ MCSI_CORE uint32_t mcsi_product_row(const mcs_product *p, double *U2) {
     *U2 = mcsi_shares_rest(*U2, rows[i], rows[i + 1] - rows[i]);
     return i;
 }
-MCSI_CORE const mcs_env_window *mcsi_product_col(const mcs_product *p, uint32_t i, double *U1, double *part) {
+MCSI_CORE const mcs_env_window *mcsi_product_col(const mcs_product *p, uint32_t i, double *U1, double *U2, double *part) {
     const mcs_tiles *t = p->t;
     const uint32_t *cum = mcsi_product_cum(p) + i;
     uint32_t n = t->rows, j;
     *U1 *= (int32_t)cum[t->cols * n] * (1.0 / MCSI_ONE), j = mcsi_shares_find(cum, t->cols, n, (uint32_t)(int32_t)*U1),
                                                          cum += j * n;
     *U1 = mcsi_shares_rest(*U1, cum[0], cum[n] - cum[0]), *part = mcsi_product_units(p)[i] * (int32_t)(cum[n] - cum[0]);
+    if (p->warped) {
+        mcsi_warp w = mcsi_product_warp(p, i, j);
+        mcsi_warp_draw(&w, U1, U2, part);
+    }
     return mcsi_tiles_window(t, i, j);
-}
-MCSI_CORE mcs_texel mcsi_nothing(const mcs_env *e) {
-    mcs_texel r;
-    r.w = e->frame.n, r.pdf = 0.0f, r.col = r.row = 0;
-    return r;
 }
 MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, double U1, double U2, double part, int ok) {
     mcsi_env_view v = mcsi_env_part(m);
@@ -4051,7 +4196,7 @@ MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
         r = mcsi_product_look_up(p, w);
     } else if (p->lit) {
         const mcs_env_window *m;
-        U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE, m = mcsi_product_col(p, mcsi_product_row(p, &U2), &U1, &part);
+        U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE, m = mcsi_product_col(p, mcsi_product_row(p, &U2), &U1, &U2, &part);
         r = mcsi_tiled_draw(p->e, m, U1, U2, part, ok);
         r.pdf = mcsi_own_mix(&p->own, p->brdf_share, r.w, r.pdf);
     } else {
@@ -4087,7 +4232,7 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
             row[k] = mcsi_product_row(p, &U2[k]);
         }
         for (k = 0; k < m; k++) {
-            window[k] = mcsi_product_col(p, row[k], &U1[k], &part[k]);
+            window[k] = mcsi_product_col(p, row[k], &U1[k], &U2[k], &part[k]);
             MCSI_PREFETCH(window[k]);
         }
         for (k = 0; k < m; k++) {
@@ -4126,34 +4271,36 @@ MCSI_CORE int mcsi_list_draw(const float *weight, uint32_t n, double *U, uint32_
 }
 /* The same from a grid of tiles; from their light alone when all are below the horizon that the block around them crosses. */
 MCSI_CORE int mcsi_level_draw(const mcsi_facing *s, uint32_t rows, uint32_t cols, const float *fields, int inner, double *U1,
-                              double *U2, uint32_t *i, uint32_t *j, double *part) {
-    float weight[MCSI_BLOCKS_MAX], list[MCSI_TILES_MAX], all = 0.0f;
-    const float *w = weight;
+                              double *U2, uint32_t *i, uint32_t *j, double *part, float *value) {
+    float values[MCSI_BLOCKS_MAX], list[MCSI_TILES_MAX], all = 0.0f;
     uint32_t n = rows * cols, k, m;
-    mcsi_tiles_weigh(s, n, fields, n, weight);
+    mcsi_tiles_value(s, n, fields, n, values);
     for (;;) {
         k = 0;
         do {
             float sum = 0.0f;
-            for (m = k; m < n; m += rows) sum += w[m];
+            for (m = k; m < n; m += rows) sum += fields[m] * values[m];
             list[k] = sum, all += sum;
         } while (++k < rows);
-        if (all > 0.0f || !inner || w == fields) break;
-        w = fields;
+        if (all > 0.0f || !inner) break;
+        for (k = 0; k < n; k++) values[k] = MCSI_TILE_LEAST;
+        inner = 0;
     }
     if (!mcsi_list_draw(list, rows, U2, i, part)) return 0;
-    for (k = 0; k < cols; k++) list[k] = w[k * rows + *i];
-    return mcsi_list_draw(list, cols, U1, j, part);
+    for (k = 0; k < cols; k++) list[k] = fields[k * rows + *i] * values[k * rows + *i];
+    if (!mcsi_list_draw(list, cols, U1, j, part)) return 0;
+    *value = values[*j * rows + *i];
+    return 1;
 }
 /* Down both levels to tile (i, j) and the place in it; with U1, U2 < 0, the part of all draws that tile (i, j) gets. */
 MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcsi_facing *s, double *U1, double *U2, uint32_t *i, uint32_t *j,
-                                double *part) {
+                                double *part, mcsi_warp *warp) {
     enum { B = MCSI_TILE_BLOCK };
-    float fields[MCSI_TILE_FIELDS * B * B];
+    float fields[MCSI_TILE_FIELDS * B * B], value, corner[3 * B * B], v[B * B];
     uint32_t I = *i / B, J = *j / B;
     const float *from;
     size_t k, c, n = (size_t)t->rows * t->cols;
-    if (!mcsi_level_draw(s, t->rows / B, t->cols / B, mcsi_tiles_blocks(t), 0, U1, U2, &I, &J, part)) return 0;
+    if (!mcsi_level_draw(s, t->rows / B, t->cols / B, mcsi_tiles_blocks(t), 0, U1, U2, &I, &J, part, &value)) return 0;
     from = mcsi_tiles_fields(t) + (size_t)J * B * t->rows + (size_t)I * B;
     for (k = 0; k < MCSI_TILE_FIELDS; k++)
         for (c = 0; c < B; c++) {
@@ -4162,15 +4309,23 @@ MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcsi_facing *s, double
             to[0] = column[0], to[1] = column[1], to[2] = column[2], to[3] = column[3];
         }
     *i %= B, *j %= B;
-    if (!mcsi_level_draw(s, B, B, fields, 1, U1, U2, i, j, part)) return 0;
+    if (!mcsi_level_draw(s, B, B, fields, 1, U1, U2, i, j, part, &value)) return 0;
     *i += I * B, *j += J * B;
+    for (k = 0; k < B * B; k++) { /* the tile's four corners over and over: whole vectors are computed */
+        uint32_t col = *j + (uint32_t)(k >> 1 & 1);
+        from = mcsi_tiles_corners(t) + (size_t)(col < t->cols ? col : 0) * (t->rows + 1) + *i + (k & 1);
+        for (c = 0; c < 3; c++) corner[c * B * B + k] = from[c * mcsi_corners(t)];
+    }
+    mcsi_corners_value(s, B * B, corner, B * B, v);
+    *warp = mcsi_warp_make(value, mcsi_tiles_fields(t)[MCSI_TILE_PULL * n + (size_t)*j * t->rows + *i], v[0], v[1], v[2], v[3]);
     return 1;
 }
-/* Density of the tiles alone at texel (row, col). */
-MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s, uint32_t row, uint32_t col) {
+/* Density of the tiles alone. */
+MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s, const mcsi_env_place_of *at) {
     double part = 1.0, U1 = -1.0, U2 = -1.0;
-    uint32_t i = mcsi_tile_of(row, t->rows, e->h), j = mcsi_tile_of(col, t->cols, e->w);
-    return mcsi_oneshot_tile(t, s, &U1, &U2, &i, &j, &part) ? mcsi_tiled_density(t, e, part, i, j, row, col) : 0.0f;
+    uint32_t i = mcsi_tile_of(at->row, t->rows, e->h), j = mcsi_tile_of(at->col, t->cols, e->w);
+    mcsi_warp warp;
+    return mcsi_oneshot_tile(t, s, &U1, &U2, &i, &j, &part, &warp) ? mcsi_tiled_density(t, e, part, &warp, i, j, at) : 0.0f;
 }
 MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2) {
     int32_t ok = 1;
@@ -4178,6 +4333,8 @@ MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const 
     uint32_t i = 0, j = 0;
     mcsi_facing s;
     mcsi_own_lobe own;
+    mcsi_env_place_of at;
+    mcsi_warp warp;
     mcs_texel x;
     mcs_vec3 w;
     float share;
@@ -4185,24 +4342,24 @@ MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const 
     if (!mcsi_facing_make(e, r, &s)) return mcsi_nothing(e);
     share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols), own = mcsi_own_make(r, &s);
     if (mcsi_own_draw(&own, share, &u1, u2, &w, &ok)) {
-        x = mcs_env_texel(e, w), x.pdf = mcsi_oneshot_density(t, e, &s, x.row, x.col);
+        if (!mcsi_env_find(e, w, &at)) return mcsi_nothing(e);
+        x.w = w, x.row = at.row, x.col = at.col, x.pdf = mcsi_oneshot_density(t, e, &s, &at);
     } else {
         U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE;
-        if (!mcsi_oneshot_tile(t, &s, &U1, &U2, &i, &j, &part)) return mcsi_nothing(e);
+        if (!mcsi_oneshot_tile(t, &s, &U1, &U2, &i, &j, &part, &warp)) return mcsi_nothing(e);
+        mcsi_warp_draw(&warp, &U1, &U2, &part);
         x = mcsi_tiled_draw(e, mcsi_tiles_window(t, i, j), U1, U2, part, ok);
     }
     x.pdf = ok ? mcsi_own_mix(&own, share, x.w, x.pdf) : 0.0f;
     return x;
 }
 MCS_FN float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w) {
-    mcs_texel at = mcs_env_texel(e, w);
-    int32_t ok = 1;
+    mcsi_env_place_of at;
     mcsi_facing s;
     mcsi_own_lobe own;
-    mcsi_direction(w, &ok);
-    if (!ok || !mcsi_facing_make(e, r, &s)) return 0.0f;
+    if (!mcsi_env_find(e, w, &at) || !mcsi_facing_make(e, r, &s)) return 0.0f;
     own = mcsi_own_make(r, &s);
-    return mcsi_own_mix(&own, mcsi_brdf_share(&s, (size_t)t->rows * t->cols), w, mcsi_oneshot_density(t, e, &s, at.row, at.col));
+    return mcsi_own_mix(&own, mcsi_brdf_share(&s, (size_t)t->rows * t->cols), w, mcsi_oneshot_density(t, e, &s, &at));
 }
 #endif /* MCSI_W == 1 */
 #endif

@@ -1,7 +1,7 @@
 #!/bin/sh
 # cross.sh: the same bits everywhere. Builds the hashes (test_bits) with every compiler, optimisation and machine that is installed
 # here, and the integer, table and map tests for foreign machines, which run under qemu-user or wine. Run by `make cross` in the
-# repository's root; 6 minutes on two quiet cores. What is not installed is skipped, loudly; "N passed, N failed" at the end, exit
+# repository's root. What is not installed is skipped, loudly; "N passed, N failed" at the end, exit
 # status non-zero on any failure.
 #
 # Arguments: names of jobs, of those below, and gcc-LEVEL, clang-LEVEL for other levels, and ppc64; none: all below.
