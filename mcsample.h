@@ -2984,7 +2984,7 @@ MCSI_CORE MCS_(frame) MCSI_(spread_frame)(const mcs_frame *f) {
 }
 #ifndef MCS_NO_BATCH
 #if MCSI_W == 1
-enum { MCSI_ENV_BLOCK = 64 };
+enum { MCSI_ENV_BLOCK = 32 };
 typedef struct {
     const uint32_t *cdf[MCSI_ENV_BLOCK];
     const uint16_t *guide[MCSI_ENV_BLOCK];
