@@ -3698,6 +3698,10 @@ MCSI_CORE MCSI_F MCSI_(tile_lobe)(const mcsi_facing *s, MCS_(vec3) w, MCSI_F spr
                     w.z * MCSI_(sqrt)(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
     return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / shadow;
 }
+/* Never 0, nor what bad axes make of it. */
+MCSI_CORE MCSI_F MCSI_(reflected)(MCSI_F f) {
+    return MCSI_(sel)(f > 0.0f, MCSI_(min)(f, MCSI_(set)(1e30f)), MCSI_(set)(0.0f)) + MCSI_TILE_LEAST;
+}
 /* Reflection towards the light of tiles; more than 0 wherever there may be light above the horizon. */
 MCSI_CORE MCSI_F MCSI_(tile_value)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride) {
     MCSI_F r = MCSI_(load)(tile + MCSI_TILE_RADIUS * stride), zero = MCSI_(set)(0.0f);
@@ -3711,7 +3715,7 @@ MCSI_CORE MCSI_F MCSI_(tile_value)(const MCS_(frame) * axes, const mcsi_facing *
         MCS_(vec3) w = MCSI_(vec3)(MCSI_(dot)(axes->s, m) * unit, MCSI_(dot)(axes->t, m) * unit, MCSI_(max)(c * unit, cosine));
         f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCSI_(load)(tile + MCSI_TILE_SPREAD * stride));
     }
-    return MCSI_(sel)(c + r > 0.0f, f + MCSI_TILE_LEAST, zero);
+    return MCSI_(sel)(c + r > 0.0f, MCSI_(reflected)(f), zero);
 }
 /* Reflection towards the corners of tiles. */
 MCSI_CORE MCSI_F MCSI_(corner_value)(const MCS_(frame) * axes, const mcsi_facing *s, MCS_(vec3) w) {
@@ -3720,7 +3724,7 @@ MCSI_CORE MCSI_F MCSI_(corner_value)(const MCS_(frame) * axes, const mcsi_facing
         w = MCSI_(vec3)(MCSI_(dot)(axes->s, w), MCSI_(dot)(axes->t, w), z);
         f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCSI_(set)(0.0f));
     }
-    return f + MCSI_TILE_LEAST;
+    return MCSI_(reflected)(f);
 }
 /* A grid of weights, light times value, column by column, as integers: cum[j][i] is the sum of row i's shares before column j, cum[cols][i] that of
  * the whole row. row[i] is the weight of a row. */
@@ -3843,7 +3847,8 @@ MCS_FN void mcsi_patch_store(const mcs_env *e, const mcsi_patch *p, float *field
     }
     d = p->e > 0.0 && d > 0.0 ? d / p->e : 1.0;
     d = d < 1.0 ? d : 1.0;
-    spread = 1.0 - d * d + (p->e > 0.0 ? p->within / p->e : 0.0), r2 = mcsi_sqrt_d(r2), reach = 1.5 * mcsi_sqrt_d(spread);
+    spread = 1.0 - d * d + (p->e > 0.0 ? p->within / p->e : 0.0), spread = spread < 1.0 ? spread : 1.0, r2 = mcsi_sqrt_d(r2),
+    reach = 1.5 * mcsi_sqrt_d(spread);
     if (p->area > 0.0) {
         float s, c;
         double even = p->up * p->up, turns = 0.5 * (p->col1 - p->col0) / e->w;
@@ -4078,8 +4083,8 @@ typedef struct {
 MCSI_CORE mcsi_warp mcsi_warp_make(float value, float pull, float v00, float v01, float v10, float v11) {
     mcsi_warp w;
     float least, mean;
-    w.v[0] = value + pull * (v00 - value), w.v[1] = value + pull * (v01 - value);
-    w.v[2] = value + pull * (v10 - value), w.v[3] = value + pull * (v11 - value);
+    value *= 1.0f - pull; /* so that no difference falls below 0 */
+    w.v[0] = value + pull * v00, w.v[1] = value + pull * v01, w.v[2] = value + pull * v10, w.v[3] = value + pull * v11;
     mean = (w.v[0] + w.v[1]) + (w.v[2] + w.v[3]), least = 0.0075f * mean, mean = 1.0f / (0.25f * mean + least);
     w.v[0] = (w.v[0] + least) * mean, w.v[1] = (w.v[1] + least) * mean, w.v[2] = (w.v[2] + least) * mean,
     w.v[3] = (w.v[3] + least) * mean;
