@@ -3313,7 +3313,7 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     if (bytes < sizeof *e) return MCS_ERR_MEMORY;
     if (e->magic != MCSI_ENV_MAGIC || e->version != MCSI_ENV_VERSION || !mcs_env_bytes(e->w, e->h)) return MCS_ERR_FORMAT;
     at = mcsi_env_layout(e->w, e->h);
-    if (memcmp(&at, &e->at, sizeof at) || e->uniform > 1 || e->incomplete > 1) return MCS_ERR_FORMAT;
+    if (memcmp(&at, &e->at, sizeof at) != 0 || e->uniform > 1 || e->incomplete > 1) return MCS_ERR_FORMAT;
     if (bytes < at.bytes) return MCS_ERR_MEMORY;
     v = mcsi_env_whole(e);
     for (y = 0; y <= (e->h + 1) / 2; y++)
@@ -3657,7 +3657,7 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * Below the horizon only parts of tiles that it crosses are drawn. The tables keep pointers to t and e. Bad u or a bad direction
  * give pdf 0, as does a surface that no light reaches (build returns MCS_UNIFORM).
  * Lobes narrower than a tile: a share (p->brdf_share) of the samples is drawn from the visible normals of the lobe instead, (1 -
- * matte) m/(1 + m), at most 0.95, where m + 0.1 is the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of
+ * matte) m/(1 + m), at most 0.95, where m + 0.3 is the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of
  * the lobe; the density is that of the mixture, and what the lobe sends below the surface is lost. A caller who joins samplers of
  * its own by MIS sets p->brdf_share to 0. For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified.
  * Tile weights: matte: E (c + r)^2/(4 r), or E c where c >= r, c the cosine of the mean direction and r the radius of the tile;
@@ -4024,7 +4024,7 @@ MCSI_CORE void mcsi_corners_value(const mcsi_facing *s, size_t n, const float *c
 }
 /* The part of the samples that a lobe narrower than the tiles gets for itself. */
 MCS_FN float mcsi_brdf_share(const mcsi_facing *s, size_t tiles) {
-    float m = 1.0f / ((float)tiles * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z) - 0.1f;
+    float m = 1.0f / ((float)tiles * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z) - 0.3f;
     return m > 0.0f ? (1.0f - s->matte) * mcsi_min(m / (1.0f + m), 0.95f) : 0.0f;
 }
 MCSI_CORE mcsi_own_lobe mcsi_own_make(const mcs_reflection *r, const mcsi_facing *s) {
