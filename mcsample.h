@@ -3635,16 +3635,16 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
 #if !defined(MCS_NO_TABLES) && !defined(MCS_NO_LOBES)
 /* ==== [product] environment times reflection times cosine ======================================================================
  * Directions for direct lighting, drawn almost in proportion to the whole integrand L f cos (without occlusion) instead of to one
- * of its factors. The map is cut into tiles (rows x 2 rows); a tile is drawn by its light times the reflection towards the light's
- * mean direction in it, then a texel within the tile by its light. Domain (u1, u2), codomain unit world directions, density per
- * solid angle, exact.
+ * of its factors. The map is cut into tiles (rows x 2 rows); a tile is drawn by its light times the reflection towards that light,
+ * then a point in it by the light and, bilinearly, by the reflection towards the corners. Domain (u1, u2), codomain unit world
+ * directions, density per solid angle, exact.
  *
  *   mcs_tiles_bytes(e, rows), mcs_tiles_build(t, bytes, e, rows)    once per map; rows 16, 32 or 64 (16: 11 degrees a tile)
  *   mcs_reflection               what the surface does with light: frame (normal, tangent in world space), wo (local, to the eye),
  *                                alpha_x, alpha_y of a GGX lobe like its own (mcs_phong: sqrt(1/(2n + 4)), Ashikhmin-Shirley:
  *                                sqrt(2/(n + 2))), matte: the matte part of its reflectance, 0 to 1. Only the variance depends on
  *                                how like it is.
- *   prepared form, for several samples at a point: about 5 KB for 16 rows
+ *   prepared form, for several samples at a point: about 7 KB for 16 rows
  *     mcs_product_bytes(rows), mcs_product_build(p, bytes, t, e, &reflection)
  *     mcs_product_build_weights(p, bytes, t, e, weight)             any reflection: weight[rows * 2 rows], one per tile, to be
  *                                evaluated about mcs_tiles_direction(t, e, k); > 0 wherever the reflection may be
@@ -3654,16 +3654,20 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  *
  * Support: every direction above the surface from which light comes can be drawn: tiles that the horizon may cross, judged by the
  * distance of a tile's corners from its mean direction, weigh at least a ten-thousandth of what a white surface would make of them.
- * Below the horizon only parts of tiles that it crosses are drawn. The tables keep pointers to t and e. Bad u or a bad direction
- * give pdf 0, as does a surface that no light reaches (build returns MCS_UNIFORM).
+ * Below the horizon only parts of tiles that it crosses are drawn. A product keeps pointers to t and e. Bad u or a bad direction
+ * give pdf 0, as does a surface that no light reaches (build returns MCS_UNIFORM); a black map counts as even light, as in [env].
  * Lobes narrower than a tile: a share (p->brdf_share) of the samples is drawn from the visible normals of the lobe instead, (1 -
  * matte) m/(1 + m), at most 0.95, where m + 0.3 is the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of
  * the lobe; the density is that of the mixture, and what the lobe sends below the surface is lost. A caller who joins samplers of
  * its own by MIS sets p->brdf_share to 0. For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified.
- * Tile weights: matte: E (c + r)^2/(4 r), or E c where c >= r, c the cosine of the mean direction and r the radius of the tile;
- * lobe: GGX at the mean direction with alpha^2 + s^2/4, s^2 the spread of the light's direction in the tile. Tile probabilities are
- * integers. Cost of a sample: that of the environment's and two short searches. Sources: Clarberg and Akenine-Moeller 2008,
- * "Practical product importance sampling for direct illumination"; Cline et al. 2006, "Two stage importance sampling". */
+ * Tile weights: light E times reflection towards its mean direction; matte (c + r)^2/(4 pi r), or c/pi where c >= r, c the cosine
+ * and r 1.5 times the spread s of the light about that direction; lobe: GGX with alpha^2 + s^2/4. Tile probabilities are integers.
+ * Within a tile the density is that of the light times a bilinear function of the place among the light (the parts of the tile's
+ * light above, and to the left within the row) that follows the reflection towards the corners, as far as the light reaches them:
+ * so it is continuous within a tile, and varies within a texel. _pdf of a sample is its own to the rounding of that place, 2^-22 of
+ * the map's texels. Cost of a sample: that of the environment's, two short searches, 2 sqrt, 5 div. Sources: Clarberg and
+ * Akenine-Moeller 2008, "Practical product importance sampling for direct illumination"; Cline et al. 2006, "Two stage importance
+ * sampling"; bilinear warping: Pharr, Jakob, Humphreys 2023, A.5. */
 
 #if MCSI_W == 1
 /* What is known of tiles, column by column: light, mean direction of it and its length's inverse, spread; radius of the tile and of
@@ -3704,12 +3708,12 @@ MCSI_CORE MCSI_F MCSI_(reflected)(MCSI_F f) {
 }
 /* Reflection towards the light of tiles; more than 0 wherever there may be light above the horizon. */
 MCSI_CORE MCSI_F MCSI_(tile_value)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride) {
-    MCSI_F r = MCSI_(load)(tile + MCSI_TILE_RADIUS * stride), zero = MCSI_(set)(0.0f);
-    MCS_(vec3)
-    m = MCSI_(vec3)(MCSI_(load)(tile + MCSI_TILE_X * stride), MCSI_(load)(tile + MCSI_TILE_Y * stride),
-                    MCSI_(load)(tile + MCSI_TILE_Z * stride));
-    MCSI_F c = MCSI_(dot)(axes->n, m), reach = MCSI_(load)(tile + MCSI_TILE_REACH * stride), crossing = MCSI_(max)(c + reach, zero);
-    MCSI_F cosine = MCSI_(sel)(c >= reach, c, crossing * crossing / (4.0f * reach)), f = MCSI_1_PI * cosine;
+    MCSI_F r = MCSI_(load)(tile + MCSI_TILE_RADIUS * stride), reach = MCSI_(load)(tile + MCSI_TILE_REACH * stride);
+    MCSI_F c, crossing, cosine, f, zero = MCSI_(set)(0.0f);
+    MCS_(vec3) m;
+    m.x = MCSI_(load)(tile + MCSI_TILE_X * stride), m.y = MCSI_(load)(tile + MCSI_TILE_Y * stride);
+    m.z = MCSI_(load)(tile + MCSI_TILE_Z * stride), c = MCSI_(dot)(axes->n, m), crossing = MCSI_(max)(c + reach, zero);
+    cosine = MCSI_(sel)(c >= reach, c, crossing * crossing / (4.0f * reach)), f = MCSI_1_PI * cosine;
     if (s->matte < 1.0f) {
         MCSI_F unit = MCSI_(load)(tile + MCSI_TILE_UNIT * stride);
         MCS_(vec3) w = MCSI_(vec3)(MCSI_(dot)(axes->s, m) * unit, MCSI_(dot)(axes->t, m) * unit, MCSI_(max)(c * unit, cosine));
@@ -3726,8 +3730,8 @@ MCSI_CORE MCSI_F MCSI_(corner_value)(const MCS_(frame) * axes, const mcsi_facing
     }
     return MCSI_(reflected)(f);
 }
-/* A grid of weights, light times value, column by column, as integers: cum[j][i] is the sum of row i's shares before column j, cum[cols][i] that of
- * the whole row. row[i] is the weight of a row. */
+/* A grid of weights, light times value, column by column, as integers: cum[j][i] is the sum of row i's shares before column j,
+ * cum[cols][i] that of the whole row. row[i] is the weight of a row. */
 MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
     size_t i, j;
     for (i = 0; i < rows; i += MCSI_W) {
@@ -3760,12 +3764,11 @@ MCSI_BATCH_AS(mcsi_corner_values_n, corner_values_n,
                       MCSI_(store)(value + i, MCSI_(corner_value)(&axes, s, w));
                   }
               })
+/* clang-format off */
 MCSI_BATCH_AS(mcsi_grid_rows_n, grid_rows_n,
               (size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row),
-              (rows, cols, light, value, cum, row), {
-                  MCSI_(grid_rows)
-                  (rows, cols, light, value, cum, row);
-              })
+              (rows, cols, light, value, cum, row), { MCSI_(grid_rows)(rows, cols, light, value, cum, row); })
+/* clang-format on */
 #endif
 
 #if MCSI_W == 1
@@ -3789,7 +3792,7 @@ typedef struct {
     mcsi_own_lobe own;
     float brdf_share;
     uint32_t lit, warped;
-} mcs_product; /* then row_cum[rows + 1], cum[cols + 1][rows], weight[cols][rows], above[cols][rows] */
+} mcs_product; /* the rest: mcsi_product_units and below */
 
 enum { MCSI_TILE_BLOCK = 4, MCSI_TILES_MAX = 64 };
 MCSI_CORE const float *mcsi_tiles_fields(const mcs_tiles *t) { return (const float *)(const void *)(t + 1); }
