@@ -270,9 +270,195 @@ static void fuzz_table(int kind, bytes *b) {
     free(copy), free(f), free(u), free(x), free(pdf);
 }
 
-enum { NUMBERS = MCST_NROWS, VECTORS, ESTIMATOR, TABLES, FUNCTIONS = TABLES + KINDS };
-static const char *const other_name[FUNCTIONS - MCST_NROWS] = {"numbers", "vectors", "estimator",        "pwc",
-                                                               "pwl",     "alias",   "pwc of a function"};
+/* --- environment maps and products ------------------------------------------------------------------------------------------ */
+
+static void *room(size_t size) {
+    void *p = malloc(size + !size);
+    if (!p) exit(2);
+    return p;
+}
+
+/* Draws and densities of a map, of a window of it where m is given, with the axes as frame or without: then only inside the map. */
+static void draw_env(const mcs_env *e, const mcs_env_window *m, int axes, bytes *b) {
+    const size_t count = take_u8(b) % 40;
+    float *u = floats(2 * count), *to[4];
+    size_t k;
+    int i;
+    for (i = 0; i < 4; i++) to[i] = floats(count);
+    for (k = 0; k < count; k++) {
+        const float u1 = u[k] = take_u(b, k & 1), u2 = u[count + k] = take_u(b, k & 1);
+        const mcs_vec3 w = take_direction(b, k & 1);
+        const int good = below_one(u1) && below_one(u2);
+        const mcs_texel s = m ? mcs_env_window_sample(m, e, u1, u2) : mcs_env_sample(e, u1, u2), at = mcs_env_texel(e, w);
+        const mcs_texel bits = mcs_env_sample_bits(e, take_u32(b), ~(uint32_t)k), own = mcs_env_texel(e, s.w);
+        const float here = m ? mcs_env_window_pdf(m, e, s.w) : mcs_env_pdf(e, s.w);
+        const float there = m ? mcs_env_window_pdf(m, e, w) : mcs_env_pdf(e, w);
+        const mcs_vec2 back = mcs_env_invert(e, w), again = mcs_env_invert(e, s.w);
+        MUST(s.row < e->h && s.col < e->w && at.row < e->h && at.col < e->w && bits.row < e->h && bits.col < e->w);
+        MUST(proper(s.pdf) && proper(here) && proper(there) && proper(bits.pdf) && proper(at.pdf));
+        MUST(below_one(back.x) && below_one(back.y) && below_one(again.x) && below_one(again.y));
+        MUST(proper(mcs_env_weight(e, there)) && (good || s.pdf == 0));
+        if (!axes) continue;
+        MUST(finite3(s.w) && finite3(bits.w) && finite3(at.w) && bits.pdf > 0);
+        MUST(!good || (s.pdf > 0 && here == s.pdf && own.row == s.row && own.col == s.col));
+    }
+    if (m) mcs_env_window_sample_n(m, e, count, u, u + count, to[0], to[1], to[2], to[3]);
+    else mcs_env_sample_n(e, count, u, u + count, to[0], to[1], to[2], to[3]);
+    for (k = 0; k < count; k++) {
+        MUST(proper(to[3][k]) && (!axes || (finite(to[0][k]) && finite(to[1][k]) && finite(to[2][k]))));
+        if (k & 1) to[0][k] = take_float(b);
+    }
+    mcs_env_pdf_n(e, count, to[0], to[1], to[2], to[3]);
+    for (k = 0; k < count; k++) MUST(proper(to[3][k]));
+    for (i = 0; i < 4; i++) free(to[i]);
+    free(u);
+}
+
+static void fuzz_product(const mcs_env *e, bytes *b) {
+    const size_t size = mcs_tiles_bytes(e, 16), product_size = mcs_product_bytes(16), count = take_u8(b) % 40;
+    const int tame = take_u8(b) & 1, weights = take_u8(b) % 4 == 0;
+    mcs_tiles *t = (mcs_tiles *)room(size);
+    mcs_product *p = (mcs_product *)room(product_size);
+    float weight[512], *u = floats(2 * count), *to[4];
+    mcs_reflection r;
+    mcs_status s;
+    size_t k;
+    int i;
+    MUST(mcs_tiles_build(t, size - 1, e, 16) == MCS_ERR_MEMORY && mcs_tiles_build(t, size, e, take_u8(b) | 1u) == MCS_ERR_SIZE);
+    s = mcs_tiles_build(t, size, e, 16);
+    MUST(s == (e->total > 0 ? MCS_OK : MCS_UNIFORM));
+    r.frame = mcs_frame_make(take_direction(b, tame));
+    if (!tame) r.frame.s = take_vec3(b), r.frame.t = take_vec3(b), r.frame.n = take_vec3(b);
+    r.wo = take_direction(b, tame), r.alpha_x = take_float(b), r.alpha_y = take_float(b), r.matte = take_float(b);
+    if (tame) r.alpha_x = mcs_schlick(0, r.alpha_x), r.alpha_y = mcs_schlick(0, r.alpha_y), r.matte = mcs_schlick(0, r.matte);
+    MUST(mcs_product_build(p, product_size - 1, t, e, &r) == MCS_ERR_MEMORY);
+    for (k = 0; k < 512; k++) weight[k] = k < 64 ? take_float(b) : weight[k / 8];
+    for (k = 0; k < 512; k++) MUST(finite3(mcs_tiles_direction(t, e, (uint32_t)k)));
+    s = weights ? mcs_product_build_weights(p, product_size, t, e, weight) : mcs_product_build(p, product_size, t, e, &r);
+    MUST(s == MCS_OK || s == MCS_UNIFORM);
+    for (i = 0; i < 4; i++) to[i] = floats(count);
+    for (k = 0; k < count; k++) {
+        const float u1 = u[k] = take_u(b, k & 1), u2 = u[count + k] = take_u(b, k & 1);
+        const mcs_vec3 w = take_direction(b, k & 1);
+        const mcs_texel a = mcs_product_sample(p, u1, u2), c = mcs_oneshot_sample(t, e, &r, u1, u2);
+        const int good = below_one(u1) && below_one(u2);
+        MUST(finite3(a.w) && finite3(c.w) && proper(a.pdf) && proper(c.pdf) && (good || (a.pdf == 0 && c.pdf == 0)));
+        MUST(a.row < e->h && a.col < e->w && c.row < e->h && c.col < e->w);
+        MUST(proper(mcs_product_pdf(p, w)) && proper(mcs_oneshot_pdf(t, e, &r, w)));
+        MUST(!(a.pdf > 0) || (mcs_product_pdf(p, a.w) > 0 && mcs_product_pdf(p, a.w) <= FLT_MAX));
+        MUST(!(c.pdf > 0) || (mcs_oneshot_pdf(t, e, &r, c.w) > 0 && mcs_oneshot_pdf(t, e, &r, c.w) <= FLT_MAX));
+    }
+    mcs_product_sample_n(p, count, u, u + count, to[0], to[1], to[2], to[3]);
+    for (k = 0; k < count; k++) MUST(finite(to[0][k]) && finite(to[1][k]) && finite(to[2][k]) && proper(to[3][k]));
+    for (i = 0; i < 4; i++) free(to[i]);
+    free(u), free(p), free(t);
+}
+
+/* An image whose floats are what is left of the input, over and over; then the map, a window and, if asked for, products. */
+static void fuzz_env(int products, bytes *b) {
+    const uint32_t w = 1 + take_u8(b) % 70, h = 1 + take_u8(b) % 40, kind = take_u8(b), gaps = take_u8(b);
+    const uint32_t channels = kind & 1 ? 1 : 3 + (kind >> 1) % 2, step = channels + gaps % 3;
+    const uint32_t row = (w - 1) * step + channels + gaps / 3 % 7, cut = take_u8(b) % (h + 1);
+    const size_t n = (size_t)(h - 1) * row + (size_t)(w - 1) * step + channels, size = mcs_env_bytes(w, h);
+    const uint32_t y = take_u8(b) % h, rows = 1 + take_u8(b) % (h - y), x = take_u8(b) % w, cols = 1 + take_u8(b) % w;
+    const uint32_t wild_row = take_u32(b), wild_rows = take_u32(b), wild_col = take_u32(b), wild_cols = take_u32(b);
+    float *f = floats(n);
+    mcs_env *e = (mcs_env *)room(size), *other = (mcs_env *)room(size);
+    mcs_image im = mcs_image_make(f, w, h, channels), wrong;
+    mcs_env_window *m;
+    bytes pixels;
+    size_t k, window_size;
+    mcs_status s;
+    int i;
+    im.pixel_stride = (ptrdiff_t)step, im.row_stride = (ptrdiff_t)row, im.bilinear = (kind & 8) != 0;
+    if (kind & 16) im.pixels = f + (size_t)(h - 1) * row, im.row_stride = -im.row_stride;
+    wrong = im;
+    wrong.w = take_u32(b), wrong.h = take_u32(b), wrong.pixel_stride = (ptrdiff_t)take_u64(b);
+    wrong.row_stride = (ptrdiff_t)take_u64(b);
+    im.floor = kind & 32 ? take_float(b) : 0;
+    pixels = *b;
+    for (k = 0; k < n; k++) {
+        if (!pixels.left) pixels = *b;
+        f[k] = take_float(&pixels);
+    }
+    if ((kind & 96) == 96) im.floor = mcs_env_mean(&im);
+    MUST(proper(mcs_env_mean(&im)));
+    memset(e, 0, size), memset(other, 0, size);
+    MUST(mcs_env_build(e, size - 1, &im) == MCS_ERR_MEMORY);
+    if (mcs_env_bytes(wrong.w, wrong.h) == 0 || mcs_env_bytes(wrong.w, wrong.h) > size) {
+        s = mcs_env_build(e, size, &wrong);
+        MUST(s == MCS_ERR_SIZE || s == MCS_ERR_MEMORY);
+    }
+    s = mcs_env_build(e, size, &im);
+    MUST((s == MCS_OK || s == MCS_UNIFORM) && e->total >= 0 && e->total <= 1e300 && mcs_env_check(e, size) == MCS_OK);
+    MUST(mcs_env_build_rows(other, size, &im, cut, h) == MCS_OK && mcs_env_build_rows(other, size, &im, 0, cut) == MCS_OK);
+    MUST(mcs_env_finish(other, size, &im) == s && !memcmp(e, other, size));
+    free(e), free(f); /* tables hold no addresses */
+    draw_env(other, NULL, 1, b);
+    window_size = mcs_env_window_bytes(rows), m = (mcs_env_window *)room(window_size);
+    MUST(mcs_env_window_build(m, window_size - 1, other, y, rows, x, cols) == MCS_ERR_MEMORY);
+    if (mcs_env_window_bytes(wild_rows) <= window_size) {
+        s = mcs_env_window_build(m, window_size, other, wild_row, wild_rows, wild_col, wild_cols);
+        MUST(s == MCS_OK || s == MCS_UNIFORM || s == MCS_ERR_SIZE);
+    }
+    s = mcs_env_window_build(m, window_size, other, y, rows, x, cols);
+    MUST(s == MCS_OK || s == MCS_UNIFORM);
+    draw_env(other, m, 1, b);
+    free(m);
+    if (products) fuzz_product(other, b);
+    for (i = 0; i < 2; i++) {
+        other->frame.s = take_vec3(b), other->frame.t = take_vec3(b), other->frame.n = take_direction(b, 1);
+        if (i) other->frame = mcs_frame_make(other->frame.n);
+        draw_env(other, NULL, 0, b);
+    }
+    free(other);
+}
+
+/* A table as it comes from a file: the input itself, or a map of the input's size with bytes of it changed. */
+static void fuzz_file(bytes *b) {
+    const uint32_t raw = take_u8(b) & 1, w = 1 + take_u8(b) % 20, h = 1 + take_u8(b) % 12, changes = take_u8(b) % 4;
+    const size_t table = mcs_env_bytes(w, h), size = raw ? b->left : table, less = take_u32(b);
+    mcs_env *e = (mcs_env *)room(size), *cut;
+    mcs_status s;
+    uint32_t i;
+    if (raw) {
+        bytes whole = *b;
+        take(&whole, e, size);
+    } else {
+        float pixels[20 * 12];
+        mcs_image im = mcs_image_make(pixels, w, h, 1);
+        for (i = 0; i < w * h; i++) pixels[i] = i < 16 ? take_float(b) : pixels[i / 2];
+        memset(e, 0, size);
+        s = mcs_env_build(e, size, &im);
+        MUST((s == MCS_OK || s == MCS_UNIFORM) && mcs_env_check(e, size) == MCS_OK);
+        for (i = 0; i < changes; i++) {
+            const uint32_t at = take_u32(b);
+            ((unsigned char *)e)[at % size] ^= take_u8(b);
+        }
+    }
+    cut = (mcs_env *)room(size ? less % size : 0);
+    memcpy(cut, e, size ? less % size : 0);
+    s = mcs_env_check(cut, size ? less % size : 0);
+    MUST(raw || s == MCS_ERR_MEMORY || s == MCS_ERR_FORMAT);
+    free(cut);
+    s = mcs_env_check(e, size);
+    MUST(s == MCS_OK || s == MCS_ERR_MEMORY || s == MCS_ERR_FORMAT);
+    if (s == MCS_OK) {
+        const uint32_t y = take_u8(b) % e->h, rows = 1 + take_u8(b) % (e->h - y), x = take_u8(b) % e->w, cols = 1 + take_u8(b) % e->w;
+        const size_t window_size = mcs_env_window_bytes(rows);
+        mcs_env_window *m = (mcs_env_window *)room(window_size);
+        draw_env(e, NULL, 0, b);
+        s = mcs_env_window_build(m, window_size, e, y, rows, x, cols);
+        MUST(s == MCS_OK || s == MCS_UNIFORM);
+        draw_env(e, m, 0, b);
+        free(m);
+    }
+    free(e);
+}
+
+enum { NUMBERS = MCST_NROWS, VECTORS, ESTIMATOR, TABLES, ENV = TABLES + KINDS, PRODUCT, ENV_FILE, FUNCTIONS };
+static const char *const other_name[FUNCTIONS - MCST_NROWS] = {
+    "numbers", "vectors", "estimator", "pwc", "pwl", "alias", "pwc of a function", "environment", "product", "environment file"};
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -285,6 +471,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     else if (which == NUMBERS) fuzz_numbers(&b);
     else if (which == VECTORS) fuzz_vectors(&b);
     else if (which == ESTIMATOR) fuzz_estimator(&b);
+    else if (which == ENV || which == PRODUCT) fuzz_env(which == PRODUCT, &b);
+    else if (which == ENV_FILE) fuzz_file(&b);
     else fuzz_table(which - TABLES, &b);
     return 0;
 }
