@@ -3340,7 +3340,8 @@ MCSI_CORE double mcsi_times_one(float u, int32_t *ok) { return (double)mcsi_unit
 /* The place of U in the part of a row that a window has. */
 MCSI_CORE double mcsi_env_within(const mcsi_env_line *line, double U) {
     if (line->mass == MCSI_ONE && line->begin == 0) return U;
-    U = line->begin + U * (line->mass * (1.0 / MCSI_ONE));
+    U *= line->mass * (1.0 / MCSI_ONE); /* and the sum must not round up to the end */
+    U = line->begin + (U < line->mass - 4.76837158203125e-07 ? U : line->mass - 4.76837158203125e-07);
     return U < MCSI_ONE ? U : U - MCSI_ONE;
 }
 /* Row of the view. */

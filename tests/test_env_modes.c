@@ -693,6 +693,24 @@ static void test_spread(void) {
     arena_free(&a), discard(&p);
 }
 
+/* A window whose share of a row is a few units of 2^31, far from the row's beginning: begin + u mass must not round up to its end. */
+static void test_few_units(void) {
+    const float px[3] = {1e30f, 1e-20f, 1};
+    const mcs_image image = mcs_image_make(px, 3, 1, 1);
+    arena a = arena_make(mcs_env_bytes(3, 1)), b = arena_make(mcs_env_window_bytes(1));
+    mcs_env *e = (mcs_env *)(void *)a.at;
+    mcs_env_window *m = (mcs_env_window *)(void *)b.at;
+    int i;
+    CHECK(mcs_env_build(e, a.bytes, &image) == MCS_OK && mcs_env_window_build(m, b.bytes, e, 0, 1, 1, 1) == MCS_OK, "build");
+    for (i = 1; i < 256; i++) {
+        const float u = 1 - (float)i * 0x1p-24f;
+        const mcs_texel s = mcs_env_window_sample(m, e, u, 0.5f);
+        CHECK(s.col == 1 && s.pdf > 0 && mcs_env_window_pdf(m, e, s.w) == s.pdf, "u1 = %a: column %u, pdf %g, %g", (double)u, s.col,
+              (double)s.pdf, (double)mcs_env_window_pdf(m, e, s.w));
+    }
+    arena_free(&a), arena_free(&b);
+}
+
 int main(int argc, char **argv) {
     mcst_start(argc, argv);
     mcst_group("env hits");
@@ -711,5 +729,7 @@ int main(int argc, char **argv) {
     if (mcst_case("refused")) test_refused_windows();
     mcst_group("env well-spread points");
     if (mcst_case("stratified and Sobol against independent")) test_spread();
+    mcst_group("env windows of few units");
+    if (mcst_case("the last u stays inside")) test_few_units();
     return mcst_finish();
 }

@@ -444,7 +444,8 @@ static void fuzz_file(bytes *b) {
     s = mcs_env_check(e, size);
     MUST(s == MCS_OK || s == MCS_ERR_MEMORY || s == MCS_ERR_FORMAT);
     if (s == MCS_OK) {
-        const uint32_t y = take_u8(b) % e->h, rows = 1 + take_u8(b) % (e->h - y), x = take_u8(b) % e->w, cols = 1 + take_u8(b) % e->w;
+        const uint32_t y = take_u8(b) % e->h, rows = 1 + take_u8(b) % (e->h - y), x = take_u8(b) % e->w,
+                       cols = 1 + take_u8(b) % e->w;
         const size_t window_size = mcs_env_window_bytes(rows);
         mcs_env_window *m = (mcs_env_window *)room(window_size);
         draw_env(e, NULL, 0, b);

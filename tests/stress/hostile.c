@@ -645,8 +645,9 @@ static void check_map(const part_of *q, const mcs_env_window *m, int axes, uint6
     else mcs_env_sample_n(e, count, u, u + count, x, y, z, pdf);
     for (k = 0; k < count; k++) {
         const mcs_texel s = m ? mcs_env_window_sample(m, e, u[k], u[count + k]) : mcs_env_sample(e, u[k], u[count + k]);
-        CHECK(finite(t, x[k]) && finite(t, y[k]) && finite(t, z[k]) && pdf[k] == s.pdf, "array: u %a %a, w %a %a %a, pdf %a, not %a",
-              (double)u[k], (double)u[count + k], (double)x[k], (double)y[k], (double)z[k], (double)pdf[k], (double)s.pdf);
+        CHECK(finite(t, x[k]) && finite(t, y[k]) && finite(t, z[k]) && pdf[k] == s.pdf,
+              "array: u %a %a, w %a %a %a, pdf %a, not %a", (double)u[k], (double)u[count + k], (double)x[k], (double)y[k],
+              (double)z[k], (double)pdf[k], (double)s.pdf);
         if (mcst_mix(state) & 1) x[k] = st_hostile(mcst_mix(state));
     }
     mcs_env_pdf_n(e, count, x, y, z, pdf);
@@ -852,7 +853,8 @@ static void check_env(int tiled, uint64_t *state, tally *t) {
     CHECK(e->total >= 0 && e->total <= 1e300, "total %g", e->total);
     CHECK(mcs_env_check(e, bytes) == MCS_OK, "%u x %u: not a table: %d", (unsigned)p.im.w, (unsigned)p.im.h,
           (int)mcs_env_check(e, bytes));
-    CHECK(mcs_env_build_rows(other, bytes, &p.im, cut, p.im.h) == MCS_OK && mcs_env_build_rows(other, bytes, &p.im, 0, cut) == MCS_OK,
+    CHECK(mcs_env_build_rows(other, bytes, &p.im, cut, p.im.h) == MCS_OK &&
+              mcs_env_build_rows(other, bytes, &p.im, 0, cut) == MCS_OK,
           "parts, cut at %u", (unsigned)cut);
     CHECK(mcs_env_build_rows(other, bytes, &p.im, cut, p.im.h + 1) == MCS_ERR_SIZE, "rows beyond the image");
     CHECK(mcs_env_finish(other, bytes, &p.im) == s && st_intact(&parts) && !memcmp(m.at, parts.at, bytes), "%u x %u cut at %u",
