@@ -134,13 +134,13 @@ BENCH_SLEEF = $(shell mkdir -p $(BENCH) && printf '\043include <sleef.h>\nint ma
 BENCH_HEADERS = mcsample.h $(wildcard tests/*.h tests/bench/*.h) $(BUILD)/flags
 BENCH_BINS = $(BENCH)/throughput $(BENCH)/tables $(BENCH)/clock $(BENCH)/convergence
 
-bench: bench-binaries ## run time against error: CSV files and plots in build/bench, tables here; a few minutes
+bench: bench-binaries ## run time against error: CSV files and plots in build/bench, tables here; some minutes
 	@$(BENCH)/throughput --out $(BENCH)
 	@$(BENCH)/tables --out $(BENCH)
 	@CLOCK=$(BENCH)/clock sh tests/bench/include.sh $(BENCH)
 	@$(BENCH)/convergence --out $(BENCH) $(MAPS)
 
-bench-quick: bench-binaries ## the same with less repetition and smaller tables, about 30 s
+bench-quick: bench-binaries ## the same with less repetition and smaller tables, about 45 s
 	@$(BENCH)/throughput --quick --out $(BENCH)
 	@$(BENCH)/tables --quick --out $(BENCH)
 	@CLOCK=$(BENCH)/clock sh tests/bench/include.sh $(BENCH) quick
