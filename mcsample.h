@@ -94,9 +94,9 @@
  *              mcs_env_weight mcs_env_sample_n mcs_env_pdf_n mcs_env_window mcs_env_window_bytes mcs_env_window_build
  *              mcs_env_window_sample mcs_env_window_pdf mcs_env_window_sample_n
  * [product]    directions per solid angle; memory of the caller
- *              mcs_tiles mcs_tiles_bytes mcs_tiles_build mcs_tiles_direction mcs_reflection mcs_product mcs_product_bytes
- *              mcs_product_build mcs_product_build_weights mcs_product_sample mcs_product_pdf mcs_product_sample_n
- *              mcs_oneshot_sample mcs_oneshot_pdf
+ *              mcs_tiles mcs_tiles_bytes mcs_tiles_build mcs_tiles_direction mcs_profile mcs_reflection mcs_product
+ *              mcs_product_bytes mcs_product_build mcs_product_build_weights mcs_product_sample mcs_product_pdf
+ *              mcs_product_sample_n mcs_oneshot_sample mcs_oneshot_pdf
  * [estimator]  mcs_stat mcs_stat_add mcs_stat_merge mcs_stat_variance mcs_stat_error mcs_stat_ci
  * END OF INDEX */
 
@@ -169,10 +169,10 @@ typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #include <math.h>
 #endif
 
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(__CUDACC__)
 #define MCSI_PREFETCH(p) __builtin_prefetch(p)
 #else
-#define MCSI_PREFETCH(p) ((void)0)
+#define MCSI_PREFETCH(p) ((void)(p))
 #endif
 
 /* Square root without errno: sqrtf would cost a test and a call in every loop. */
@@ -249,7 +249,9 @@ MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const fl
     b->n = n, b->i = 0, b->rest = 0;
 }
 
-#if defined(__GNUC__) /* not cold: gcc 12 leaves vzeroupper out of cold exits, and SSE code is ten times slower from there on */
+#if defined(__GNUC__) && \
+    !defined(            \
+        __CUDACC__) /* not cold: gcc 12 leaves vzeroupper out of cold exits, and SSE code is ten times slower from there on */
 __attribute__((noinline, unused)) static
 #else
 MCS_FN
@@ -610,6 +612,15 @@ MCSI_CORE MCSI_F MCSI_(within)(MCSI_I ok, MCSI_F x, float lo, float hi) {
 MCSI_CORE MCSI_I MCSI_(scale_ok)(MCSI_F scale) { return (scale >= 1e-18f) & (scale <= 1e18f); }
 MCSI_CORE MCSI_I MCSI_(always)(void) { return MCSI_(set)(0.0f) == MCSI_(set)(0.0f); }
 
+/* x as a float in memory holds it: where expressions keep more digits (x87), compilers leave them to variables as well. */
+MCSI_CORE MCSI_F MCSI_(stored)(MCSI_F x) {
+#if FLT_EVAL_METHOD == 2
+    volatile float memory = x;
+    return memory;
+#else
+    return x;
+#endif
+}
 /* ---- vector maths: own polynomials, the same in every width ------------------------------------------------------------------
  * Minimax fits with float coefficients, summed in pairs (Estrin), as a scalar caller waits for the longest chain of operations.
  * Errors in ulp are the largest found in dense sweeps of the whole range (tests/test_math.c). */
@@ -685,12 +696,12 @@ MCSI_CORE MCSI_F MCSI_(log_of_sum)(MCSI_F w, MCSI_F c) {
 }
 /* ln(1 + x), x in (-1, 1e38]. */
 MCSI_CORE MCSI_F MCSI_(log1p)(MCSI_F x) {
-    MCSI_F w = 1.0f + x;
+    MCSI_F w = MCSI_(stored)(1.0f + x);
     return MCSI_(log_of_sum)(w, x - (w - 1.0f));
 }
 /* ln(1 - u), u in [0,1). */
 MCSI_CORE MCSI_F MCSI_(log1m)(MCSI_F u) {
-    MCSI_F w = 1.0f - u;
+    MCSI_F w = MCSI_(stored)(1.0f - u);
     return MCSI_(log_of_sum)(w, (1.0f - w) - u);
 }
 
@@ -713,7 +724,7 @@ MCSI_CORE MCSI_F MCSI_(times_2_to)(MCSI_F x, MCSI_I k, MCSI_I some) {
 MCSI_CORE MCSI_F MCSI_(exp_neg)(MCSI_F x) {
     MCSI_I k;
     MCSI_F q = MCSI_(exp_reduced)(MCSI_(min)(MCSI_(max)(x, MCSI_(set)(-104.0f)), MCSI_(set)(0.0f)), &k);
-    return MCSI_(times_2_to)(1.0f + q, k, k | -1);
+    return MCSI_(stored)(MCSI_(times_2_to)(1.0f + q, k, k | -1));
 }
 /* e^x and e^x - 1, x in [-80, 0]. 1 ulp. */
 MCSI_CORE MCSI_F MCSI_(exp_both)(MCSI_F x, MCSI_F *minus_one) {
@@ -1183,7 +1194,7 @@ MCSI_CORE MCS_(sample1) MCS_(truncexp_sample)(MCSI_F rate, MCSI_F m, MCSI_F u) {
     MCSI_F e, d, w, c, x;
     MCSI_I flat, ok = MCSI_(truncexp_ends)(rate, m, &e, &d, &flat);
     u = MCSI_(unit)(u, &ok);
-    w = (1.0f - u) + u * e; /* 1 - u d = e^(-rate x); u d itself has more digits of it where it is small */
+    w = MCSI_(stored)((1.0f - u) + u * e); /* 1 - u d = e^(-rate x); u d itself has more digits of it where it is small */
     c = MCSI_(blend)((0x3effffff - MCSI_(bits)(w)) >> 31, (1.0f - w) - u * d, MCSI_(set)(0.0f)); /* where w >= 1/2 */
     x = MCSI_(min)(MCSI_(log_of_sum)(w, c) / -rate, m);
     return MCSI_(sample1)(ok, MCSI_(sel)(flat, u * m, x), MCSI_(sel)(flat, 1.0f / m, w * (rate / d)));
@@ -1367,7 +1378,8 @@ MCSI_CORE MCS_(sample2) MCS_(concentric_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) 
 }
 MCSI_FN MCSI_F MCS_(concentric_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) { return MCSI_(disk_pdf)(R, x, y); }
 MCSI_FN MCS_(vec2) MCS_(concentric_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
-    MCSI_F p = x / R, q = y / R, r2 = p * p + q * q, r = MCSI_(sqrt)(MCSI_(sel)(r2 < 4.0f, r2, MCSI_(set)(0.0f)));
+    MCSI_F p = MCSI_(stored)(x / R), q = MCSI_(stored)(y / R), r2 = p * p + q * q,
+           r = MCSI_(sqrt)(MCSI_(sel)(r2 < 4.0f, r2, MCSI_(set)(0.0f)));
     MCSI_I wide = MCSI_(abs)(p) > MCSI_(abs)(q);
     MCSI_F along = MCSI_(sel)(wide, p, q), across = MCSI_(sel)(wide, q, p); /* the nearer axis, and the other one */
     MCSI_F eighths = 8.0f * MCSI_(atan2_turns)(MCSI_(abs)(across), MCSI_(abs)(along));
@@ -1712,9 +1724,9 @@ MCSI_CORE MCSI_I MCSI_(cancelled)(MCSI_F wo_z, MCSI_F d, MCSI_F p2) { return (2.
  *                    mcs_frame_make(R). What dips below the surface is lost mass. weight = (n+2)/(n+1) wi.z.
  * parameters         n in [0, 1e9] (0: uniform hemisphere); n < 0 or NaN is bad, larger n count as 1e9
  * cost               1 log1p, 1 exp, 1 sqrt, 1 sincos, 1 div; pdf of a direction 1 log1p, 1 exp, 1 div
- * accuracy           pdf of u 0.4 E (n below 1: 0.7 E), of w 0.4 E, |w| 4 ulp; sin(theta) relative to the lobe (u1 below 2^-96 may
- *                    count as 0): from 1 - c = -expm1(L), L = ln(1-u1)/(n+1), and from tan^2 by a cross product, because cos alone
- *                    cannot hold a narrow lobe (powf(cos, n) is 35 % off at n = 1e7)
+ * accuracy           pdf of u 0.4 E (n below 1: 0.7 E), of w 0.4 E, |w| 4 ulp; sin(theta) relative to the lobe: from
+ *                    1 - c = -expm1(L), L = ln(1-u1)/(n+1), and from tan^2 by a cross product, because cos alone cannot hold a
+ *                    narrow lobe (powf(cos, n) is 35 % off at n = 1e7)
  * source             Phong 1975; normalisation Lafortune and Willems 1994, "Using the modified Phong reflectance model"
  * prefer             GGX for anything measured: this lobe loses up to half its mass at grazing incidence */
 
@@ -2362,8 +2374,7 @@ MCSI_BATCH_VALUE(ggx_bounded_pdf, ggx)
  *                    weight wi.z/max(wo.z, wi.z) <= 1
  * parameters         nu, nv in [0, 1e9]; negative or NaN is bad, larger count as 1e9
  * cost               1 log1p, 1 exp, 1 sincos, 1 sqrt, 2 div, weight 1 div; pdf of a direction 1 log1p, 1 exp, 1 sqrt, 3 div
- * accuracy           pdf of u 0.4 E (an exponent below 1: 1 E), of h, wi 0.3 E, eval 0.3 E, weight 0.1 E, |h|, |wi| 4 ulp; u1 below
- *                    2^-96 may count as 0
+ * accuracy           pdf of u 0.4 E (an exponent below 1: 1 E), of h, wi 0.3 E, eval 0.3 E, weight 0.1 E, |h|, |wi| 4 ulp
  * source             Ashikhmin and Shirley 2000, "An anisotropic Phong BRDF model", equations 4, 6, 8, 10 */
 
 typedef struct {
@@ -2392,7 +2403,9 @@ MCSI_CORE MCS_(vec3) MCSI_(ashikhmin_half)(const MCS_(ashikhmin) * m, MCSI_F u1,
     s2 = s * s, c2 = c * c;
     n = MCSI_(blend)(MCSI_(bits)(s2 - c2) >> 31, m->u + (m->v - m->u) * s2, m->v + (m->u - m->v) * c2);
     cosine = MCSI_(exp_both)(n * MCSI_(log1p)(-u1), &d);
-    *scale = MCSI_(sqrt)(-d * (2.0f + d) * (m->u / n)), *p = m->norm * (1.0f - u1);
+    *scale =
+        MCSI_(sqrt)(-d * (2.0f + d) * (m->u / n * 1.84467441e+19f)) * 2.32830644e-10f; /* 2^64, 2^-32: else tiny u1 underflow */
+    *p = m->norm * (1.0f - u1);
     return MCSI_(vec3)(*scale * c, *scale * (m->stretch * s), cosine);
 }
 MCSI_CORE MCS_(dir) MCS_(ashikhmin_h_sample)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2) {
@@ -2550,10 +2563,20 @@ MCSI_CORE float mcsi_word_weight(const uint32_t *word) {
     return w;
 }
 MCSI_CORE void mcsi_put_weight(uint32_t *word, float w) { memcpy(word, &w, sizeof w); }
+/* memmove of n words, which kernels do not have. */
+MCS_FN void mcsi_move(uint32_t *to, const float *from, uint32_t n) {
+#ifdef __CUDA_ARCH__
+    uint32_t i;
+    int up = (uintptr_t)to <= (uintptr_t)from;
+    for (i = 0; i < n; i++) mcsi_put_weight(to + (up ? i : n - 1 - i), from[up ? i : n - 1 - i]);
+#else
+    memmove(to, from, n * sizeof *to);
+#endif
+}
 /* Moves a list, which may overlap the table, into the place of its sums, cleaned; counts the bad ones. */
 MCS_FN uint32_t mcsi_weights_in(uint32_t *words, const float *f, uint32_t n) {
     uint32_t i, bad = 0;
-    memmove(words, f, n * sizeof *words);
+    mcsi_move(words, f, n);
     for (i = 0; i < n; i++) mcsi_put_weight(words + i, mcsi_clean(mcsi_word_weight(words + i), &bad));
     return bad;
 }
@@ -3309,11 +3332,14 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     mcsi_env_parts at;
     mcsi_env_view v;
     uint32_t y;
+    size_t i;
     if (!e || ((uintptr_t)e & 7u)) return MCS_ERR_ARG;
     if (bytes < sizeof *e) return MCS_ERR_MEMORY;
     if (e->magic != MCSI_ENV_MAGIC || e->version != MCSI_ENV_VERSION || !mcs_env_bytes(e->w, e->h)) return MCS_ERR_FORMAT;
     at = mcsi_env_layout(e->w, e->h);
-    if (memcmp(&at, &e->at, sizeof at) != 0 || e->uniform > 1 || e->incomplete > 1) return MCS_ERR_FORMAT;
+    for (i = 0; i < sizeof at; i++) /* memcmp, which kernels do not have */
+        if (((const char *)&at)[i] != ((const char *)&e->at)[i]) return MCS_ERR_FORMAT;
+    if (e->uniform > 1 || e->incomplete > 1) return MCS_ERR_FORMAT;
     if (bytes < at.bytes) return MCS_ERR_MEMORY;
     v = mcsi_env_whole(e);
     for (y = 0; y <= (e->h + 1) / 2; y++)
@@ -3379,7 +3405,9 @@ MCS_FN double mcsi_env_top(const mcs_env *e, uint32_t y) {
     return 2 * y <= e->h + 1 ? mcsi_env_edge(e)[y] : 2.0 - mcsi_env_edge(e)[e->h - y];
 }
 MCSI_CORE float mcsi_env_uniform_pdf(const mcs_env *e, const mcsi_env_view *v) {
-    double height = mcsi_env_top(e, v->row + v->count) - mcsi_env_top(e, v->row);
+    const double *edge = mcsi_env_edge(e);
+    uint32_t end = v->row + v->count;
+    double height = 2 * v->row >= e->h ? edge[e->h - v->row] - edge[e->h - end] : mcsi_env_top(e, end) - mcsi_env_top(e, v->row);
     return (float)(1.0 / (6.2831853071795865 * height * v->cols / e->w));
 }
 MCSI_CORE void mcsi_env_draw_uniform(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, mcsi_env_point *p) {
@@ -3403,7 +3431,16 @@ MCSI_CORE float mcsi_env_density(const mcs_env *e, const mcsi_env_view *v, uint3
     cdf = mcsi_env_cdf(e, row) + col;
     return (float)((cdf[1] - cdf[0]) * scale);
 }
-/* `part` of all draws come here. */
+/* Of a map that is not constant: the point, its texel, the density when `part` of all draws come here. */
+MCSI_CORE float mcsi_env_draw_point(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, mcsi_env_point *p,
+                                    uint32_t *row, uint32_t *col) {
+    uint32_t i = mcsi_env_draw_row(v, U2, p), mass;
+    const uint16_t *guide;
+    *row = v->row + i, U1 = mcsi_env_within(&v->line[i], U1);
+    guide = mcsi_env_guide(e, *row) + ((uint32_t)(int32_t)U1 >> e->at.col_shift);
+    *col = mcsi_env_draw_col(mcsi_env_cdf(e, *row), e->w, guide[0], guide[1], U1, p, &mass);
+    return (float)(mass * (part * v->line[i].scale));
+}
 MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, int ok) {
     mcsi_env_point p;
     mcs_texel r;
@@ -3415,13 +3452,8 @@ MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, doub
         r.row = mcsi_env_row_at(e, off_pole, polar), r.col = mcsi_env_col_at(e, turns);
         r.pdf = ok ? (float)(part * (double)mcsi_env_uniform_pdf(e, v)) : 0.0f;
     } else {
-        uint32_t i = mcsi_env_draw_row(v, U2, &p), mass;
-        const uint16_t *guide;
-        r.row = v->row + i, U1 = mcsi_env_within(&v->line[i], U1);
-        guide = mcsi_env_guide(e, r.row) + ((uint32_t)(int32_t)U1 >> e->at.col_shift);
-        r.col = mcsi_env_draw_col(mcsi_env_cdf(e, r.row), e->w, guide[0], guide[1], U1, &p, &mass);
+        r.pdf = mcsi_env_draw_point(e, v, U1, U2, part, &p, &r.row, &r.col), r.pdf = ok ? r.pdf : 0.0f;
         r.w = mcsi_env_direction(&e->frame, &p, (float)e->w, (float)e->h);
-        r.pdf = ok ? (float)(mass * (part * v->line[i].scale)) : 0.0f;
     }
     return r;
 }
@@ -3642,10 +3674,10 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  *
  *   mcs_tiles_bytes(e, rows), mcs_tiles_build(t, bytes, e, rows)    once per map; rows 16, 32 or 64 (16: 11 degrees a tile)
  *   mcs_reflection               what the surface does with light: frame (normal, tangent in world space), wo (local, to the eye),
- *                                alpha_x, alpha_y of a GGX lobe like its own (mcs_phong: sqrt(1/(2n + 4)), Ashikhmin-Shirley:
- *                                sqrt(2/(n + 2))), matte: the matte part of its reflectance, 0 to 1. Only the variance depends on
- *                                how like it is.
- *   prepared form, for several samples at a point: about 7 KB for 16 rows
+ *                                alpha_x, alpha_y of its lobe and the lobe's profile: MCS_PROFILE_GGX (0), _GAUSS (Ward, Beckmann;
+ *                                Ashikhmin-Shirley as alpha sqrt(2/(n + 2))), _PHONG (alpha sqrt(1/(2n + 4)), one for both); matte:
+ *                                the matte part of its reflectance, 0 to 1. Only the variance depends on how like it is.
+ *   prepared form, for several samples at a point: about 17 KB for 16 rows
  *     mcs_product_bytes(rows), mcs_product_build(p, bytes, t, e, &reflection)
  *     mcs_product_build_weights(p, bytes, t, e, weight)             any reflection: weight[rows * 2 rows], one per tile, to be
  *                                evaluated about mcs_tiles_direction(t, e, k); > 0 wherever the reflection may be
@@ -3657,12 +3689,15 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * distance of a tile's corners from its mean direction, weigh at least a ten-thousandth of what a white surface would make of them.
  * Below the horizon only parts of tiles that it crosses are drawn. A product keeps pointers to t and e. Bad u or a bad direction
  * give pdf 0, as does a surface that no light reaches (build returns MCS_UNIFORM); a black map counts as even light, as in [env].
- * Lobes narrower than a tile: a share (p->brdf_share) of the samples is drawn from the visible normals of the lobe instead, (1 -
- * matte) m/(1 + m), at most 0.95, where m + 0.3 is the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of
- * the lobe; the density is that of the mixture, and what the lobe sends below the surface is lost. A caller who joins samplers of
- * its own by MIS sets p->brdf_share to 0. For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified.
+ * Narrow lobes (4 pi alpha_x alpha_y cos(theta_o) below 8 mean tiles): in the prepared form the tiles that weigh more than a 128th
+ * of all, at most 32, have the reflection on a grid of 8 x 8 places among their light, are bilinear in its 7 x 7 cells and weigh
+ * what that says. A lobe narrower than the cells gets a share (p->brdf_share) of the samples for itself, (1 - matte) m/(1 + m), at
+ * most 0.95, where m + 0.03 is a fourteenth of the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of the
+ * lobe (one-shot: m + 0.3 is the whole of it): directions by mcs_ggx_vndf, mcs_ward or mcs_phong; the density is that of the
+ * mixture, and what the lobe sends below the surface is lost. To join samplers of one's own by MIS, set p->brdf_share to 0.
+ * For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified.
  * Tile weights: light E times reflection towards its mean direction; matte (c + r)^2/(4 pi r), or c/pi where c >= r, c the cosine
- * and r 1.5 times the spread s of the light about that direction; lobe: GGX with alpha^2 + s^2/4. Tile probabilities are integers.
+ * and r 1.5 times the spread s of the light about that direction; lobe: with alpha^2 + s^2/4. Tile probabilities are integers.
  * Within a tile the density is that of the light times a bilinear function of the place among the light (the parts of the tile's
  * light above, and to the left within the row) that follows the reflection towards the corners, as far as the light reaches them:
  * so it is continuous within a tile, and varies within a texel. _pdf of a sample is its own to the rounding of that place, 2^-22 of
@@ -3686,21 +3721,40 @@ enum {
     MCSI_TILE_FIELDS
 };
 #define MCSI_ROW_LEAST 1e-30f           /* below it a sum of weights has too few digits left for shares */
+#define MCSI_FINE_BELOW 8.0f            /* tiles, of 4 pi alpha_x alpha_y cos(theta_o): below it a lobe needs a finer grid */
 #define MCSI_TILE_LEAST 3.18309873e-05f /* a ten-thousandth of a white matte surface that faces the light */
+typedef enum { MCS_PROFILE_GGX, MCS_PROFILE_GAUSS, MCS_PROFILE_PHONG } mcs_profile;
 /* The reflection as seen from the map: axes of the surface in its frame. */
 typedef struct {
     mcs_frame axes;
     mcs_vec3 wo;
     float ax2, ay2, matte;
+    mcs_profile profile;
 } mcsi_facing;
 #endif
-/* GGX towards the light of a tile whose direction spreads. */
+/* Nearly exp(-x), x >= 0, and never less. */
+MCSI_CORE MCSI_F MCSI_(falloff)(MCSI_F x) {
+    MCSI_F p = 1.0f / (1.0f + 0.00390625f * MCSI_(min)(x, MCSI_(set)(64.0f))); /* subnormal products would be slow */
+    p = p * p, p = p * p, p = p * p, p = p * p;
+    p = p * p, p = p * p, p = p * p, p = p * p;
+    return p;
+}
+/* The lobe times cosine towards the light of a tile whose direction spreads: Ward (MCS_WARD_GMD), Phong, GGX. */
 MCSI_CORE MCSI_F MCSI_(tile_lobe)(const mcsi_facing *s, MCS_(vec3) w, MCSI_F spread) {
     MCSI_F ax2 = s->ax2 + 0.25f * spread, ay2 = s->ay2 + 0.25f * spread, aa = ax2 * ay2, root = MCSI_(sqrt)(aa);
     MCSI_F hx = w.x + s->wo.x, hy = w.y + s->wo.y, hz = w.z + s->wo.z, hh = hx * hx + hy * hy + hz * hz;
-    MCSI_F ratio = root * hh / (hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa);
-    MCSI_F shadow = s->wo.z * MCSI_(sqrt)(ax2 * w.x * w.x + ay2 * w.y * w.y + w.z * w.z) +
-                    w.z * MCSI_(sqrt)(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
+    MCSI_F ratio, shadow;
+    if (s->profile == MCS_PROFILE_GAUSS) {
+        MCSI_F h2 = hz * hz;
+        return MCSI_1_PI * MCSI_(falloff)((hx * hx * ay2 + hy * hy * ax2) / (aa * h2)) * hh * w.z / (root * h2 * h2);
+    }
+    if (s->profile == MCS_PROFILE_PHONG) {
+        MCSI_F n = MCSI_(max)(0.5f / root - 2.0f, MCSI_(set)(0.0f)), z = w.z - s->wo.z; /* h without its z: w less the mirror's */
+        return (n + 2.0f) * MCSI_1_2PI * MCSI_(falloff)(0.5f * n * (hx * hx + hy * hy + z * z)) * w.z;
+    }
+    ratio = root * hh / (hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa);
+    shadow = s->wo.z * MCSI_(sqrt)(ax2 * w.x * w.x + ay2 * w.y * w.y + w.z * w.z) +
+             w.z * MCSI_(sqrt)(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
     return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / shadow;
 }
 /* Never 0, nor what bad axes make of it. */
@@ -3748,6 +3802,22 @@ MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *light, co
         MCSI_(store_int)(cum + cols * rows + i, at), MCSI_(store)(row + i, sum);
     }
 }
+/* What tiles weigh at most, by their mean direction or a corner, and the sums of rows. */
+MCSI_CORE void MCSI_(grid_bounds)(size_t rows, size_t cols, const float *light, const float *value, const float *corner,
+                                  float *weight, float *row) {
+    size_t i, j;
+    for (i = 0; i < rows; i += MCSI_W) {
+        MCSI_F sum = MCSI_(set)(0.0f), left = MCSI_(max)(MCSI_(load)(corner + i), MCSI_(load)(corner + i + 1)), first = left;
+        for (j = 0; j < cols; j++) {
+            const float *next = corner + (j + 1) * (rows + 1) + i;
+            MCSI_F right = j + 1 < cols ? MCSI_(max)(MCSI_(load)(next), MCSI_(load)(next + 1)) : first;
+            MCSI_F v = MCSI_(load)(value + j * rows + i), most = MCSI_(max)(v, MCSI_(max)(left, right));
+            v = MCSI_(load)(light + j * rows + i) * MCSI_(keep)(v > 0.0f, most);
+            MCSI_(store)(weight + j * rows + i, v), sum = sum + v, left = right;
+        }
+        MCSI_(store)(row + i, sum);
+    }
+}
 #ifndef MCS_NO_BATCH
 MCSI_BATCH_AS(mcsi_tile_values_n, tile_values_n, (const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value),
               (s, n, tile, stride, value), {
@@ -3769,23 +3839,33 @@ MCSI_BATCH_AS(mcsi_corner_values_n, corner_values_n,
 MCSI_BATCH_AS(mcsi_grid_rows_n, grid_rows_n,
               (size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row),
               (rows, cols, light, value, cum, row), { MCSI_(grid_rows)(rows, cols, light, value, cum, row); })
+MCSI_BATCH_AS(mcsi_grid_bounds_n, grid_bounds_n,
+              (size_t rows, size_t cols, const float *light, const float *value, const float *corner, float *weight, float *row),
+              (rows, cols, light, value, corner, weight, row), {
+                  MCSI_(grid_bounds)(rows, cols, light, value, corner, weight, row);
+              })
 /* clang-format on */
 #endif
 
 #if MCSI_W == 1
 typedef struct {
     uint32_t rows, cols, window_bytes, unused;
-} mcs_tiles; /* then field[MCSI_TILE_FIELDS] of tiles, the same of blocks of 4 x 4, corner[3][cols][rows + 1] (x, y, z), windows */
+} mcs_tiles; /* then field[MCSI_TILE_FIELDS] of tiles, the same of blocks of 4 x 4, corner[3][cols][rows + 1] (x, y, z), of each
+                tile node[3][MCSI_NODES][MCSI_NODES], windows */
 typedef struct {
     mcs_frame frame;
     mcs_vec3 wo;
     float alpha_x, alpha_y, matte;
+    mcs_profile profile;
 } mcs_reflection;
 /* A lobe that is drawn from for itself. */
 typedef struct {
     mcs_frame frame;
     mcs_vec3 wo;
-    mcs_ggx lobe;
+    mcs_profile profile;
+    mcs_ggx ggx;
+    mcs_ward gauss;
+    mcs_phong phong;
 } mcsi_own_lobe;
 typedef struct {
     const mcs_tiles *t;
@@ -3795,7 +3875,7 @@ typedef struct {
     uint32_t lit, warped;
 } mcs_product; /* the rest: mcsi_product_units and below */
 
-enum { MCSI_TILE_BLOCK = 4, MCSI_TILES_MAX = 64 };
+enum { MCSI_TILE_BLOCK = 4, MCSI_TILES_MAX = 64, MCSI_NODES = 8, MCSI_GRID = MCSI_NODES * MCSI_NODES, MCSI_FINE = 32 };
 MCSI_CORE const float *mcsi_tiles_fields(const mcs_tiles *t) { return (const float *)(const void *)(t + 1); }
 MCSI_CORE const float *mcsi_tiles_blocks(const mcs_tiles *t) {
     return mcsi_tiles_fields(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols;
@@ -3804,15 +3884,16 @@ MCSI_CORE const float *mcsi_tiles_corners(const mcs_tiles *t) {
     return mcsi_tiles_blocks(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols / (MCSI_TILE_BLOCK * MCSI_TILE_BLOCK);
 }
 MCSI_CORE size_t mcsi_corners(const mcs_tiles *t) { return (size_t)t->cols * (t->rows + 1); }
+MCSI_CORE const float *mcsi_tiles_nodes(const mcs_tiles *t) { return mcsi_tiles_corners(t) + 3 * mcsi_corners(t); }
 MCSI_CORE const mcs_env_window *mcsi_tiles_window(const mcs_tiles *t, uint32_t row, uint32_t col) {
-    const char *p = (const char *)(mcsi_tiles_corners(t) + 3 * mcsi_corners(t));
+    const char *p = (const char *)(mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * t->rows * t->cols);
     return (const mcs_env_window *)(const void *)(p + ((size_t)col * t->rows + row) * t->window_bytes);
 }
 MCS_FN int mcsi_tiles_ok(uint32_t rows) { return rows == 16 || rows == 32 || rows == MCSI_TILES_MAX; }
 MCS_FN size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows) {
     size_t n = 2 * (size_t)rows * rows;
     if (!e || !mcsi_tiles_ok(rows)) return 0;
-    return sizeof(mcs_tiles) + (MCSI_TILE_FIELDS * (n + n / 16) + 3 * (n + 2 * (size_t)rows)) * sizeof(float) +
+    return sizeof(mcs_tiles) + (MCSI_TILE_FIELDS * (n + n / 16) + 3 * (n + 2 * (size_t)rows) + 3 * MCSI_GRID * n) * sizeof(float) +
            n * mcs_env_window_bytes(e->h / rows + 1);
 }
 /* First texel row or column of a tile, and the tile of a texel. */
@@ -3888,6 +3969,29 @@ MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_env_view *all, uint3
     p->e += height * row, p->x += height * sine * cx, p->y += height * sine * cy, p->z += height * row * (1.0 - t);
     p->within += height * row * 0.82246703342411322 * (1.0 / ((double)e->h * e->h) + 4.0 * sine * sine / ((double)e->w * e->w));
 }
+MCSI_CORE double mcsi_node_place(uint32_t k) {
+    return k < MCSI_NODES - 1 ? k * ((double)MCSI_ONE / (MCSI_NODES - 1)) : MCSI_ONE - 0.5;
+}
+/* Directions, in the map's frame, of a grid of places among a tile's light, from its first to its last; column by column. */
+MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mcsi_patch *p, float *node) {
+    mcsi_env_view v;
+    mcs_frame axes;
+    mcs_vec3 w;
+    uint32_t k, row, col;
+    memset(&axes, 0, sizeof axes), axes.s.x = axes.t.y = axes.n.z = 1.0f;
+    if (p->e > 0.0) v = mcsi_env_part(m);
+    mcsi_patch_corner(e, p->row0, p->col0, &w);
+    for (k = 0; k < MCSI_GRID; k++) {
+        if (p->e > 0.0) {
+            mcsi_env_point at;
+            double U1 = mcsi_node_place(k / MCSI_NODES), U2 = mcsi_node_place(k % MCSI_NODES);
+            if (v.uniform) mcsi_env_draw_uniform(e, &v, U1, U2, &at);
+            else mcsi_env_draw_point(e, &v, U1, U2, 1.0, &at, &row, &col);
+            w = mcsi_env_direction(&axes, &at, (float)e->w, (float)e->h);
+        }
+        node[k] = w.x, node[MCSI_GRID + k] = w.y, node[2 * MCSI_GRID + k] = w.z;
+    }
+}
 MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows) {
     mcsi_env_view all;
     mcsi_patch block;
@@ -3911,6 +4015,7 @@ MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, 
                 for (y = p.row0; y < p.row1; y++) mcsi_patch_add_row(e, &all, y, &p);
                 if (p.e > 0.0) mcs_env_window_build(m, t->window_bytes, e, p.row0, p.row1 - p.row0, p.col0, p.col1 - p.col0);
                 mcsi_patch_store(e, &p, field + (size_t)j * rows + i, n);
+                mcsi_patch_nodes(e, m, &p, (float *)(uintptr_t)mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * (j * rows + i));
                 block.e += p.e, block.x += p.x, block.y += p.y, block.z += p.z;
                 if (k == 0) block.row0 = p.row0, block.col0 = p.col0;
                 block.row1 = p.row1, block.col1 = p.col1;
@@ -3965,6 +4070,7 @@ MCS_FN int mcsi_facing_make(const mcs_env *e, const mcs_reflection *r, mcsi_faci
     s->wo = mcsi_above(r->wo, &ok);
     s->axes.s = mcsi_to_local(&e->frame, r->frame.s), s->axes.t = mcsi_to_local(&e->frame, r->frame.t);
     s->axes.n = mcsi_to_local(&e->frame, r->frame.n);
+    s->profile = r->profile;
     s->ax2 = ax * ax, s->ay2 = ay * ay, s->matte = mcsi_within(r->matte >= 0.0f, r->matte, 0.0f, 1.0f);
     return ok;
 }
@@ -3975,10 +4081,11 @@ MCS_FN size_t mcs_product_bytes(uint32_t rows) {
     size_t n = 2 * (size_t)rows * rows;
     if (!mcsi_tiles_ok(rows)) return 0;
     return sizeof(mcs_product) + rows * sizeof(double) + (n + 2 * (size_t)rows + 2) * sizeof(uint32_t) +
-           (2 * n + 3 * (size_t)rows) * sizeof(float);
+           (2 * n + 3 * (size_t)rows + MCSI_FINE * (MCSI_GRID + MCSI_NODES)) * sizeof(float) + n;
 }
 /* Where a product keeps its parts: of each row the density of a unit of its shares; shares of rows; of the columns of each row; the
- * reflection of tiles, and towards their corners; sums of rows. */
+ * reflection of tiles, and towards their corners; sums of rows; grids of fine tiles, each followed by what its rows of nodes weigh;
+ * which of them a tile has, from 1 on, 0: none. */
 MCSI_CORE double *mcsi_product_units(const mcs_product *p) { return (double *)(uintptr_t)(p + 1); }
 MCSI_CORE uint32_t *mcsi_product_rows(const mcs_product *p) { return (uint32_t *)(void *)(mcsi_product_units(p) + p->t->rows); }
 MCSI_CORE uint32_t *mcsi_product_cum(const mcs_product *p) { return mcsi_product_rows(p) + p->t->rows + 2; }
@@ -3986,24 +4093,33 @@ MCSI_CORE float *mcsi_product_values(const mcs_product *p) {
     return (float *)(void *)(mcsi_product_cum(p) + (size_t)p->t->rows * (p->t->cols + 1));
 }
 MCSI_CORE float *mcsi_product_corners(const mcs_product *p) { return mcsi_product_values(p) + (size_t)p->t->rows * p->t->cols; }
+MCSI_CORE float *mcsi_product_sums(const mcs_product *p) { return mcsi_product_corners(p) + mcsi_corners(p->t); }
+MCSI_CORE float *mcsi_product_grids(const mcs_product *p) { return mcsi_product_sums(p) + p->t->rows; }
+MCSI_CORE uint8_t *mcsi_product_fine(const mcs_product *p) {
+    return (uint8_t *)(void *)(mcsi_product_grids(p) + MCSI_FINE * (MCSI_GRID + MCSI_NODES));
+}
 MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e) {
     if (!p || !t || !e || ((uintptr_t)p & 7u)) return MCS_ERR_ARG;
     if (bytes < mcs_product_bytes(t->rows)) return MCS_ERR_MEMORY;
     memset(p, 0, sizeof *p);
     p->t = t, p->e = e;
+    memset(mcsi_product_fine(p), 0, (size_t)t->rows * t->cols);
     return MCS_OK;
+}
+MCSI_CORE void mcsi_product_add_up(mcs_product *p) {
+#ifndef MCS_NO_BATCH
+    mcsi_grid_rows_n(p->t->rows, p->t->cols, mcsi_tiles_fields(p->t), mcsi_product_values(p), mcsi_product_cum(p),
+                     mcsi_product_sums(p));
+#else
+    mcsi_grid_rows(p->t->rows, p->t->cols, mcsi_tiles_fields(p->t), mcsi_product_values(p), mcsi_product_cum(p),
+                   mcsi_product_sums(p));
+#endif
 }
 MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
     size_t n = (size_t)p->t->rows * p->t->cols;
-    const float *light = mcsi_tiles_fields(p->t);
-    float *row = mcsi_product_corners(p) + mcsi_corners(p->t);
-    uint32_t *rows, i;
-#ifndef MCS_NO_BATCH
-    mcsi_grid_rows_n(p->t->rows, p->t->cols, light, mcsi_product_values(p), mcsi_product_cum(p), row);
-#else
-    mcsi_grid_rows(p->t->rows, p->t->cols, light, mcsi_product_values(p), mcsi_product_cum(p), row);
-#endif
-    rows = mcsi_product_rows(p), p->lit = mcsi_shares(rows, row, p->t->rows);
+    uint32_t *rows = mcsi_product_rows(p), i;
+    mcsi_product_add_up(p);
+    p->lit = mcsi_shares(rows, mcsi_product_sums(p), p->t->rows);
     for (i = 0; i < p->t->rows; i++)
         mcsi_product_units(p)[i] =
             rows[i + 1] > rows[i] ? (rows[i + 1] - rows[i]) / ((double)p->lit * mcsi_product_cum(p)[n + i]) : 0.0;
@@ -4026,32 +4142,107 @@ MCSI_CORE void mcsi_corners_value(const mcsi_facing *s, size_t n, const float *c
         value[i] = mcsi_corner_value(&s->axes, s, mcsi_vec3(corner[i], corner[i + stride], corner[i + 2 * stride]));
 #endif
 }
-/* The part of the samples that a lobe narrower than the tiles gets for itself. */
-MCS_FN float mcsi_brdf_share(const mcsi_facing *s, size_t tiles) {
-    float m = 1.0f / ((float)tiles * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z) - 0.3f;
+/* The tiles that may weigh most: their numbers, at most MCSI_FINE of them, each more than a 256th of all. The weights lie where the
+ * integers of the columns will. */
+MCS_FN uint32_t mcsi_product_heaviest(const mcs_product *p, uint32_t *tile) {
+    const float *sum = mcsi_product_sums(p), *weight = (const float *)(const void *)mcsi_product_cum(p);
+    uint32_t rows = p->t->rows, count = 0, i, k, c;
+    float least = 0.0f;
+#ifndef MCS_NO_BATCH
+    mcsi_grid_bounds_n(rows, p->t->cols, mcsi_tiles_fields(p->t), mcsi_product_values(p), mcsi_product_corners(p),
+                       (float *)(void *)mcsi_product_cum(p), mcsi_product_sums(p));
+#else
+    mcsi_grid_bounds(rows, p->t->cols, mcsi_tiles_fields(p->t), mcsi_product_values(p), mcsi_product_corners(p),
+                     (float *)(void *)mcsi_product_cum(p), mcsi_product_sums(p));
+#endif
+    for (i = 0; i < rows; i++) least += sum[i] * 0.00390625f;
+    for (i = 0; i < rows; i++) {
+        if (!(sum[i] > least)) continue;
+        for (k = i; k < rows * p->t->cols; k += rows) {
+            uint32_t at = 0;
+            if (!(weight[k] > least)) continue;
+            if (count < MCSI_FINE) {
+                tile[count++] = k;
+                continue;
+            }
+            for (c = 1; c < MCSI_FINE; c++) at = weight[tile[c]] < weight[tile[at]] ? c : at;
+            if (weight[k] > weight[tile[at]]) tile[at] = k;
+        }
+    }
+    return count;
+}
+/* Reflection on a grid of places among the light of a tile, then what its rows weigh. Returns the mean of the bilinear function. */
+MCS_FN float mcsi_grid_make(const mcsi_facing *s, const float *node, float *v) {
+    float sum[MCSI_NODES], mean = 0.0f, least;
+    uint32_t k, a;
+    mcsi_corners_value(s, MCSI_GRID, node, MCSI_GRID, v);
+    for (k = 0; k < MCSI_NODES; k++) sum[k] = 0.5f * (v[k] + v[MCSI_GRID - MCSI_NODES + k]);
+    for (a = MCSI_NODES; a < MCSI_GRID - MCSI_NODES; a += MCSI_NODES)
+        for (k = 0; k < MCSI_NODES; k++) sum[k] += v[a + k];
+    for (k = 1; k < MCSI_NODES - 1; k++) mean += sum[k];
+    mean = (0.5f * (sum[0] + sum[MCSI_NODES - 1]) + mean) * (1.0f / ((MCSI_NODES - 1) * (MCSI_NODES - 1))), least = 0.01f * mean;
+    for (k = 0; k < MCSI_GRID; k++) v[k] += least;
+    for (k = 0; k < MCSI_NODES; k++) v[MCSI_GRID + k] = sum[k] + (MCSI_NODES - 1) * least;
+    return mean + least;
+}
+/* The tiles that weigh most get a grid, and weigh what that says. */
+MCS_FN void mcsi_product_refine(mcs_product *p, const mcsi_facing *s) {
+    uint32_t tile[MCSI_FINE], count, i;
+    count = mcsi_product_heaviest(p, tile);
+    for (i = 0; i < count; i++) {
+        mcsi_product_values(p)[tile[i]] = mcsi_grid_make(s, mcsi_tiles_nodes(p->t) + 3 * (size_t)MCSI_GRID * tile[i],
+                                                         mcsi_product_grids(p) + i * (size_t)(MCSI_GRID + MCSI_NODES));
+        mcsi_product_fine(p)[tile[i]] = (uint8_t)(i + 1);
+    }
+}
+/* Solid angle of a lobe, that of the sphere over `cells`: 1. */
+MCSI_CORE float mcsi_lobe_width(const mcsi_facing *s, size_t cells) { return (float)cells * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z; }
+/* The part of the samples that a lobe narrower than the cells gets for itself. */
+MCS_FN float mcsi_brdf_share(const mcsi_facing *s, size_t cells, float less) {
+    float m = 1.0f / mcsi_lobe_width(s, cells) - less;
     return m > 0.0f ? (1.0f - s->matte) * mcsi_min(m / (1.0f + m), 0.95f) : 0.0f;
 }
 MCSI_CORE mcsi_own_lobe mcsi_own_make(const mcs_reflection *r, const mcsi_facing *s) {
+    float ax = mcsi_within(r->alpha_x >= 0.0f, r->alpha_x, 1e-7f, 1e4f),
+          ay = mcsi_within(r->alpha_y >= 0.0f, r->alpha_y, 1e-7f, 1e4f);
     mcsi_own_lobe l;
-    l.frame = r->frame, l.wo = s->wo;
-    l.lobe = mcs_ggx_make(mcsi_within(r->alpha_x >= 0.0f, r->alpha_x, 1e-7f, 1e4f),
-                          mcsi_within(r->alpha_y >= 0.0f, r->alpha_y, 1e-7f, 1e4f));
+    memset(&l, 0, sizeof l);
+    l.frame = r->frame, l.wo = s->wo, l.profile = s->profile;
+    switch (l.profile) {
+    case MCS_PROFILE_GAUSS: l.gauss = mcs_ward_make(ax, ay, MCS_WARD_GMD); break;
+    case MCS_PROFILE_PHONG: l.phong = mcs_phong_make(mcsi_max(0.5f / ax / ay - 2.0f, 0.0f)); break;
+    default: l.ggx = mcs_ggx_make(ax, ay);
+    }
     return l;
 }
 /* When u1 falls on the lobe's share, its direction in world space; else u1 becomes the place in the rest. */
 MCSI_CORE int mcsi_own_draw(const mcsi_own_lobe *l, float share, float *u1, float u2, mcs_vec3 *w, int32_t *kept) {
     mcs_brdf b;
+    float u;
     if (!(share > 0.0f)) return 0;
     if (*u1 >= share) {
         *u1 = mcsi_min((*u1 - share) / (1.0f - share), 0.99999994f);
         return 0;
     }
-    b = mcs_ggx_vndf_sample(&l->lobe, l->wo, mcsi_min(*u1 / share, 0.99999994f), u2);
-    *w = mcsi_to_world(&l->frame, b.wi), *kept &= b.pdf > 0.0f;
+    u = mcsi_min(*u1 / share, 0.99999994f);
+    switch (l->profile) {
+    case MCS_PROFILE_GAUSS: b = mcs_ward_sample(&l->gauss, l->wo, u, u2); break;
+    case MCS_PROFILE_PHONG: b = mcs_phong_sample(&l->phong, l->wo, u, u2); break;
+    default: b = mcs_ggx_vndf_sample(&l->ggx, l->wo, u, u2);
+    }
+    *w = mcs_to_world(&l->frame, b.wi), *kept &= b.pdf > 0.0f;
     return 1;
 }
 MCSI_CORE float mcsi_own_mix(const mcsi_own_lobe *l, float share, mcs_vec3 w, float tiled) {
-    return share > 0.0f ? mcs_mix_pdf(share, mcs_ggx_vndf_pdf(&l->lobe, l->wo, mcs_to_local(&l->frame, w)), tiled) : tiled;
+    float own;
+    if (!(share > 0.0f)) return tiled;
+    w = mcs_to_local(&l->frame, w);
+    switch (l->profile) {
+    case MCS_PROFILE_GAUSS: own = mcs_ward_pdf(&l->gauss, l->wo, w); break;
+    case MCS_PROFILE_PHONG: own = mcs_phong_pdf(&l->phong, l->wo, w); break;
+    default: own = mcs_ggx_vndf_pdf(&l->ggx, l->wo, w);
+    }
+    return mcs_mix_pdf(share, own, tiled);
 }
 MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
     mcs_status status = mcsi_product_start(p, bytes, t, e);
@@ -4060,9 +4251,10 @@ MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tile
     if (status) return status;
     if (!r || !mcsi_facing_make(e, r, &s)) return r ? MCS_UNIFORM : MCS_ERR_ARG;
     n = (size_t)t->rows * t->cols;
-    p->own = mcsi_own_make(r, &s), p->brdf_share = mcsi_brdf_share(&s, n), p->warped = 1;
+    p->own = mcsi_own_make(r, &s), p->brdf_share = mcsi_brdf_share(&s, 14 * n, 0.03f), p->warped = 1;
     mcsi_tiles_value(&s, n, mcsi_tiles_fields(t), n, mcsi_product_values(p));
     mcsi_corners_value(&s, mcsi_corners(t), mcsi_tiles_corners(t), mcsi_corners(t), mcsi_product_corners(p));
+    if (s.matte < 1.0f && mcsi_lobe_width(&s, n) < MCSI_FINE_BELOW) mcsi_product_refine(p, &s);
     return mcsi_product_finish(p);
 }
 MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
@@ -4108,6 +4300,43 @@ MCSI_CORE void mcsi_warp_draw(const mcsi_warp *w, double *U1, double *U2, double
     float a = w->v[0] + t2 * (w->v[1] - w->v[0]), b = w->v[2] + t2 * (w->v[3] - w->v[2]), t1 = mcsi_linear_place(a, b, *U1);
     *U1 = (double)t1 * MCSI_ONE, *U2 = (double)t2 * MCSI_ONE, *part *= (double)(a + t1 * (b - a));
 }
+/* A cell of the grid of a fine tile: entry of a list whose borders weigh w, by trapezoids; U becomes the place in it. */
+MCSI_CORE uint32_t mcsi_nodes_draw(const float *w, double *U, double *part) {
+    double sum[MCSI_NODES], V, rest;
+    uint32_t k;
+    for (sum[0] = 0.0, k = 1; k < MCSI_NODES; k++) sum[k] = sum[k - 1] + ((double)w[k - 1] + (double)w[k]);
+    V = *U * (sum[MCSI_NODES - 1] * (1.0 / MCSI_ONE));
+    k = (uint32_t)(sum[4] <= V) << 2, k += (uint32_t)(sum[k + 2] <= V) << 1, k += (uint32_t)(sum[k + 1] <= V);
+    rest = (V - sum[k]) * (MCSI_ONE / (sum[k + 1] - sum[k])), *U = rest < 2147483647.5 ? rest : 2147483647.5;
+    *part *= (MCSI_NODES - 1) * (sum[k + 1] - sum[k]) / sum[MCSI_NODES - 1];
+    return k;
+}
+MCSI_CORE void mcsi_fine_draw(const float *v, double *U1, double *U2, double *part) {
+    float both[MCSI_NODES];
+    uint32_t i = mcsi_nodes_draw(v + MCSI_GRID, U2, part), j, k;
+    mcsi_warp w;
+    v += i;
+    for (k = 0; k < MCSI_NODES; k++) both[k] = v[k * MCSI_NODES] + v[k * MCSI_NODES + 1];
+    j = mcsi_nodes_draw(both, U1, part), v += j * MCSI_NODES;
+    w.v[0] = v[0], w.v[1] = v[1], w.v[2] = v[MCSI_NODES], w.v[3] = v[MCSI_NODES + 1];
+    *part *= 4.0 / (((double)w.v[0] + (double)w.v[1]) + ((double)w.v[2] + (double)w.v[3]));
+    mcsi_warp_draw(&w, U1, U2, part);
+    *U1 = (j * (double)MCSI_ONE + *U1) * (1.0 / (MCSI_NODES - 1)), *U2 = (i * (double)MCSI_ONE + *U2) * (1.0 / (MCSI_NODES - 1));
+}
+MCSI_CORE float mcsi_fine_density(const float *v, float t1, float t2) {
+    const float *row = v + MCSI_GRID;
+    float x = t1 * (MCSI_NODES - 1), y = t2 * (MCSI_NODES - 1), sum = 0.5f * (row[0] + row[MCSI_NODES - 1]);
+    uint32_t j = (uint32_t)(int32_t)x, i = (uint32_t)(int32_t)y, k;
+    mcsi_warp w;
+    i = i < MCSI_NODES - 2 ? i : MCSI_NODES - 2, j = j < MCSI_NODES - 2 ? j : MCSI_NODES - 2, v += j * MCSI_NODES + i;
+    for (k = 1; k < MCSI_NODES - 1; k++) sum += row[k];
+    w.v[0] = v[0], w.v[1] = v[1], w.v[2] = v[MCSI_NODES], w.v[3] = v[MCSI_NODES + 1];
+    return mcsi_warp_density(&w, x - (float)j, y - (float)i) * ((MCSI_NODES - 1) * (MCSI_NODES - 1)) / sum;
+}
+MCSI_CORE const float *mcsi_product_fine_of(const mcs_product *p, uint32_t i, uint32_t j) {
+    uint32_t k = mcsi_product_fine(p)[(size_t)j * p->t->rows + i];
+    return k ? mcsi_product_grids(p) + (k - 1) * (size_t)(MCSI_GRID + MCSI_NODES) : NULL;
+}
 MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, uint32_t i, uint32_t j) {
     const mcs_tiles *t = p->t;
     const float *corner = mcsi_product_corners(p) + i, *a = corner + j * (t->rows + 1),
@@ -4131,15 +4360,16 @@ MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const 
     P = cdf[0] + at->across * (cdf[1] - cdf[0]) - line->begin;
     *t1 = (float)((P < 0.0 ? P + MCSI_ONE : P) / line->mass), *t2 = (float)((rows[0] + at->down * (rows[1] - rows[0])) / MCSI_ONE);
 }
-/* Density of the tiles alone; `part` of all draws fall on tile (i, j). */
-MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, const mcsi_warp *warp, uint32_t i, uint32_t j,
-                                   const mcsi_env_place_of *at) {
+/* Density of the tiles alone; `part` of all draws fall on tile (i, j), there by a fine grid, a bilinear function or the light. */
+MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, const float *fine, const mcsi_warp *warp,
+                                   uint32_t i, uint32_t j, const mcsi_env_place_of *at) {
     mcsi_env_view v = mcsi_env_part(mcsi_tiles_window(t, i, j));
     const uint32_t *cdf;
     double scale;
-    if (warp) {
+    if (fine || warp) {
         float t1, t2;
-        mcsi_tiled_place(e, &v, at, &t1, &t2), part *= (double)mcsi_warp_density(warp, t1, t2);
+        mcsi_tiled_place(e, &v, at, &t1, &t2);
+        part *= (double)(fine ? mcsi_fine_density(fine, t1, t2) : mcsi_warp_density(warp, t1, t2));
     }
     if (v.uniform) return (float)(part * (double)mcsi_env_uniform_pdf(e, &v));
     scale = part * v.line[at->row - v.row].scale, cdf = mcsi_env_cdf(e, at->row) + at->col;
@@ -4150,10 +4380,11 @@ MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcsi_env_place_
     uint32_t i = mcsi_tile_of(at->row, t->rows, p->e->h), j = mcsi_tile_of(at->col, t->cols, p->e->w);
     const uint32_t *cum = mcsi_product_cum(p) + j * t->rows + i;
     double part = mcsi_product_units(p)[i] * (int32_t)(cum[t->rows] - cum[0]);
+    const float *fine = mcsi_product_fine_of(p, i, j);
     mcsi_warp warp;
     if (!(part > 0.0)) return 0.0f;
     if (p->warped) warp = mcsi_product_warp(p, i, j);
-    return mcsi_tiled_density(t, p->e, part, p->warped ? &warp : NULL, i, j, at);
+    return mcsi_tiled_density(t, p->e, part, fine, p->warped ? &warp : NULL, i, j, at);
 }
 MCSI_CORE mcs_texel mcsi_nothing(const mcs_env *e) {
     mcs_texel r;
@@ -4181,11 +4412,15 @@ MCSI_CORE uint32_t mcsi_product_row(const mcs_product *p, double *U2) {
 MCSI_CORE const mcs_env_window *mcsi_product_col(const mcs_product *p, uint32_t i, double *U1, double *U2, double *part) {
     const mcs_tiles *t = p->t;
     const uint32_t *cum = mcsi_product_cum(p) + i;
+    const float *fine;
     uint32_t n = t->rows, j;
     *U1 *= (int32_t)cum[t->cols * n] * (1.0 / MCSI_ONE), j = mcsi_shares_find(cum, t->cols, n, (uint32_t)(int32_t)*U1),
                                                          cum += j * n;
     *U1 = mcsi_shares_rest(*U1, cum[0], cum[n] - cum[0]), *part = mcsi_product_units(p)[i] * (int32_t)(cum[n] - cum[0]);
-    if (p->warped) {
+    fine = mcsi_product_fine_of(p, i, j);
+    if (fine) {
+        mcsi_fine_draw(fine, U1, U2, part);
+    } else if (p->warped) {
         mcsi_warp w = mcsi_product_warp(p, i, j);
         mcsi_warp_draw(&w, U1, U2, part);
     }
@@ -4334,7 +4569,7 @@ MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mc
     double part = 1.0, U1 = -1.0, U2 = -1.0;
     uint32_t i = mcsi_tile_of(at->row, t->rows, e->h), j = mcsi_tile_of(at->col, t->cols, e->w);
     mcsi_warp warp;
-    return mcsi_oneshot_tile(t, s, &U1, &U2, &i, &j, &part, &warp) ? mcsi_tiled_density(t, e, part, &warp, i, j, at) : 0.0f;
+    return mcsi_oneshot_tile(t, s, &U1, &U2, &i, &j, &part, &warp) ? mcsi_tiled_density(t, e, part, NULL, &warp, i, j, at) : 0.0f;
 }
 MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2) {
     int32_t ok = 1;
@@ -4349,7 +4584,7 @@ MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const 
     float share;
     u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
     if (!mcsi_facing_make(e, r, &s)) return mcsi_nothing(e);
-    share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols), own = mcsi_own_make(r, &s);
+    share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f), own = mcsi_own_make(r, &s);
     if (mcsi_own_draw(&own, share, &u1, u2, &w, &ok)) {
         if (!mcsi_env_find(e, w, &at)) return mcsi_nothing(e);
         x.w = w, x.row = at.row, x.col = at.col, x.pdf = mcsi_oneshot_density(t, e, &s, &at);
@@ -4368,7 +4603,7 @@ MCS_FN float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_ref
     mcsi_own_lobe own;
     if (!mcsi_env_find(e, w, &at) || !mcsi_facing_make(e, r, &s)) return 0.0f;
     own = mcsi_own_make(r, &s);
-    return mcsi_own_mix(&own, mcsi_brdf_share(&s, (size_t)t->rows * t->cols), w, mcsi_oneshot_density(t, e, &s, &at));
+    return mcsi_own_mix(&own, mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f), w, mcsi_oneshot_density(t, e, &s, &at));
 }
 #endif /* MCSI_W == 1 */
 #endif

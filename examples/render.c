@@ -280,7 +280,8 @@ typedef struct {
     float p_lobe;  /* probability that BRDF sampling takes the lobe: 0 matte, 1 no base */
     float share;   /* BRDF samples of MIS for each environment sample: few where the lobe is so wide that they find nothing new */
 
-    float alpha_x, alpha_y; /* of a GGX lobe as wide as this one */
+    float alpha_x, alpha_y; /* as product sampling is told */
+    mcs_profile profile;
 } material;
 
 static mcs_brdf lobe_sample(const material *m, vec3 wo, float u1, float u2) {
@@ -383,7 +384,8 @@ static material material_make(lobe_kind kind, float p_lobe, vec3 base, vec3 spec
     material m;
     memset(&m, 0, sizeof m);
     m.kind = kind, m.p_lobe = p_lobe, m.base = base, m.specular = specular, m.share = kind == MATTE ? 0.125f : 1;
-    m.alpha_x = a, m.alpha_y = b;
+    m.alpha_x = a, m.alpha_y = b, m.profile = kind == PHONG ? MCS_PROFILE_PHONG : MCS_PROFILE_GGX;
+    if (kind == WARD || kind == ASHIKHMIN) m.profile = MCS_PROFILE_GAUSS;
     if (kind == PHONG) m.alpha_x = m.alpha_y = sqrtf(0.5f / (a + 2)); /* about the mirror direction: half that of a half-vector */
     if (kind == ASHIKHMIN) m.alpha_x = sqrtf(2 / (a + 2)), m.alpha_y = sqrtf(2 / (b + 2));
     if (kind == PHONG) m.lobe.phong = mcs_phong_make(a);
@@ -516,6 +518,7 @@ static mcs_reflection reflection_of(const surface *x) {
     float base = m->p_lobe < 1 ? luminance(m->base) : 0, lobe = 0;
     if (m->p_lobe > 0) lobe = m->kind == PHONG ? luminance(m->specular) : mcs_schlick(luminance(m->specular), x->wo.z);
     r.frame = x->frame, r.wo = x->wo, r.alpha_x = m->alpha_x, r.alpha_y = m->alpha_y, r.matte = base / (base + lobe);
+    r.profile = m->profile;
     return r;
 }
 

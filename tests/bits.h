@@ -8,8 +8,8 @@
  *                      out: BITS_OUT entries, set to 0 before
  *
  * Words travel as the bits of floats. A name needs its function here and its place in one of the lists: floats at every width,
- * words at every width, what there is only once, what needs the maps of the host (no kernels), and array forms of such: their
- * bits1_x is what the scalar form gives, and bits_array_x computes all cases. */
+ * words at every width, what there is only once, what takes a map or a product, what needs more memory than a thread of a kernel
+ * should have, and array forms: their bits1_x is what the scalar form gives, and bits_array_x computes all cases. */
 /* clang-format off */
 #ifndef BITS_WIDE
 #define BITS_WIDE(X) \
@@ -22,11 +22,12 @@
     X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) \
     X(discrete_sample) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) \
     X(alias_bytes) X(alias_build) X(alias_sample) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) X(stat_error) X(stat_ci)
-#define BITS_HOST(X) \
+#define BITS_MAPPED(X) \
     X(image_make) X(env_bytes) X(env_build) X(env_build_rows) X(env_finish) X(env_check) X(env_mean) X(env_sample) \
     X(env_sample_bits) X(env_pdf) X(env_invert) X(env_texel) X(env_weight) X(env_window_bytes) X(env_window_build) \
-    X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(product_bytes) X(product_build) \
-    X(product_build_weights) X(product_sample) X(product_pdf) X(oneshot_sample) X(oneshot_pdf)
+    X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(product_bytes) X(product_sample) \
+    X(product_pdf) X(oneshot_sample) X(oneshot_pdf)
+#define BITS_HOST(X) X(product_build) X(product_build_weights)
 #define BITS_ARRAYS(X) X(env_sample_n) X(env_pdf_n) X(env_window_sample_n) X(product_sample_n)
 #endif
 /* clang-format on */
@@ -203,7 +204,7 @@ BITS_HD static uint32_t bits_entries(const float *in, float *f) {
     return n;
 }
 #define TABLE(kind)                                                     \
-    uint64_t room[4 * BITS_CELLS];                                      \
+    uint64_t room[4 * BITS_CELLS] = {0};                                \
     float f[BITS_CELLS + 1];                                            \
     const uint32_t n = bits_entries(in, f);                             \
     mcs_##kind *t = (mcs_##kind *)(void *)room;                         \
@@ -217,7 +218,7 @@ FN(pwc_build) {
 }
 BITS_HD static float bits_curve(float x, void *k) { return *(const float *)k * (1.0f + x * x); }
 FN(pwc_build_fn) {
-    uint64_t room[4 * BITS_CELLS];
+    uint64_t room[4 * BITS_CELLS] = {0};
     mcs_pwc *t = (mcs_pwc *)(void *)room;
     float k = IN(0);
     PUT_WORD(0, (uint32_t)mcs_pwc_build_fn(t, sizeof room, bits_curve, &k, 1 + WORD(11) % BITS_CELLS));
@@ -304,7 +305,7 @@ FN(stat_ci) {
 
 #define HOST(name) static void bits1_##name(const float *in, float *out)
 /* Black, bad and very bright entries among others. */
-static void bits_picture(uint32_t seed, uint32_t n, float *f) {
+BITS_HD static void bits_picture(uint32_t seed, uint32_t n, float *f) {
     uint32_t i;
     for (i = 0; i < n; i++) {
         const uint32_t h = mcs_hash(seed, i);
@@ -315,14 +316,21 @@ static void bits_picture(uint32_t seed, uint32_t n, float *f) {
     }
 }
 static void *bits_memory(size_t bytes) {
+#ifdef __CUDACC__
+    void *p = NULL;
+    if (!gpu::present()) p = calloc(1, bytes);
+    else if (cudaMallocManaged(&p, bytes) == cudaSuccess) memset(p, 0, bytes); /* for host and kernels */
+    else p = NULL;
+#else
     void *p = calloc(1, bytes);
+#endif
     if (!p) {
         fprintf(stderr, "out of memory\n");
         exit(2);
     }
     return p;
 }
-static void bits_put_texel(float *out, int i, mcs_texel t) {
+BITS_HD static void bits_put_texel(float *out, int i, mcs_texel t) {
     bits1_put3(out, i, t.w), PUT(i + 3, t.pdf), PUT_WORD(i + 4, t.col), PUT_WORD(i + 5, t.row);
 }
 
@@ -374,29 +382,37 @@ static void bits_map_build(int kind, bits_map *m) {
         mcs_reflection r;
         r.frame = mcs_frame_make(mcsi_vec3(0.6f, 0.48f, 0.64f));
         r.wo = mcsi_vec3(0.0f, mcsi_sqrt(1.0f - s[3] * s[3]), s[3]), r.alpha_x = s[0], r.alpha_y = s[1], r.matte = s[2];
+        r.profile = (mcs_profile)(k % 3);
         bytes = mcs_product_bytes(rows), m->product[k] = (mcs_product *)bits_memory(bytes);
         m->status[3 + k] = mcs_product_build(m->product[k], bytes, m->tiles, m->env, &r);
     }
 }
-static const bits_map *bits_map_at(int kind) {
+#ifdef __CUDACC__
+static __device__ bits_map bits_gpu_maps[BITS_MAPS]; /* copies of those below */
+#endif
+BITS_HD static const bits_map *bits_map_at(int kind) {
+#ifdef __CUDA_ARCH__
+    return &bits_gpu_maps[kind];
+#else
     static bits_map maps[BITS_MAPS];
     if (!maps[kind].env) bits_map_build(kind, &maps[kind]);
     return &maps[kind];
+#endif
 }
-static int bits_map_of(const float *in) { return (int)(WORD(13) % BITS_MAPS); }
-static int bits_product_of(const float *in) { return (int)(WORD(13) % (BITS_MAPS * BITS_SURFACES)); }
+BITS_HD static int bits_map_of(const float *in) { return (int)(WORD(13) % BITS_MAPS); }
+BITS_HD static int bits_product_of(const float *in) { return (int)(WORD(13) % (BITS_MAPS * BITS_SURFACES)); }
 #define MAP const bits_map *const m = bits_map_at(bits_map_of(in))
 #define PRODUCT \
     MAP;        \
     const mcs_product *const p = m->product[bits_product_of(in) / BITS_MAPS]
 
-HOST(image_make) {
+FN(image_make) {
     const mcs_image im = mcs_image_make(in, WORD(11), WORD(12), WORD(13));
     PUT_WORD(0, im.pixels == in), PUT_WORD(1, im.w), PUT_WORD(2, im.h), PUT_WORD(3, im.channels);
     PUT_WORD(4, (uint32_t)im.bilinear);
     PUT_WORD(5, (uint32_t)im.pixel_stride), PUT_WORD(6, (uint32_t)im.row_stride), PUT(7, im.floor);
 }
-HOST(env_bytes) { /* of sizes that a machine of 32 bits has room for, or of none */
+FN(env_bytes) { /* of sizes that a machine of 32 bits has room for, or of none */
     const uint32_t w = WORD(11) >> (WORD(13) & 31), h = WORD(12) >> (WORD(13) >> 5 & 31);
     PUT_WORD(0, (uint32_t)mcs_env_bytes(w, 1 + h % 256)), PUT_WORD(1, (uint32_t)mcs_env_bytes(w % 256, h));
 }
@@ -409,7 +425,7 @@ typedef struct {
     size_t bytes;
     mcs_image image;
 } bits_case;
-static void bits_case_make(const float *in, bits_case *c) {
+BITS_HD static void bits_case_make(const float *in, bits_case *c) {
     const uint32_t h = WORD(11);
     memset(c, 0, sizeof *c);
     if (WORD(13) % 32) bits_picture(WORD(12), 5 * BITS_SMALL * BITS_SMALL, c->pixels);
@@ -431,7 +447,7 @@ static void bits_case_make(const float *in, bits_case *c) {
     }
 }
 /* All that a map is, but its places in memory. */
-static void bits_put_env(const float *in, float *out, const bits_case *c, mcs_status status) {
+BITS_HD static void bits_put_env(const float *in, float *out, const bits_case *c, mcs_status status) {
     const mcs_env *e = (const mcs_env *)(const void *)c->room;
     const uint32_t words[] = {e->magic, e->version, e->w,    e->h,       e->bad,       e->row0,
                               e->row1,  e->col0,    e->col1, e->uniform, e->incomplete};
@@ -442,18 +458,18 @@ static void bits_put_env(const float *in, float *out, const bits_case *c, mcs_st
     bits_put_texel(drawn, 0, mcs_env_sample(e, IN(6), IN(7))), bits_put_texel(drawn, 6, mcs_env_texel(e, IN3(8)));
     bits_put_array(out, 5, drawn, MCST_COUNT(drawn)), bits_put_array(out, 7, (const float *)(const void *)&e->frame, 9);
 }
-HOST(env_build) {
+FN(env_build) {
     bits_case c;
     bits_case_make(in, &c);
     bits_put_env(in, out, &c, mcs_env_build((mcs_env *)(void *)c.room, c.bytes, &c.image));
 }
 /* The rows in two parts, the later first. */
-static mcs_status bits_rows(const float *in, bits_case *c) {
+BITS_HD static mcs_status bits_rows(const float *in, bits_case *c) {
     const uint32_t cut = WORD(13) % BITS_SMALL, middle = cut < c->image.h ? cut : c->image.h;
     const mcs_status status = mcs_env_build_rows((mcs_env *)(void *)c->room, c->bytes, &c->image, middle, c->image.h);
     return status ? status : mcs_env_build_rows((mcs_env *)(void *)c->room, c->bytes, &c->image, 0, middle);
 }
-HOST(env_build_rows) {
+FN(env_build_rows) {
     bits_case c;
     mcs_status status;
     bits_case_make(in, &c);
@@ -461,14 +477,14 @@ HOST(env_build_rows) {
     bits_put_env(in, out, &c, status ? status : mcs_env_finish((mcs_env *)(void *)c.room, c.bytes, &c.image));
     PUT_WORD(9, (uint32_t)mcs_env_build_rows((mcs_env *)(void *)c.room, c.bytes, &c.image, WORD(12) % 16, WORD(13) % 16));
 }
-HOST(env_finish) { /* of a map whose rows are built, whatever its own answer */
+FN(env_finish) { /* of a map whose rows are built, whatever its own answer */
     bits_case c;
     bits_case_make(in, &c);
     bits_rows(in, &c);
     bits_put_env(in, out, &c, mcs_env_finish((mcs_env *)(void *)c.room, c.bytes, &c.image));
     PUT_WORD(9, (uint32_t)mcs_env_finish(NULL, c.bytes, &c.image));
 }
-HOST(env_check) {
+FN(env_check) {
     bits_case c;
     mcs_env *const e = (mcs_env *)(void *)c.room;
     uint32_t *list;
@@ -492,39 +508,39 @@ HOST(env_check) {
     }
     PUT_WORD(5, (uint32_t)mcs_env_check(e, c.bytes));
 }
-HOST(env_mean) {
+FN(env_mean) {
     bits_case c;
     bits_case_make(in, &c);
     PUT(0, mcs_env_mean(&c.image));
 }
-HOST(env_sample) {
+FN(env_sample) {
     MAP;
     bits_put_texel(out, 0, mcs_env_sample(m->env, IN(6), IN(7)));
 }
-HOST(env_sample_bits) {
+FN(env_sample_bits) {
     MAP;
     bits_put_texel(out, 0, mcs_env_sample_bits(m->env, WORD(11), WORD(12)));
 }
-HOST(env_pdf) {
+FN(env_pdf) {
     MAP;
     PUT(0, mcs_env_pdf(m->env, IN3(8)));
 }
-HOST(env_invert) {
+FN(env_invert) {
     MAP;
     bits1_put2(out, 0, mcs_env_invert(m->env, IN3(8)));
     bits1_put2(out, 2, mcs_env_invert(m->env, mcs_env_sample(m->env, IN(6), IN(7)).w));
 }
-HOST(env_texel) {
+FN(env_texel) {
     MAP;
     const mcs_texel t = mcs_env_texel(m->env, IN3(8));
     bits_put_texel(out, 0, mcs_env_texel(m->env, mcs_env_sample(m->env, IN(6), IN(7)).w));
     PUT(6, t.pdf), PUT_WORD(7, t.col), PUT_WORD(8, t.row);
 }
-HOST(env_weight) {
+FN(env_weight) {
     MAP;
     PUT(0, mcs_env_weight(m->env, IN(0))), PUT(1, mcs_env_weight(m->env, mcs_env_sample(m->env, IN(6), IN(7)).pdf));
 }
-HOST(env_window_bytes) { PUT_WORD(0, (uint32_t)mcs_env_window_bytes(WORD(11) >> (WORD(12) & 31))); }
+FN(env_window_bytes) { PUT_WORD(0, (uint32_t)mcs_env_window_bytes(WORD(11) >> (WORD(12) & 31))); }
 
 /* A window of its own for each case: some are refused, some go across the seam, some are black. */
 #define WINDOW                                                                                        \
@@ -536,15 +552,15 @@ HOST(env_window_bytes) { PUT_WORD(0, (uint32_t)mcs_env_window_bytes(WORD(11) >> 
     const size_t bytes = mcs_env_window_bytes(rows) - (WORD(13) >> 28 == 0 && rows);                  \
     const mcs_status status = mcs_env_window_build(v, bytes, m->env, row, rows, col, cols);           \
     const mcs_texel t = mcs_env_window_sample(status < 0 ? m->window : v, m->env, IN(6), IN(7))
-HOST(env_window_build) {
+FN(env_window_build) {
     WINDOW;
     PUT_WORD(0, (uint32_t)status), bits_put_texel(out, 1, t);
 }
-HOST(env_window_sample) {
+FN(env_window_sample) {
     MAP;
     bits_put_texel(out, 0, mcs_env_window_sample(m->window, m->env, IN(6), IN(7))), PUT_WORD(6, (uint32_t)m->status[1]);
 }
-HOST(env_window_pdf) {
+FN(env_window_pdf) {
     WINDOW;
     PUT(0, mcs_env_window_pdf(status < 0 ? m->window : v, m->env, t.w)), PUT(1, mcs_env_window_pdf(m->window, m->env, IN3(8)));
 }
@@ -552,18 +568,18 @@ HOST(env_window_pdf) {
 
 /* --- products --------------------------------------------------------------------------------------------------------------- */
 
-static mcs_reflection bits_reflection(const float *in) {
+BITS_HD static mcs_reflection bits_reflection(const float *in) {
     mcs_reflection r;
     r.frame = mcs_frame_make(IN3(8)), r.wo = IN3(3), r.alpha_x = IN(0), r.alpha_y = IN(1);
-    r.matte = WORD(12) % 4 ? mcs_u01(WORD(12)) : IN(6);
+    r.matte = WORD(12) % 4 ? mcs_u01(WORD(12)) : IN(6), r.profile = (mcs_profile)(WORD(11) >> 2 & 3);
     return r;
 }
-HOST(tiles_bytes) {
+FN(tiles_bytes) {
     MAP;
     PUT_WORD(0, (uint32_t)mcs_tiles_bytes(m->env, 16u << (WORD(11) & 3))), PUT_WORD(1, (uint32_t)mcs_tiles_bytes(m->env, WORD(12)));
     PUT_WORD(2, (uint32_t)mcs_tiles_bytes(NULL, 16));
 }
-HOST(tiles_build) {
+FN(tiles_build) {
     MAP;
     PUT_WORD(0, (uint32_t)m->status[2]), bits_put_array(out, 1, m->tiles, 3);
     PUT_WORD(3, (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes - 1 - WORD(11) % m->tile_bytes, m->env, m->tiles->rows));
@@ -571,12 +587,12 @@ HOST(tiles_build) {
     PUT_WORD(5, (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes, NULL, 16));
     bits1_put3(out, 6, mcs_tiles_direction(m->tiles, m->env, WORD(12) % 512));
 }
-HOST(tiles_direction) {
+FN(tiles_direction) {
     MAP;
     bits1_put3(out, 0, mcs_tiles_direction(m->tiles, m->env, WORD(11) % 600));
     bits1_put3(out, 3, mcs_tiles_direction(m->tiles, m->env, WORD(12)));
 }
-HOST(product_bytes) { /* beyond the header, which holds pointers */
+FN(product_bytes) { /* beyond the header, which holds pointers */
     const size_t bytes = mcs_product_bytes(16u << (WORD(11) & 3));
     PUT_WORD(0, (uint32_t)(bytes ? bytes - sizeof(mcs_product) : 0)), PUT_WORD(1, (uint32_t)mcs_product_bytes(WORD(12)));
 }
@@ -604,21 +620,21 @@ HOST(product_build_weights) {
     bits_picture(WORD(12), m->tiles->rows * m->tiles->cols, weight);
     bits_put_product(in, out, mcs_product_build_weights(p, sizeof bits_room, m->tiles, m->env, WORD(11) % 32 == 1 ? NULL : weight));
 }
-HOST(product_sample) {
+FN(product_sample) {
     PRODUCT;
     bits_put_texel(out, 0, mcs_product_sample(p, IN(6), IN(7)));
     PUT_WORD(6, (uint32_t)m->status[3 + bits_product_of(in) / BITS_MAPS]);
 }
-HOST(product_pdf) {
+FN(product_pdf) {
     PRODUCT;
     PUT(0, mcs_product_pdf(p, IN3(8))), PUT(1, mcs_product_pdf(p, mcs_product_sample(p, IN(6), IN(7)).w));
 }
-HOST(oneshot_sample) {
+FN(oneshot_sample) {
     MAP;
     const mcs_reflection r = bits_reflection(in);
     bits_put_texel(out, 0, mcs_oneshot_sample(m->tiles, m->env, &r, IN(6), IN(7)));
 }
-HOST(oneshot_pdf) {
+FN(oneshot_pdf) {
     MAP;
     const mcs_reflection r = bits_reflection(in);
     PUT(0, mcs_oneshot_pdf(m->tiles, m->env, &r, IN3(8)));

@@ -392,7 +392,7 @@ static void make_surfaces(void) {
             mcs_reflection *const r = &now.surface[kind][k];
             r->frame = mcs_frame_make(mcs_hemisphere_sample(mcs_sobol((uint32_t)k, 0, 1), mcs_sobol((uint32_t)k, 1, 1)).w);
             r->wo = mcs_cone_sample(0.5f, mcs_sobol((uint32_t)k, 2, 1), mcs_sobol((uint32_t)k, 3, 1)).w;
-            r->alpha_x = r->alpha_y = 0.3f, r->matte = kind == MATTE;
+            r->alpha_x = r->alpha_y = 0.3f, r->matte = kind == MATTE, r->profile = MCS_PROFILE_GGX;
         }
     }
 }

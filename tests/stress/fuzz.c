@@ -330,6 +330,7 @@ static void fuzz_product(const mcs_env *e, bytes *b) {
     r.frame = mcs_frame_make(take_direction(b, tame));
     if (!tame) r.frame.s = take_vec3(b), r.frame.t = take_vec3(b), r.frame.n = take_vec3(b);
     r.wo = take_direction(b, tame), r.alpha_x = take_float(b), r.alpha_y = take_float(b), r.matte = take_float(b);
+    r.profile = (mcs_profile)(take_u8(b) & 3);
     if (tame) r.alpha_x = mcs_schlick(0, r.alpha_x), r.alpha_y = mcs_schlick(0, r.alpha_y), r.matte = mcs_schlick(0, r.matte);
     MUST(mcs_product_build(p, product_size - 1, t, e, &r) == MCS_ERR_MEMORY);
     for (k = 0; k < 512; k++) weight[k] = k < 64 ? take_float(b) : weight[k / 8];

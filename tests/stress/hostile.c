@@ -337,7 +337,7 @@ static float next_of(float x, void *context) { /* a function whose values are th
     (void)x;
     return st_hostile(mcst_mix(state));
 }
-static mcs_status table_build(int kind, st_memory *m, size_t bytes, const float *f, uint32_t n, uint64_t *state) {
+static mcs_status table_build(int kind, arena *m, size_t bytes, const float *f, uint32_t n, uint64_t *state) {
     void *at = m->at;
     if (kind == FROM_FUNCTION) return (mcs_status)mcs_pwc_build_fn((mcs_pwc *)at, bytes, f ? next_of : NULL, state, n);
     if (kind == PWL) return (mcs_status)mcs_pwl_build((mcs_pwl *)at, bytes, f, n);
@@ -366,7 +366,7 @@ static void make_entries(float *f, uint32_t n, uint64_t *state, uint32_t *bad, l
 }
 static int lit(const float *f, uint32_t i) { return f[i] > 0 && f[i] <= FLT_MAX; }
 
-static void check_draws(int kind, const st_memory *m, const float *f, uint32_t n, int uniform, uint64_t *state, tally *t) {
+static void check_draws(int kind, const arena *m, const float *f, uint32_t n, int uniform, uint64_t *state, tally *t) {
     const mcs_pwc *pwc = (const mcs_pwc *)(const void *)m->at;
     const mcs_pwl *pwl = (const mcs_pwl *)(const void *)m->at;
     const mcs_alias *alias = (const mcs_alias *)(const void *)m->at;
@@ -409,7 +409,7 @@ static void check_draws(int kind, const st_memory *m, const float *f, uint32_t n
 static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
     const uint32_t entries = n + (kind == PWL);
     const size_t bytes = table_bytes(kind, n);
-    st_memory source = st_memory_make(entries * sizeof(float)), copy = st_memory_make(source.bytes), m = st_memory_make(bytes);
+    arena source = arena_make(entries * sizeof(float)), copy = arena_make(source.bytes), m = arena_make(bytes);
     float *f = (float *)(void *)source.at;
     uint32_t bad, some, i;
     long double sum;
@@ -417,13 +417,13 @@ static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
     make_entries(f, entries, state, &bad, &sum, &some);
     memcpy(copy.at, source.at, source.bytes);
     e = table_build(kind, &m, bytes - 1, f, n, state);
-    CHECK(e == MCS_ERR_MEMORY && st_untouched(m.at, bytes), "%u entries, a byte too few: %d", (unsigned)n, (int)e);
+    CHECK(e == MCS_ERR_MEMORY && untouched(m.at, bytes), "%u entries, a byte too few: %d", (unsigned)n, (int)e);
     e = table_build(kind, &m, bytes, NULL, n, state);
-    CHECK(e == MCS_ERR_ARG && st_untouched(m.at, bytes), "no entries: %d", (int)e);
+    CHECK(e == MCS_ERR_ARG && untouched(m.at, bytes), "no entries: %d", (int)e);
     e = table_build(kind, &m, bytes, f, 0, state);
-    CHECK(e == MCS_ERR_SIZE && st_untouched(m.at, bytes), "0 entries: %d", (int)e);
+    CHECK(e == MCS_ERR_SIZE && untouched(m.at, bytes), "0 entries: %d", (int)e);
     e = table_build(kind, &m, bytes, f, n, state);
-    CHECK(st_intact(&m) && st_intact(&source) && !memcmp(copy.at, source.at, source.bytes), "%u entries: written outside",
+    CHECK(arena_intact(&m) && arena_intact(&source) && !memcmp(copy.at, source.at, source.bytes), "%u entries: written outside",
           (unsigned)n);
     if (kind == FROM_FUNCTION) {
         CHECK(e == MCS_OK || e == MCS_UNIFORM, "%u entries: status %d", (unsigned)n, (int)e);
@@ -452,7 +452,7 @@ static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
             CHECK(fabs(all - 1) <= 0x1p-24, "probabilities add up to 1 + %g", all - 1); /* each rounded to 24 digits */
         } else {                                                                        /* arrays with exactly n places; in place */
             const size_t count = mcst_mix(state) % 70;
-            st_memory u = st_memory_make(count * sizeof(float)), x = st_memory_make(u.bytes), pdf = st_memory_make(u.bytes);
+            arena u = arena_make(count * sizeof(float)), x = arena_make(u.bytes), pdf = arena_make(u.bytes);
             float *in = (float *)(void *)u.at, *ox = (float *)(void *)x.at, *op = (float *)(void *)pdf.at;
             for (i = 0; i < count; i++) in[i] = i & 3 ? (float)(mcst_mix(state) >> 40) * 0x1p-24f : st_hostile(mcst_mix(state));
             if (kind == PWL) mcs_pwl_sample_n((const mcs_pwl *)(const void *)m.at, count, in, ox, op);
@@ -462,20 +462,20 @@ static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
             if (kind == PWL) mcs_pwl_sample_n((const mcs_pwl *)(const void *)m.at, count, in, in, NULL);
             else mcs_pwc_sample_n(head, count, in, in, NULL);
             CHECK(!memcmp(u.at, x.at, u.bytes), "in place is different");
-            CHECK(st_intact(&u) && st_intact(&x) && st_intact(&pdf), "arrays of %u: written outside", (unsigned)count);
+            CHECK(arena_intact(&u) && arena_intact(&x) && arena_intact(&pdf), "arrays of %u: written outside", (unsigned)count);
             t->evaluations += (double)count * 2;
-            st_memory_free(&u), st_memory_free(&x), st_memory_free(&pdf);
+            arena_free(&u), arena_free(&x), arena_free(&pdf);
         }
     }
-    CHECK(st_intact(&m) && st_intact(&source), "%u entries: written outside while drawing", (unsigned)n);
-    st_memory_free(&source), st_memory_free(&copy), st_memory_free(&m);
+    CHECK(arena_intact(&m) && arena_intact(&source), "%u entries: written outside while drawing", (unsigned)n);
+    arena_free(&source), arena_free(&copy), arena_free(&m);
 }
 
 /* --- environment maps and products ------------------------------------------------------------------------------------------ */
 
 /* An image in memory of exactly its span; `bad` of its texels are bad. Guards and gaps between texels would be bad, too. */
 typedef struct {
-    st_memory m;
+    arena m;
     mcs_image im;
     uint32_t bad;
 } picture;
@@ -524,7 +524,7 @@ static picture make_picture(uint64_t *state) {
     float *f, level;
     uint32_t i, j, c;
     int bad;
-    p.m = st_memory_make(count * sizeof *f), p.bad = 0, f = (float *)(void *)p.m.at;
+    p.m = arena_make(count * sizeof *f), p.bad = 0, f = (float *)(void *)p.m.at;
     p.im = mcs_image_make(f, w, h, channels);
     p.im.bilinear = (y >> 16 & 1) != 0;
     if (step != channels || y >> 17 & 1) p.im.pixel_stride = (ptrdiff_t)step;
@@ -582,9 +582,7 @@ typedef struct {
 static int in_part(const part_of *q, uint32_t row, uint32_t col) {
     return row >= q->row && row - q->row < q->rows && (col + q->e->w - q->col) % q->e->w < q->cols;
 }
-/* A draw: `off` is how far the length may be from 1, negative where any finite direction will do. Length of a direction of the map,
- * in 2^-24: sine of a root 2, sine and cosine of the azimuth 1.4 ulp or 2.8, their products 1, the cosine 0.5. */
-static const double map_off = 7 * 0x1p-24;
+/* A draw: `off` is how far the length may be from 1, negative where any finite direction will do. */
 static void check_texel(const part_of *q, tally *t, mcs_texel s, int good, double off, const char *what) {
     const double l2 = (double)s.w.x * (double)s.w.x + (double)s.w.y * (double)s.w.y + (double)s.w.z * (double)s.w.z;
     const int sound = finite(t, s.w.x) & finite(t, s.w.y) & finite(t, s.w.z) & proper(t, s.pdf);
@@ -606,7 +604,7 @@ enum { DRAWS = 100 };
 static void check_map(const part_of *q, const mcs_env_window *m, int axes, uint64_t *state, tally *t) {
     const mcs_env *e = q->e;
     const size_t count = mcst_mix(state) % 70;
-    st_memory in = st_memory_make(2 * count * sizeof(float)), out = st_memory_make(4 * count * sizeof(float));
+    arena in = arena_make(2 * count * sizeof(float)), out = arena_make(4 * count * sizeof(float));
     float *u = (float *)(void *)in.at, *x = (float *)(void *)out.at, *y = x + count, *z = y + count, *pdf = z + count;
     size_t k;
     for (k = 0; k < DRAWS; k++) {
@@ -622,7 +620,7 @@ static void check_map(const part_of *q, const mcs_env_window *m, int axes, uint6
         const float here = m ? mcs_env_window_pdf(m, e, s.w) : own.pdf, there = m ? mcs_env_window_pdf(m, e, w) : a.pdf;
         const float weight = mcs_env_weight(e, there);
         const mcs_vec2 back = mcs_env_invert(e, k & 1 ? w : s.w);
-        check_texel(q, t, s, good, axes ? map_off : -1, m ? "window" : "map");
+        check_texel(q, t, s, good, axes ? st_map_off : -1, m ? "window" : "map");
         CHECK(!good || !axes || s.pdf > 0, "u %a %a: density 0 at its own sample", (double)u1, (double)u2);
         CHECK(!good || !axes || (here == s.pdf && own.row == s.row && own.col == s.col),
               "u %a %a, bits %08x %08x, %u x %u: pdf %a, %a of its direction; texel %u %u, %u %u", (double)u1, (double)u2,
@@ -652,8 +650,8 @@ static void check_map(const part_of *q, const mcs_env_window *m, int axes, uint6
     }
     mcs_env_pdf_n(e, count, x, y, z, pdf);
     for (k = 0; k < count; k++) CHECK(proper(t, pdf[k]), "array: pdf %a", (double)pdf[k]);
-    CHECK(st_intact(&in) && st_intact(&out), "arrays of %u: written outside", (unsigned)count);
-    st_memory_free(&in), st_memory_free(&out);
+    CHECK(arena_intact(&in) && arena_intact(&out), "arrays of %u: written outside", (unsigned)count);
+    arena_free(&in), arena_free(&out);
     t->evaluations += DRAWS * (m ? 6 : 4) + (double)count * 3;
 }
 
@@ -662,17 +660,17 @@ static void check_window(const picture *p, const mcs_env *e, uint64_t *state, ta
     const uint32_t row = (uint32_t)z % e->h, rows = 1 + (uint32_t)(z >> 16) % (e->h - row), col = (uint32_t)(z >> 32) % e->w;
     const uint32_t cols = 1 + (uint32_t)(z >> 48) % e->w;
     const size_t bytes = mcs_env_window_bytes(rows);
-    st_memory m = st_memory_make(bytes);
+    arena m = arena_make(bytes);
     mcs_env_window *at = (mcs_env_window *)(void *)m.at;
     part_of q;
     uint32_t i, j;
     int some = 0, none = 1;
     mcs_status s = mcs_env_window_build(at, bytes - 1, e, row, rows, col, cols);
-    CHECK(s == MCS_ERR_MEMORY && st_untouched(m.at, bytes), "%u rows, a byte too few: %d", (unsigned)rows, (int)s);
+    CHECK(s == MCS_ERR_MEMORY && untouched(m.at, bytes), "%u rows, a byte too few: %d", (unsigned)rows, (int)s);
     s = mcs_env_window_build(at, bytes, e, e->h - row, row + 1 + (uint32_t)wild % 9, col, cols);
-    CHECK(s == MCS_ERR_SIZE && st_untouched(m.at, bytes), "rows beyond the map: %d", (int)s);
+    CHECK(s == MCS_ERR_SIZE && untouched(m.at, bytes), "rows beyond the map: %d", (int)s);
     s = mcs_env_window_build(at, bytes, e, row, rows, col, e->w + 1 + (uint32_t)(wild >> 32) / 2);
-    CHECK(s == MCS_ERR_SIZE && st_untouched(m.at, bytes), "columns beyond the map: %d", (int)s);
+    CHECK(s == MCS_ERR_SIZE && untouched(m.at, bytes), "columns beyond the map: %d", (int)s);
     s = mcs_env_window_build(at, bytes, e, row, rows, col, cols);
     for (i = row; i < row + rows; i++)
         for (j = 0; j < cols; j++) {
@@ -684,8 +682,8 @@ static void check_window(const picture *p, const mcs_env *e, uint64_t *state, ta
           (unsigned)e->w, (unsigned)e->h, (int)s);
     q.e = e, q.p = s == MCS_UNIFORM ? NULL : p, q.row = row, q.rows = rows, q.col = col, q.cols = cols;
     check_map(&q, at, 1, state, t);
-    CHECK(st_intact(&m), "window of %u rows: written outside", (unsigned)rows);
-    st_memory_free(&m);
+    CHECK(arena_intact(&m), "window of %u rows: written outside", (unsigned)rows);
+    arena_free(&m);
 }
 
 /* A reflection; `sane`: unit directions and a frame to go with them. */
@@ -697,6 +695,7 @@ static mcs_reflection make_reflection(uint64_t *state, int *sane) {
     int i;
     r.frame = mcs_frame_make(mcs_sphere_sample(a, b).w), r.wo = mcs_hemisphere_sample(b, a).w;
     r.alpha_x = z & 1 ? a : 1e-3f * a, r.alpha_y = z & 2 ? b : 1e-3f * b, r.matte = z & 4 ? b : (float)(z >> 3 & 1);
+    r.profile = (mcs_profile)(z >> 60 & 3);
     *sane = r.wo.z > 0;
     if (z & 16) return r;
     slot[0] = &r.frame.s.x, slot[1] = &r.frame.s.y, slot[2] = &r.frame.s.z, slot[3] = &r.frame.t.x, slot[4] = &r.frame.t.y;
@@ -713,8 +712,8 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
     const double lobe_off = 0x1p-18;
     const size_t bytes = mcs_product_bytes(tiles->rows), n = (size_t)tiles->rows * tiles->cols, count = mcst_mix(state) % 70;
     const int weights = mcst_mix(state) % 4 == 0;
-    st_memory m = st_memory_make(bytes), in = st_memory_make(2 * count * sizeof(float)),
-              out = st_memory_make(4 * count * sizeof(float)), list = st_memory_make(n * sizeof(float));
+    arena m = arena_make(bytes), in = arena_make(2 * count * sizeof(float)), out = arena_make(4 * count * sizeof(float)),
+          list = arena_make(n * sizeof(float));
     float *u = (float *)(void *)in.at, *x = (float *)(void *)out.at, *y = x + count, *z = y + count, *pdf = z + count;
     float *weight = (float *)(void *)list.at;
     mcs_product *p = (mcs_product *)(void *)m.at;
@@ -723,7 +722,7 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
     mcs_reflection r = make_reflection(state, &sane);
     mcs_status s = mcs_product_build(p, bytes - 1, tiles, q->e, &r);
     size_t k;
-    CHECK(s == MCS_ERR_MEMORY && st_untouched(m.at, bytes), "product, a byte too few: %d", (int)s);
+    CHECK(s == MCS_ERR_MEMORY && untouched(m.at, bytes), "product, a byte too few: %d", (int)s);
     for (k = 0; k < n; k++) {
         const mcs_vec3 w = mcs_tiles_direction(tiles, q->e, (uint32_t)k);
         CHECK(finite(t, w.x) && finite(t, w.y) && finite(t, w.z), "tile %u: direction %a %a %a", (unsigned)k, (double)w.x,
@@ -731,7 +730,7 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
         weight[k] = st_hostile(mcst_mix(state));
     }
     s = weights ? mcs_product_build_weights(p, bytes, tiles, q->e, weight) : mcs_product_build(p, bytes, tiles, q->e, &r);
-    CHECK((s == MCS_OK || s == MCS_UNIFORM) && st_intact(&m), "product: status %d", (int)s);
+    CHECK((s == MCS_OK || s == MCS_UNIFORM) && arena_intact(&m), "product: status %d", (int)s);
     if (mcst_mix(state) % 4 == 0) p->brdf_share = 0; /* as the header allows */
     all.p = NULL;
     for (k = 0; k < DRAWS; k++) {
@@ -741,7 +740,7 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
         const mcs_texel a = mcs_product_sample(p, u1, u2), b = mcs_oneshot_sample(tiles, q->e, &r, u1, u2);
         const float back = mcs_product_pdf(p, a.w), there = mcs_product_pdf(p, w);
         const float shot_back = mcs_oneshot_pdf(tiles, q->e, &r, b.w), shot_there = mcs_oneshot_pdf(tiles, q->e, &r, w);
-        check_texel(tiled ? q : &all, t, a, good, tiled ? map_off : sane ? lobe_off : -1, "product");
+        check_texel(tiled ? q : &all, t, a, good, tiled ? st_map_off : sane ? lobe_off : -1, "product");
         check_texel(&all, t, b, good, sane ? lobe_off : -1, "one-shot");
         CHECK(proper(t, back) && proper(t, there) && proper(t, shot_back) && proper(t, shot_there), "pdf %a %a, %a %a",
               (double)back, (double)there, (double)shot_back, (double)shot_there);
@@ -760,31 +759,31 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
         CHECK((pdf[k] > 0) == (one.pdf > 0), "array: u %a %a, pdf %a, not %a", (double)u[k], (double)u[count + k], (double)pdf[k],
               (double)one.pdf);
     }
-    CHECK(st_intact(&m) && st_intact(&in) && st_intact(&out) && st_intact(&list), "product: written outside");
-    st_memory_free(&m), st_memory_free(&in), st_memory_free(&out), st_memory_free(&list);
+    CHECK(arena_intact(&m) && arena_intact(&in) && arena_intact(&out) && arena_intact(&list), "product: written outside");
+    arena_free(&m), arena_free(&in), arena_free(&out), arena_free(&list);
     t->evaluations += DRAWS * 6 + (double)count * 2 + (double)n;
 }
 
 static void check_tiles(const part_of *q, uint64_t *state, tally *t) {
     const size_t bytes = mcs_tiles_bytes(q->e, 16);
-    st_memory m = st_memory_make(bytes);
+    arena m = arena_make(bytes);
     mcs_tiles *tiles = (mcs_tiles *)(void *)m.at;
     mcs_status s = mcs_tiles_build(tiles, bytes - 1, q->e, 16);
     int k;
-    CHECK(s == MCS_ERR_MEMORY && st_untouched(m.at, bytes), "tiles, a byte too few: %d", (int)s);
+    CHECK(s == MCS_ERR_MEMORY && untouched(m.at, bytes), "tiles, a byte too few: %d", (int)s);
     s = mcs_tiles_build(tiles, bytes, q->e, 16 + (uint32_t)(mcst_mix(state) % 16) + 1);
     CHECK(s == MCS_ERR_SIZE || s == MCS_ERR_MEMORY, "tiles of a wrong number of rows: %d", (int)s);
     s = mcs_tiles_build(tiles, bytes, q->e, 16);
-    CHECK(s == (q->p ? MCS_OK : MCS_UNIFORM) && st_intact(&m), "tiles: status %d", (int)s);
+    CHECK(s == (q->p ? MCS_OK : MCS_UNIFORM) && arena_intact(&m), "tiles: status %d", (int)s);
     for (k = 0; k < 4; k++) check_product(q, tiles, state, t);
-    CHECK(st_intact(&m), "tiles: written outside");
-    st_memory_free(&m);
+    CHECK(arena_intact(&m), "tiles: written outside");
+    arena_free(&m);
 }
 
 /* Some bytes of a table changed: what mcs_env_check lets pass is drawn from inside the map and its memory. */
-static void check_damage(const st_memory *map, uint64_t *state, tally *t) {
+static void check_damage(const arena *map, uint64_t *state, tally *t) {
     const int changes = 1 + (int)(mcst_mix(state) % 3);
-    st_memory m = st_memory_make(map->bytes);
+    arena m = arena_make(map->bytes);
     mcs_env *e = (mcs_env *)(void *)m.at;
     const size_t less = mcst_mix(state) % map->bytes;
     mcs_status s;
@@ -813,14 +812,14 @@ static void check_damage(const st_memory *map, uint64_t *state, tally *t) {
         CHECK(below_one(t, back.x) && below_one(t, back.y), "damaged: invert %a %a", (double)back.x, (double)back.y);
         t->evaluations += 4;
     }
-    CHECK(st_intact(&m), "damaged: written outside");
-    st_memory_free(&m);
+    CHECK(arena_intact(&m), "damaged: written outside");
+    arena_free(&m);
 }
 
 static void check_env(int tiled, uint64_t *state, tally *t) {
     picture p = make_picture(state);
     const size_t bytes = mcs_env_bytes(p.im.w, p.im.h);
-    st_memory m = st_memory_make(bytes), parts = st_memory_make(bytes), copy = st_memory_make(p.m.bytes);
+    arena m = arena_make(bytes), parts = arena_make(bytes), copy = arena_make(p.m.bytes);
     mcs_env *e = (mcs_env *)(void *)m.at, *other = (mcs_env *)(void *)parts.at;
     const uint32_t cut = (uint32_t)mcst_mix(state) % (p.im.h + 1);
     const float mean = mcs_env_mean(&p.im);
@@ -832,16 +831,15 @@ static void check_env(int tiled, uint64_t *state, tally *t) {
     memcpy(copy.at, p.m.at, p.m.bytes);
     CHECK(finite(t, mean) && mean >= 0, "mean %a", (double)mean);
     s = mcs_env_build(e, bytes - 1, &p.im);
-    CHECK(s == MCS_ERR_MEMORY && st_untouched(m.at, bytes), "%u x %u, a byte too few: %d", (unsigned)p.im.w, (unsigned)p.im.h,
-          (int)s);
+    CHECK(s == MCS_ERR_MEMORY && untouched(m.at, bytes), "%u x %u, a byte too few: %d", (unsigned)p.im.w, (unsigned)p.im.h, (int)s);
     wrong.channels = 2, s = mcs_env_build(e, bytes, &wrong);
-    CHECK(s == MCS_ERR_ARG && st_untouched(m.at, bytes), "2 channels: %d", (int)s);
+    CHECK(s == MCS_ERR_ARG && untouched(m.at, bytes), "2 channels: %d", (int)s);
     wrong = p.im, wrong.pixel_stride = PTRDIFF_MAX >> mcst_mix(state) % 8, wrong.row_stride = PTRDIFF_MIN;
     s = mcs_env_build(e, bytes, &wrong);
-    CHECK(s == MCS_ERR_SIZE && st_untouched(m.at, bytes), "strides beyond memory: %d", (int)s);
+    CHECK(s == MCS_ERR_SIZE && untouched(m.at, bytes), "strides beyond memory: %d", (int)s);
     s = mcs_env_build(e, bytes, &p.im);
-    CHECK(st_intact(&m) && st_intact(&p.m) && !memcmp(copy.at, p.m.at, p.m.bytes), "%u x %u: written outside", (unsigned)p.im.w,
-          (unsigned)p.im.h);
+    CHECK(arena_intact(&m) && arena_intact(&p.m) && !memcmp(copy.at, p.m.at, p.m.bytes), "%u x %u: written outside",
+          (unsigned)p.im.w, (unsigned)p.im.h);
     for (i = 0; i < p.im.h; i++)
         for (j = 0; j < p.im.w; j++) {
             const int lit = texel_lit(&p.im, j, i);
@@ -857,7 +855,7 @@ static void check_env(int tiled, uint64_t *state, tally *t) {
               mcs_env_build_rows(other, bytes, &p.im, 0, cut) == MCS_OK,
           "parts, cut at %u", (unsigned)cut);
     CHECK(mcs_env_build_rows(other, bytes, &p.im, cut, p.im.h + 1) == MCS_ERR_SIZE, "rows beyond the image");
-    CHECK(mcs_env_finish(other, bytes, &p.im) == s && st_intact(&parts) && !memcmp(m.at, parts.at, bytes), "%u x %u cut at %u",
+    CHECK(mcs_env_finish(other, bytes, &p.im) == s && arena_intact(&parts) && !memcmp(m.at, parts.at, bytes), "%u x %u cut at %u",
           (unsigned)p.im.w, (unsigned)p.im.h, (unsigned)cut);
     q.e = e, q.p = s == MCS_UNIFORM ? NULL : &p, q.row = q.col = 0, q.rows = e->h, q.cols = e->w;
     check_map(&q, NULL, 1, state, t);
@@ -866,8 +864,8 @@ static void check_env(int tiled, uint64_t *state, tally *t) {
     for (k = 0; k < 4; k++) check_damage(&m, state, t);
     e->frame = mcs_frame_make(hostile_direction(state));
     check_map(&q, NULL, 0, state, t);
-    CHECK(st_intact(&m) && st_intact(&p.m), "%u x %u: written outside while drawing", (unsigned)p.im.w, (unsigned)p.im.h);
-    st_memory_free(&m), st_memory_free(&parts), st_memory_free(&copy), st_memory_free(&p.m);
+    CHECK(arena_intact(&m) && arena_intact(&p.m), "%u x %u: written outside while drawing", (unsigned)p.im.w, (unsigned)p.im.h);
+    arena_free(&m), arena_free(&parts), arena_free(&copy), arena_free(&p.m);
 }
 
 int main(int argc, char **argv) {

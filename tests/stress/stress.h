@@ -1,8 +1,10 @@
-/* What the stress tests share: numbers of every class a float has, memory between guards, the ranges that the header documents. */
+/* What the stress tests share: numbers of every class a float has, memory between guards (arena.h), the ranges that the header
+ * documents. */
 #ifndef MCS_STRESS_H
 #define MCS_STRESS_H
 #include <float.h>
 #include <math.h>
+#include "arena.h"
 #include "registry.h"
 
 static inline float st_float(uint32_t bits) {
@@ -51,30 +53,7 @@ static inline int st_direction_bad(float x, float y, float z) {
 }
 static inline int st_above_bad(float x, float y, float z) { return z > 0 ? st_direction_bad(x, y, z) : 1; }
 
-/* Memory of exactly the size asked for, between two guards of `GUARD` bytes. */
-enum { ST_GUARD = 64 };
-typedef struct {
-    unsigned char *raw, *at;
-    size_t bytes;
-} st_memory;
-static inline st_memory st_memory_make(size_t bytes) {
-    st_memory m;
-    m.bytes = bytes;
-    m.raw = (unsigned char *)malloc(bytes + 2 * ST_GUARD);
-    if (!m.raw) {
-        fprintf(stderr, "out of memory\n");
-        exit(2);
-    }
-    memset(m.raw, 0xa5, bytes + 2 * ST_GUARD);
-    m.at = m.raw + ST_GUARD;
-    return m;
-}
-static inline int st_untouched(const unsigned char *p, size_t n) {
-    while (n > 0 && p[n - 1] == 0xa5) n--;
-    return n == 0;
-}
-static inline int st_intact(const st_memory *m) {
-    return st_untouched(m->raw, ST_GUARD) && st_untouched(m->at + m->bytes, ST_GUARD);
-}
-static inline void st_memory_free(st_memory *m) { free(m->raw); }
+/* How far the length of a direction of a map may be from 1, in 2^-24: sine of a root 2, sine and cosine of the azimuth 1.4 ulp or
+ * 2.8, their products 1, the cosine 0.5. */
+static const double st_map_off = 7 * 0x1p-24;
 #endif
