@@ -19,11 +19,11 @@ EXAMPLES = $(sort $(wildcard examples/[0-9][0-9]_*.c))
 TEST_BINS = $(TESTS:%.c=$(BUILD)/%)
 # Stress programs: at full size by `make stress`, part by part; a small cut of each with every full `make test`. The oracle of
 # extremes is __float128, which takes gcc and its libquadmath.
-STRESS_ALL = floats deep hostile fuzz extremes
+STRESS_ALL = floats deep hostile fuzz images extremes
 STRESS = $(if $(QUADMATH),$(STRESS_ALL),$(filter-out extremes,$(STRESS_ALL)))
 STRESS_BINS = $(STRESS:%=$(BUILD)/tests/stress/%)
 # Parts of make stress: program-filter, + for a space and . for a slash in the filter.
-STRESS_PARTS = hostile fuzz $(filter extremes,$(STRESS)) floats-vector+maths floats-u+to+x floats-u+to+radius floats-any+float \
+STRESS_PARTS = hostile fuzz images $(filter extremes,$(STRESS)) floats-vector+maths floats-u+to+x floats-u+to+radius floats-any+float \
 	$(addprefix deep-,linear tent exponential truncexp normal logistic power disk concentric sphere cosine cone phong ward \
 	beckmann ggx. ggx_h. ggx_vndf ggx_bounded ashikhmin)
 STRESS_CUT = $(if $(filter-out $(TESTS),$(sort $(wildcard tests/test_*.c))),,$(STRESS_BINS))

@@ -21,8 +21,6 @@
 /* Errors are judged where both cosines are at least this. Below, products and squares of cosines leave the normal floats; results
  * must be finite and directions unit there, too, and the errors are printed as a line of their own. */
 #define LEAST_COSINE 9.9e-16f
-/* So are those of powers of cosines where u1 is below this: the header lets it count as 0. */
-#define LEAST_U 0x1p-96f
 
 __extension__ typedef __float128 qd;
 typedef struct {
@@ -339,7 +337,7 @@ enum { PDF_U, PDF_X, FAR_, VALUE, WEIGHT, AGREE, WHERE, SINE, SCORES };
 /* Densities, values and weights in E; where: in half ulps of 1 (lines and disks: of the size); sine: relative, in 1e-6. */
 static const char *const score_name[SCORES] = {"pdf(u)", "pdf(x)", "far", "eval", "weight", "agree", "where", "sine"};
 typedef struct {
-    int beyond; /* a cosine below LEAST_COSINE or u1 below LEAST_U: errors are recorded, not judged */
+    int beyond; /* a cosine below LEAST_COSINE: errors are recorded, not judged */
     double evaluations, nans, infinities, not_unit, zero, ill[SCORES], raw[SCORES], judged[SCORES];
     char at[SCORES][160]; /* where raw is largest */
 } tally;
@@ -457,7 +455,6 @@ static void check_point(const mcst_row *row, const setting *s, const float *p, c
     t->evaluations += 2;
     for (i = 0; i < 3; i++) w[i] = out[i];
     if (row->has_wo && (p[5] < LEAST_COSINE || (row->shape == MCST_IS_BRDF && w[2] < LEAST_COSINE))) g = t + 1;
-    if (row->coord == MCST_COSPOWER && u[0] > 0 && u[0] < LEAST_U) g = t + 1;
     at = vec(w[0], w[1], w[2]);
     snprintf(where, sizeof where, "p %g %g, wo %a %a %a, u %a %a", (double)p[0], (double)p[1], (double)p[3], (double)p[4],
              (double)p[5], (double)u[0], (double)u[1]);
