@@ -693,7 +693,8 @@ static void test_spread(void) {
     arena_free(&a), discard(&p);
 }
 
-/* A window whose share of a row is a few units of 2^31, far from the row's beginning: begin + u mass must not round up to its end. */
+/* A window whose share of a row is a few units of 2^31, far from the row's beginning: begin + u mass must not round up to its
+ * end. */
 static void test_few_units(void) {
     const float px[3] = {1e30f, 1e-20f, 1};
     const mcs_image image = mcs_image_make(px, 3, 1, 1);
