@@ -95,8 +95,8 @@
  *              mcs_env_window_sample mcs_env_window_pdf mcs_env_window_sample_n
  * [product]    directions per solid angle; memory of the caller
  *              mcs_tiles mcs_tiles_bytes mcs_tiles_build mcs_tiles_direction mcs_profile mcs_reflection mcs_product
- *              mcs_product_bytes mcs_product_build mcs_product_build_weights mcs_product_sample mcs_product_pdf
- *              mcs_product_sample_n mcs_oneshot_sample mcs_oneshot_pdf
+ *              MCS_PRODUCT_BYTES mcs_product_bytes mcs_product_build mcs_product_build_weights mcs_product_sample
+ *              mcs_product_pdf mcs_product_sample_n mcs_oneshot_sample mcs_oneshot_pdf
  * [estimator]  mcs_stat mcs_stat_add mcs_stat_merge mcs_stat_variance mcs_stat_error mcs_stat_ci
  * END OF INDEX */
 
@@ -3678,7 +3678,7 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  *                                Ashikhmin-Shirley as alpha sqrt(2/(n + 2))), _PHONG (alpha sqrt(1/(2n + 4)), one for both); matte:
  *                                the matte part of its reflectance, 0 to 1. Only the variance depends on how like it is.
  *   prepared form, for several samples at a point: about 17 KB for 16 rows
- *     mcs_product_bytes(rows), mcs_product_build(p, bytes, t, e, &reflection)
+ *     mcs_product_bytes(rows), mcs_product_build(p, bytes, t, e, &reflection); MCS_PRODUCT_BYTES(rows) is a constant, for the stack
  *     mcs_product_build_weights(p, bytes, t, e, weight)             any reflection: weight[rows * 2 rows], one per tile, to be
  *                                evaluated about mcs_tiles_direction(t, e, k); > 0 wherever the reflection may be
  *     mcs_product_sample(p, u1, u2) -> mcs_texel, mcs_product_pdf(p, w), mcs_product_sample_n
@@ -4077,12 +4077,10 @@ MCS_FN int mcsi_facing_make(const mcs_env *e, const mcs_reflection *r, mcsi_faci
 
 /* ---- prepared form ---- */
 
-MCS_FN size_t mcs_product_bytes(uint32_t rows) {
-    size_t n = 2 * (size_t)rows * rows;
-    if (!mcsi_tiles_ok(rows)) return 0;
-    return sizeof(mcs_product) + rows * sizeof(double) + (n + 2 * (size_t)rows + 2) * sizeof(uint32_t) +
-           (2 * n + 3 * (size_t)rows + MCSI_FINE * (MCSI_GRID + MCSI_NODES)) * sizeof(float) + n;
-}
+#define MCS_PRODUCT_BYTES(rows)                                                                                  \
+    (sizeof(mcs_product) + (rows) * sizeof(double) + (2 * (rows) * (rows) + 2 * (rows) + 2) * sizeof(uint32_t) + \
+     (4 * (rows) * (rows) + 3 * (rows) + MCSI_FINE * (MCSI_GRID + MCSI_NODES)) * sizeof(float) + 2 * (rows) * (rows))
+MCS_FN size_t mcs_product_bytes(uint32_t rows) { return mcsi_tiles_ok(rows) ? MCS_PRODUCT_BYTES((size_t)rows) : 0; }
 /* Where a product keeps its parts: of each row the density of a unit of its shares; shares of rows; of the columns of each row; the
  * reflection of tiles, and towards their corners; sums of rows; grids of fine tiles, each followed by what its rows of nodes weigh;
  * which of them a tile has, from 1 on, 0: none. */

@@ -533,7 +533,7 @@ static vec3 product_value(const scene *s, const environment *e, const surface *x
 static vec3 sample_product(const scene *s, const environment *e, const surface *x, uint32_t lights, mcs_pcg32 *rng) {
     union {
         mcs_product p;
-        double room[1024];
+        char room[MCS_PRODUCT_BYTES(TILES)];
     } point;
     mcs_reflection r = reflection_of(x);
     vec3 sum = {0, 0, 0};

@@ -5,8 +5,8 @@
  * used. Asserted: the density integrates to 1; rows, and columns within a row, have their share of light within the integers that
  * the header documents, every lit texel at least one of them; no draw falls on a black texel, by the header's word and by
  * arithmetic in double; single and array forms give the same bits; directions are unit, densities finite, those of a draw more than
- * 0 and its texel that of its direction; nothing is written outside of the memory. --filter takes an image or a mode; MCS_TEST_SCALE scales
- * the draws, and below 1 the largest image is 1024 x 512. */
+ * 0 and its texel that of its direction; nothing is written outside of the memory. --filter takes an image or a mode;
+ * MCS_TEST_SCALE scales the draws, and below 1 the largest image is 1024 x 512. */
 #include "hdr.h"
 #include "stress.h"
 
