@@ -2395,18 +2395,16 @@ MCSI_CORE MCSI_F MCSI_(ashikhmin_exponent)(const MCS_(ashikhmin) * m, MCS_(vec3)
 }
 MCSI_CORE MCSI_F MCSI_(tan2)(MCS_(vec3) h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
 
-/* The half-vector; *p is the density times its cosine. Its azimuth is that of (c, stretch s), which *scale brings to its sine;
- * n = 1/(exponent + 1), from the nearer axis, as a large ln(1-u1) shows its rounding. All exact when isotropic. */
+/* The half-vector; *p is the density times its cosine. Its azimuth is that of (c, stretch s), which *scale brings to its sine (with
+ * 2^64 and 2^-32: tiny u1 would underflow); n = 1/(exponent + 1), from the nearer axis, as a large ln(1-u1) shows its rounding. */
 MCSI_CORE MCS_(vec3) MCSI_(ashikhmin_half)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2, MCSI_F *p, MCSI_F *scale) {
-    MCSI_F s, c, s2, c2, n, cosine, d;
+    MCSI_F s, c, s2, c2, y, n, cosine, d;
     MCSI_(sincos_turns)(u2, &s, &c);
-    s2 = s * s, c2 = c * c;
+    s2 = s * s, c2 = c * c, y = m->stretch * s;
     n = MCSI_(blend)(MCSI_(bits)(s2 - c2) >> 31, m->u + (m->v - m->u) * s2, m->v + (m->u - m->v) * c2);
     cosine = MCSI_(exp_both)(n * MCSI_(log1p)(-u1), &d);
-    *scale =
-        MCSI_(sqrt)(-d * (2.0f + d) * (m->u / n * 1.84467441e+19f)) * 2.32830644e-10f; /* 2^64, 2^-32: else tiny u1 underflow */
-    *p = m->norm * (1.0f - u1);
-    return MCSI_(vec3)(*scale * c, *scale * (m->stretch * s), cosine);
+    *scale = MCSI_(sqrt)(-d * (2.0f + d) * (1.84467441e+19f / (c2 + y * y))) * 2.32830644e-10f, *p = m->norm * (1.0f - u1);
+    return MCSI_(vec3)(*scale * c, *scale * y, cosine);
 }
 MCSI_CORE MCS_(dir) MCS_(ashikhmin_h_sample)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
