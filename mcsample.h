@@ -3691,8 +3691,9 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * of all, at most 32, have the reflection on a grid of 8 x 8 places among their light, are bilinear in its 7 x 7 cells and weigh
  * what that says. A lobe narrower than the cells gets a share (p->brdf_share) of the samples for itself, (1 - matte) m/(1 + m), at
  * most 0.95, where m + 0.03 is a fourteenth of the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of the
- * lobe (one-shot: m + 0.3 is the whole of it): directions by mcs_ggx_vndf, mcs_ward or mcs_phong; the density is that of the
- * mixture, and what the lobe sends below the surface is lost. To join samplers of one's own by MIS, set p->brdf_share to 0.
+ * lobe (one-shot: m + 0.3 is the whole of it; both three times as much for _GAUSS and _PHONG, which have no tails): directions by
+ * mcs_ggx_vndf, mcs_ward or mcs_phong; the density is that of the mixture, and what the lobe sends below the surface is lost. To
+ * join samplers of one's own by MIS, set p->brdf_share to 0.
  * For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified.
  * Tile weights: light E times reflection towards its mean direction; matte (c + r)^2/(4 pi r), or c/pi where c >= r, c the cosine
  * and r 1.5 times the spread s of the light about that direction; lobe: with alpha^2 + s^2/4. Tile probabilities are integers.
@@ -4193,9 +4194,9 @@ MCS_FN void mcsi_product_refine(mcs_product *p, const mcsi_facing *s) {
 }
 /* Solid angle of a lobe, that of the sphere over `cells`: 1. */
 MCSI_CORE float mcsi_lobe_width(const mcsi_facing *s, size_t cells) { return (float)cells * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z; }
-/* The part of the samples that a lobe narrower than the cells gets for itself. */
+/* The part of the samples that a lobe narrower than the cells gets for itself; without GGX's tails it falls within a third. */
 MCS_FN float mcsi_brdf_share(const mcsi_facing *s, size_t cells, float less) {
-    float m = 1.0f / mcsi_lobe_width(s, cells) - less;
+    float m = (s->profile == MCS_PROFILE_GGX ? 1.0f : 3.0f) / mcsi_lobe_width(s, cells) - less;
     return m > 0.0f ? (1.0f - s->matte) * mcsi_min(m / (1.0f + m), 0.95f) : 0.0f;
 }
 MCSI_CORE mcsi_own_lobe mcsi_own_make(const mcs_reflection *r, const mcsi_facing *s) {
@@ -4341,7 +4342,7 @@ MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, uint32_t i, uint32_t
     return mcsi_warp_make(mcsi_product_values(p)[k], mcsi_tiles_fields(t)[MCSI_TILE_PULL * (size_t)t->rows * t->cols + k], a[0],
                           a[1], b[0], b[1]);
 }
-/* Where among a tile's light the place of a direction lies, for mcsi_warp_density. */
+/* Where among a tile's light the place of a direction lies, for mcsi_warp_density; somewhere in a row without light. */
 MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const mcsi_env_place_of *at, float *t1, float *t2) {
     const uint32_t *rows = v->rows + (at->row - v->row), *cdf;
     const mcsi_env_line *line = v->line + (at->row - v->row);
@@ -4350,11 +4351,13 @@ MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const 
         double a = mcsi_env_top(e, v->row), b = mcsi_env_top(e, v->row + v->count);
         P = mcsi_env_top(e, at->row), P += at->down * (mcsi_env_top(e, at->row + 1) - P);
         *t1 = (float)((at->col + at->across - v->col) / v->cols), *t2 = (float)((P - a) / (b - a));
-        return;
+    } else {
+        cdf = mcsi_env_cdf(e, at->row) + at->col;
+        P = cdf[0] + at->across * (cdf[1] - cdf[0]) - line->begin;
+        *t1 = (float)((P < 0.0 ? P + MCSI_ONE : P) / line->mass);
+        *t2 = (float)((rows[0] + at->down * (rows[1] - rows[0])) / MCSI_ONE);
     }
-    cdf = mcsi_env_cdf(e, at->row) + at->col;
-    P = cdf[0] + at->across * (cdf[1] - cdf[0]) - line->begin;
-    *t1 = (float)((P < 0.0 ? P + MCSI_ONE : P) / line->mass), *t2 = (float)((rows[0] + at->down * (rows[1] - rows[0])) / MCSI_ONE);
+    *t1 = mcsi_min(mcsi_max(*t1, 0.0f), 1.0f), *t2 = mcsi_min(mcsi_max(*t2, 0.0f), 1.0f);
 }
 /* Density of the tiles alone; `part` of all draws fall on tile (i, j), there by a fine grid, a bilinear function or the light. */
 MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, const float *fine, const mcsi_warp *warp,
