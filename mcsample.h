@@ -1098,7 +1098,7 @@ MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed) 
  *   power(n)              (n+1) x^n on [0,1]                    n in [0, 1e9]                  1 pow, 1 div
  *   evenpower(n)          (n+1)/2 |x|^n on [-1,1]               n in [0, 1e9]                  1 pow, 1 div; signed root of 2u-1
  *
- * Accuracy: pdf of u and of x within 0.4 E (normal), 0.2 E (the others); x within 7 ulp (normal), 4 (the others) of the exact map
+ * Accuracy: pdf of u and of x within 0.45 E (normal), 0.2 E (the others); x within 7 ulp (normal), 4 (the others) of the exact map
  * or of its scale. For unbounded densities prefer mcs_u01_open. Source: inverse CDFs, e.g. Pharr, Jakob, Humphreys 2023, appendix
  * A; evenpower is slide 13 of the lecture for n = 2. */
 
