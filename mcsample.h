@@ -249,9 +249,8 @@ MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const fl
     b->n = n, b->i = 0, b->rest = 0;
 }
 
-#if defined(__GNUC__) && \
-    !defined(            \
-        __CUDACC__) /* not cold: gcc 12 leaves vzeroupper out of cold exits, and SSE code is ten times slower from there on */
+/* Not cold: gcc 12 leaves vzeroupper out of cold exits, and SSE code is ten times slower from there on. */
+#if defined(__GNUC__) && !defined(__CUDACC__)
 __attribute__((noinline, unused)) static
 #else
 MCS_FN
@@ -3687,13 +3686,14 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * distance of a tile's corners from its mean direction, weigh at least a ten-thousandth of what a white surface would make of them.
  * Below the horizon only parts of tiles that it crosses are drawn. A product keeps pointers to t and e. Bad u or a bad direction
  * give pdf 0, as does a surface that no light reaches (build returns MCS_UNIFORM); a black map counts as even light, as in [env].
- * Narrow lobes (4 pi alpha_x alpha_y cos(theta_o) below 8 mean tiles): in the prepared form the tiles that weigh more than a 128th
- * of all, at most 32, have the reflection on a grid of 8 x 8 places among their light, are bilinear in its 7 x 7 cells and weigh
- * what that says. A lobe narrower than the cells gets a share (p->brdf_share) of the samples for itself, (1 - matte) m/(1 + m), at
- * most 0.95, where m + 0.03 is a fourteenth of the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of the
- * lobe (one-shot: m + 0.3 is the whole of it; both three times as much for _GAUSS and _PHONG, which have no tails): directions by
- * mcs_ggx_vndf, mcs_ward or mcs_phong; the density is that of the mixture, and what the lobe sends below the surface is lost. To
- * join samplers of one's own by MIS, set p->brdf_share to 0.
+ * Narrow lobes (4 pi alpha_x alpha_y cos(theta_o) below 8 mean tiles): in the prepared form the tiles that by their mean
+ * direction or a corner weigh more than a 256th of all, the 32 heaviest at most, have the reflection on a grid of 8 x 8 places
+ * among their light, are bilinear in its 7 x 7 cells and weigh what that says. A lobe narrower than the cells gets a share
+ * (p->brdf_share) of the samples for itself, (1 - matte) m/(1 + m), at most 0.95, where m + 0.03 is a fourteenth of the mean
+ * solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of the lobe (one-shot: m + 0.3 is the whole of it; both
+ * three times as much for _GAUSS and _PHONG, which have no tails): directions by mcs_ggx_vndf, mcs_ward or mcs_phong; the density
+ * is that of the mixture, and what the lobe sends below the surface is lost. To join samplers of one's own by MIS, set
+ * p->brdf_share to 0.
  * For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified.
  * Tile weights: light E times reflection towards its mean direction; matte (c + r)^2/(4 pi r), or c/pi where c >= r, c the cosine
  * and r 1.5 times the spread s of the light about that direction; lobe: with alpha^2 + s^2/4. Tile probabilities are integers.
