@@ -596,7 +596,7 @@ FN(product_bytes) { /* beyond the header, which holds pointers */
     const size_t bytes = mcs_product_bytes(16u << (WORD(11) & 3));
     PUT_WORD(0, (uint32_t)(bytes ? bytes - sizeof(mcs_product) : 0)), PUT_WORD(1, (uint32_t)mcs_product_bytes(WORD(12)));
 }
-static uint64_t bits_room[4096]; /* 32 rows of tiles */
+static uint64_t bits_room[MCS_PRODUCT_BYTES(32) / 8 + 1];
 /* Its share of the lobe and a sample with its density show a product. */
 static void bits_put_product(const float *in, float *out, mcs_status status) {
     const mcs_product *p = (const mcs_product *)(const void *)bits_room;
