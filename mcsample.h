@@ -169,10 +169,13 @@ typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #include <math.h>
 #endif
 
+/* MCSI_APART: a function with a body of its own. */
 #if defined(__GNUC__) && !defined(__CUDACC__)
 #define MCSI_PREFETCH(p) __builtin_prefetch(p)
+#define MCSI_APART __attribute__((noinline, unused)) static
 #else
 #define MCSI_PREFETCH(p) ((void)(p))
+#define MCSI_APART MCS_FN
 #endif
 
 /* Square root without errno: sqrtf would cost a test and a call in every loop. */
@@ -250,13 +253,7 @@ MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const fl
 }
 
 /* Not cold: gcc 12 leaves vzeroupper out of cold exits, and SSE code is ten times slower from there on. */
-#if defined(__GNUC__) && !defined(__CUDACC__)
-__attribute__((noinline, unused)) static
-#else
-MCS_FN
-#endif
-    int
-    mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
+MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
     int k;
     size_t rest = b->n - b->i;
     if (b->rest) {
@@ -4230,16 +4227,17 @@ MCSI_CORE int mcsi_own_draw(const mcsi_own_lobe *l, float share, float *u1, floa
     *w = mcs_to_world(&l->frame, b.wi), *kept &= b.pdf > 0.0f;
     return 1;
 }
-MCSI_CORE float mcsi_own_mix(const mcsi_own_lobe *l, float share, mcs_vec3 w, float tiled) {
-    float own;
-    if (!(share > 0.0f)) return tiled;
+/* One body for sample and pdf: contraction that differs would show in lobes as narrow as the rounding of a direction. */
+MCSI_APART float mcsi_own_pdf(const mcsi_own_lobe *l, mcs_vec3 w) {
     w = mcs_to_local(&l->frame, w);
     switch (l->profile) {
-    case MCS_PROFILE_GAUSS: own = mcs_ward_pdf(&l->gauss, l->wo, w); break;
-    case MCS_PROFILE_PHONG: own = mcs_phong_pdf(&l->phong, l->wo, w); break;
-    default: own = mcs_ggx_vndf_pdf(&l->ggx, l->wo, w);
+    case MCS_PROFILE_GAUSS: return mcs_ward_pdf(&l->gauss, l->wo, w);
+    case MCS_PROFILE_PHONG: return mcs_phong_pdf(&l->phong, l->wo, w);
+    default: return mcs_ggx_vndf_pdf(&l->ggx, l->wo, w);
     }
-    return mcs_mix_pdf(share, own, tiled);
+}
+MCSI_CORE float mcsi_own_mix(const mcsi_own_lobe *l, float share, mcs_vec3 w, float tiled) {
+    return share > 0.0f ? mcs_mix_pdf(share, mcsi_own_pdf(l, w), tiled) : tiled;
 }
 MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
     mcs_status status = mcsi_product_start(p, bytes, t, e);
