@@ -3972,19 +3972,19 @@ MCSI_CORE double mcsi_node_place(uint32_t k) {
 MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mcsi_patch *p, float *node) {
     mcsi_env_view v;
     mcs_frame axes;
-    mcs_vec3 w;
     uint32_t k, row, col;
-    memset(&axes, 0, sizeof axes), axes.s.x = axes.t.y = axes.n.z = 1.0f;
-    if (p->e > 0.0) v = mcsi_env_part(m);
-    mcsi_patch_corner(e, p->row0, p->col0, &w);
+    if (!(p->e > 0.0)) { /* never asked for */
+        memset(node, 0, 3 * MCSI_GRID * sizeof *node);
+        return;
+    }
+    memset(&axes, 0, sizeof axes), axes.s.x = axes.t.y = axes.n.z = 1.0f, v = mcsi_env_part(m);
     for (k = 0; k < MCSI_GRID; k++) {
-        if (p->e > 0.0) {
-            mcsi_env_point at;
-            double U1 = mcsi_node_place(k / MCSI_NODES), U2 = mcsi_node_place(k % MCSI_NODES);
-            if (v.uniform) mcsi_env_draw_uniform(e, &v, U1, U2, &at);
-            else mcsi_env_draw_point(e, &v, U1, U2, 1.0, &at, &row, &col);
-            w = mcsi_env_direction(&axes, &at, (float)e->w, (float)e->h);
-        }
+        mcsi_env_point at;
+        mcs_vec3 w;
+        double U1 = mcsi_node_place(k / MCSI_NODES), U2 = mcsi_node_place(k % MCSI_NODES);
+        if (v.uniform) mcsi_env_draw_uniform(e, &v, U1, U2, &at);
+        else mcsi_env_draw_point(e, &v, U1, U2, 1.0, &at, &row, &col);
+        w = mcsi_env_direction(&axes, &at, (float)e->w, (float)e->h);
         node[k] = w.x, node[MCSI_GRID + k] = w.y, node[2 * MCSI_GRID + k] = w.z;
     }
 }
