@@ -2649,14 +2649,6 @@ MCSI_CORE uint32_t mcsi_cdf_search(const uint32_t *cdf, uint32_t n, uint32_t lo,
         lo += (uint32_t)(cdf[lo + 2] <= U) << 1;
         return lo + (uint32_t)(cdf[lo + 1] <= U);
     }
-    if (left <= 32 && n >= 32) {
-        lo = lo < n - 32 ? lo : n - 32;
-        lo += (uint32_t)(cdf[lo + 16] <= U) << 4;
-        lo += (uint32_t)(cdf[lo + 8] <= U) << 3;
-        lo += (uint32_t)(cdf[lo + 4] <= U) << 2;
-        lo += (uint32_t)(cdf[lo + 2] <= U) << 1;
-        return lo + (uint32_t)(cdf[lo + 1] <= U);
-    }
     for (; left > 1; left -= left / 2) lo += (left / 2) * (uint32_t)(cdf[lo + left / 2] <= U);
     return lo;
 }
@@ -2966,19 +2958,18 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  * Cost: two cache misses; 4.4 bytes a texel. Source: Pharr, Jakob, Humphreys 2023, section 12.5. */
 
 #ifndef MCS_NO_TABLES
-/* A point on its way: where it lies in its row's share of 2^31 and that share, where the row begins in 1 - cos(theta) from the
- * nearer pole and its height (negative when that is the southern one), and where it lies in its texel's share. */
+/* A point on its way: where it lies in its row's share of 2^31 and that share, where the row (less its margins) begins in
+ * 1 - cos(theta) from the nearer pole and its height (negative when that is the southern one), and where it lies in its texel's
+ * share. */
 typedef struct {
     MCSI_F row_rest, row_mass, edge, height, col, col_rest, col_mass;
 } MCSI_(env_point);
-/* A part of a texel, kept off its borders by what the rounding of a direction can move, n 2^-22 cells. */
-MCSI_CORE MCSI_F MCSI_(env_place)(MCSI_F rest, MCSI_F mass, float margin) {
-    return MCSI_(min)(MCSI_(max)(rest / mass, MCSI_(set)(margin)), MCSI_(set)(1.0f - margin));
-}
-MCSI_CORE MCS_(vec3) MCSI_(env_direction)(const MCS_(frame) * f, const MCSI_(env_point) * p, float w, float h) {
-    MCSI_F t = p->edge + MCSI_(env_place)(p->row_rest, p->row_mass, h * 2.38418579e-07f) * p->height,
-           sine = MCSI_(sqrt)(t * (2.0f - t));
-    MCSI_F turns = (p->col + MCSI_(env_place)(p->col_rest, p->col_mass, w * 2.38418579e-07f)) / w, s, c;
+/* What the rounding of a direction may move: samples keep 2^-22 of the map's width and height off the borders of their texel. */
+#define MCSI_ENV_MARGIN 2.384185791015625e-07
+/* `turn` is a column's width, `inner` the part of it within the margins. */
+MCSI_CORE MCS_(vec3) MCSI_(env_direction)(const MCS_(frame) * f, const MCSI_(env_point) * p, float turn, float inner) {
+    MCSI_F t = p->edge + p->row_rest / p->row_mass * p->height, sine = MCSI_(sqrt)(t * (2.0f - t)), s, c;
+    MCSI_F turns = p->col * turn + (p->col_rest / p->col_mass * inner + (float)MCSI_ENV_MARGIN);
     MCSI_(sincos_turns)(turns, &s, &c);
     return MCSI_(to_world)(
         f, MCSI_(vec3)(sine * c, sine * s, MCSI_(from_bits)(MCSI_(bits)(1.0f - t) ^ (MCSI_(bits)(p->height) & (-0x7fffffff - 1)))));
@@ -3011,8 +3002,8 @@ typedef struct {
         pdf[MCSI_ENV_BLOCK];
 } mcsi_env_block;
 #endif
-MCSI_BATCH_AS(mcsi_env_directions_n, env_directions_n, (const mcs_frame *f, size_t n, mcsi_env_block *b, float w, float h),
-              (f, n, b, w, h), {
+MCSI_BATCH_AS(mcsi_env_directions_n, env_directions_n, (const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner),
+              (f, n, b, turn, inner), {
                   MCS_(frame) frame = MCSI_(spread_frame)(f);
                   size_t i;
                   for (i = 0; i < n; i += MCSI_W) {
@@ -3021,7 +3012,7 @@ MCSI_BATCH_AS(mcsi_env_directions_n, env_directions_n, (const mcs_frame *f, size
                       p.row_rest = MCSI_(load)(b->row_rest + i), p.row_mass = MCSI_(load)(b->row_mass + i);
                       p.edge = MCSI_(load)(b->edge + i), p.height = MCSI_(load)(b->height + i), p.col = MCSI_(load)(b->col + i);
                       p.col_rest = MCSI_(load)(b->col_rest + i), p.col_mass = MCSI_(load)(b->col_mass + i);
-                      v = MCSI_(env_direction)(&frame, &p, w, h);
+                      v = MCSI_(env_direction)(&frame, &p, turn, inner);
                       MCSI_(store)(b->x + i, v.x), MCSI_(store)(b->y + i, v.y), MCSI_(store)(b->z + i, v.z);
                   }
               })
@@ -3066,6 +3057,7 @@ typedef struct {
     mcsi_env_parts at;
     double total;
     uint32_t w, h, bad, row0, row1, col0, col1, uniform, incomplete;
+    float turn, inner; /* mcsi_env_direction */
     mcs_frame frame;
 } mcs_env;
 typedef struct {
@@ -3098,7 +3090,7 @@ typedef struct {
     uint32_t row, count, col, cols, shift, uniform;
 } mcsi_env_view;
 
-enum { MCSI_ENV_MAX = 1 << 16, MCSI_ENV_VERSION = 1, MCSI_ENV_CELLS = 8, MCSI_ENV_CHUNK = 64 };
+enum { MCSI_ENV_MAX = 1 << 16, MCSI_ENV_VERSION = 2, MCSI_ENV_CELLS = 8, MCSI_ENV_CHUNK = 64 };
 #define MCSI_ENV_MAGIC 0x4553434du /* "MCSE" in a little-endian file */
 
 MCS_FN uint64_t mcsi_up8(uint64_t bytes) { return (bytes + 7) / 8 * 8; }
@@ -3148,11 +3140,16 @@ MCS_FN double mcsi_env_height(uint32_t row, uint32_t h) {
 /* `share` of all draws fall on the `mass` of a row's 2^31 from `begin` on. */
 MCS_FN void mcsi_env_set_line(mcsi_env_line *line, double share, uint32_t begin, uint32_t mass, uint32_t row, uint32_t w,
                               uint32_t h) {
-    double height = mcsi_env_height(row, h);
+    double height = mcsi_env_height(row, h), margin = MCSI_ENV_MARGIN * h;
     uint32_t m = mcsi_env_from_pole(row, h);
     line->begin = begin, line->mass = mass;
     line->scale = mass ? share / mass * w / (6.2831853071795865 * height) : 0.0;
-    line->edge = (float)mcsi_one_minus_cos_pi((m + (m != row)) / (double)h), line->height = (float)(m == row ? height : -height);
+    height = m == row ? height : -height;
+    line->edge = (float)(mcsi_one_minus_cos_pi((m + (m != row)) / (double)h) + margin * height);
+    line->height = (float)((1.0 - 2.0 * margin) * height);
+}
+MCSI_CORE void mcsi_env_set_turn(mcs_env *e) {
+    e->turn = (float)(1.0 / e->w), e->inner = (float)(1.0 / e->w - 2 * MCSI_ENV_MARGIN);
 }
 
 /* ---- building ---- */
@@ -3280,6 +3277,7 @@ MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) 
     memset(e, 0, sizeof *e);
     e->magic = MCSI_ENV_MAGIC, e->version = MCSI_ENV_VERSION, e->at = mcsi_env_layout(im->w, im->h);
     e->w = im->w, e->h = im->h, e->row0 = im->h, e->col0 = im->w, e->uniform = 1, e->incomplete = im->floor > 0.0f;
+    mcsi_env_set_turn(e);
     e->frame.s.x = e->frame.t.y = e->frame.n.z = 1.0f;
     edge = (double *)(void *)((char *)e + e->at.edge), line = (mcsi_env_line *)(void *)((char *)e + e->at.line);
     info = (const mcsi_env_info *)(const void *)((const char *)e + e->at.info);
@@ -3325,6 +3323,7 @@ MCS_FN int mcsi_same(double a, double b, double relative) {
 MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     mcsi_env_parts at;
     mcsi_env_view v;
+    mcs_env turns;
     uint32_t y;
     size_t i;
     if (!e || ((uintptr_t)e & 7u)) return MCS_ERR_ARG;
@@ -3335,7 +3334,9 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
         if (((const char *)&at)[i] != ((const char *)&e->at)[i]) return MCS_ERR_FORMAT;
     if (e->uniform > 1 || e->incomplete > 1) return MCS_ERR_FORMAT;
     if (bytes < at.bytes) return MCS_ERR_MEMORY;
-    v = mcsi_env_whole(e);
+    v = mcsi_env_whole(e), turns.w = e->w, mcsi_env_set_turn(&turns);
+    if (!mcsi_same((double)e->turn, (double)turns.turn, 1.2e-7) || !mcsi_same((double)e->inner, (double)turns.inner, 1.2e-7))
+        return MCS_ERR_FORMAT;
     for (y = 0; y <= (e->h + 1) / 2; y++)
         if (!mcsi_same(mcsi_env_edge(e)[y], mcsi_one_minus_cos_pi((double)y / e->h), 1e-14)) return MCS_ERR_FORMAT;
     if (e->uniform) return MCS_OK;
@@ -3373,9 +3374,27 @@ MCSI_CORE uint32_t mcsi_env_draw_row(const mcsi_env_view *v, double U2, mcsi_env
     p->edge = v->line[i].edge, p->height = v->line[i].height;
     return i;
 }
-MCSI_CORE uint32_t mcsi_env_draw_col(const uint32_t *cdf, uint32_t w, uint32_t lo, uint32_t hi, double U1, mcsi_env_point *p,
+/* Columns from one guide entry to the next, which hold U, and the first of eight that do if those are alike. */
+typedef struct {
+    uint32_t lo, hi, first;
+} mcsi_env_cells;
+MCSI_CORE mcsi_env_cells mcsi_env_cells_of(const uint16_t *guide, uint32_t w, uint32_t U, uint32_t shift) {
+    mcsi_env_cells c;
+    c.lo = guide[0], c.hi = guide[1], c.first = c.lo + (uint32_t)((uint64_t)(U & ((1u << shift) - 1)) * (c.hi - c.lo) >> shift);
+    c.first = c.first < 4 ? 0 : c.first - 4, c.first = c.first + 8 < w ? c.first : w < 8 ? 0 : w - 8;
+    return c;
+}
+/* The column that holds U. Both ends of the eight are asked for at once, so that memory is waited for once. */
+MCSI_CORE uint32_t mcsi_env_search(const uint32_t *cdf, uint32_t w, const mcsi_env_cells *cells, uint32_t U) {
+    uint32_t c = cells->first;
+    if (w < 8 || U < cdf[c] || U >= cdf[c + 8]) return mcsi_cdf_search(cdf, w, cells->lo, cells->hi, U);
+    c += (uint32_t)(cdf[c + 4] <= U) << 2;
+    c += (uint32_t)(cdf[c + 2] <= U) << 1;
+    return c + (uint32_t)(cdf[c + 1] <= U);
+}
+MCSI_CORE uint32_t mcsi_env_draw_col(const uint32_t *cdf, uint32_t w, const mcsi_env_cells *cells, double U1, mcsi_env_point *p,
                                      uint32_t *mass) {
-    uint32_t c = mcsi_cdf_search(cdf, w, lo, hi, (uint32_t)(int32_t)U1);
+    uint32_t c = mcsi_env_search(cdf, w, cells, (uint32_t)(int32_t)U1);
     *mass = cdf[c + 1] - cdf[c];
     p->col = (float)(int32_t)c, p->col_rest = (float)(U1 - (int32_t)cdf[c]), p->col_mass = (float)*mass;
     return c;
@@ -3405,7 +3424,7 @@ MCSI_CORE float mcsi_env_uniform_pdf(const mcs_env *e, const mcsi_env_view *v) {
     return (float)(1.0 / (6.2831853071795865 * height * v->cols / e->w));
 }
 MCSI_CORE void mcsi_env_draw_uniform(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, mcsi_env_point *p) {
-    double a = mcsi_env_top(e, v->row), b = mcsi_env_top(e, v->row + v->count), margin = 2.384185791015625e-07 * e->h, t;
+    double a = mcsi_env_top(e, v->row), b = mcsi_env_top(e, v->row + v->count), margin = MCSI_ENV_MARGIN * e->h, t;
     double at = v->col + U1 / MCSI_ONE * v->cols;
     a += (mcsi_env_top(e, v->row + 1) - a) * margin, b -= (b - mcsi_env_top(e, v->row + v->count - 1)) * margin;
     t = a + (b - a) * (U2 / MCSI_ONE), at = at < e->w ? at : at - e->w;
@@ -3428,11 +3447,11 @@ MCSI_CORE float mcsi_env_density(const mcs_env *e, const mcsi_env_view *v, uint3
 /* Of a map that is not constant: the point, its texel, the density when `part` of all draws come here. */
 MCSI_CORE float mcsi_env_draw_point(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, mcsi_env_point *p,
                                     uint32_t *row, uint32_t *col) {
-    uint32_t i = mcsi_env_draw_row(v, U2, p), mass;
-    const uint16_t *guide;
-    *row = v->row + i, U1 = mcsi_env_within(&v->line[i], U1);
-    guide = mcsi_env_guide(e, *row) + ((uint32_t)(int32_t)U1 >> e->at.col_shift);
-    *col = mcsi_env_draw_col(mcsi_env_cdf(e, *row), e->w, guide[0], guide[1], U1, p, &mass);
+    uint32_t i = mcsi_env_draw_row(v, U2, p), mass, U;
+    mcsi_env_cells cells;
+    *row = v->row + i, U1 = mcsi_env_within(&v->line[i], U1), U = (uint32_t)(int32_t)U1;
+    cells = mcsi_env_cells_of(mcsi_env_guide(e, *row) + (U >> e->at.col_shift), e->w, U, e->at.col_shift);
+    *col = mcsi_env_draw_col(mcsi_env_cdf(e, *row), e->w, &cells, U1, p, &mass);
     return (float)(mass * (part * v->line[i].scale));
 }
 MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, int ok) {
@@ -3441,13 +3460,13 @@ MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, doub
     if (v->uniform) {
         float off_pole, polar, turns;
         mcsi_env_draw_uniform(e, v, U1, U2, &p);
-        r.w = mcsi_env_direction(&e->frame, &p, (float)e->w, (float)e->h);
+        r.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner);
         mcsi_env_locate(&e->frame, r.w, &off_pole, &polar, &turns);
         r.row = mcsi_env_row_at(e, off_pole, polar), r.col = mcsi_env_col_at(e, turns);
         r.pdf = ok ? (float)(part * (double)mcsi_env_uniform_pdf(e, v)) : 0.0f;
     } else {
         r.pdf = mcsi_env_draw_point(e, v, U1, U2, part, &p, &r.row, &r.col), r.pdf = ok ? r.pdf : 0.0f;
-        r.w = mcsi_env_direction(&e->frame, &p, (float)e->w, (float)e->h);
+        r.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner);
     }
     return r;
 }
@@ -3508,21 +3527,22 @@ MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi
     b->row_rest[k] = p.row_rest, b->row_mass[k] = p.row_mass, b->edge[k] = p.edge, b->height[k] = p.height;
 }
 MCS_FN void mcsi_env_block_land(const mcs_env *e, mcsi_env_block *b, size_t n, float *x, float *y, float *z, float *pdf) {
-    uint32_t lo[MCSI_ENV_BLOCK], hi[MCSI_ENV_BLOCK], mass;
+    mcsi_env_cells cells[MCSI_ENV_BLOCK];
+    uint32_t mass;
     size_t k;
     for (k = 0; k < n; k++) {
         if (!b->cdf[k]) continue;
-        lo[k] = b->guide[k][0], hi[k] = b->guide[k][1];
-        MCSI_PREFETCH(b->cdf[k] + lo[k]), MCSI_PREFETCH(b->cdf[k] + hi[k] + 1);
+        cells[k] = mcsi_env_cells_of(b->guide[k], e->w, (uint32_t)(int32_t)b->at[k], e->at.col_shift);
+        MCSI_PREFETCH(b->cdf[k] + cells[k].first), MCSI_PREFETCH(b->cdf[k] + cells[k].first + 8);
     }
     for (k = 0; k < n; k++) {
         mcsi_env_point p;
         if (!b->cdf[k]) continue;
-        mcsi_env_draw_col(b->cdf[k], e->w, lo[k], hi[k], b->at[k], &p, &mass);
+        mcsi_env_draw_col(b->cdf[k], e->w, &cells[k], b->at[k], &p, &mass);
         b->col[k] = p.col, b->col_rest[k] = p.col_rest, b->col_mass[k] = p.col_mass;
         b->pdf[k] *= (float)(mass * b->scale[k]);
     }
-    if (x || y || z) mcsi_env_directions_n(&e->frame, n, b, (float)e->w, (float)e->h);
+    if (x || y || z) mcsi_env_directions_n(&e->frame, n, b, e->turn, e->inner);
     if (x) memcpy(x, b->x, n * sizeof *x);
     if (y) memcpy(y, b->y, n * sizeof *y);
     if (z) memcpy(z, b->z, n * sizeof *z);
@@ -3984,7 +4004,7 @@ MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mc
         double U1 = mcsi_node_place(k / MCSI_NODES), U2 = mcsi_node_place(k % MCSI_NODES);
         if (v.uniform) mcsi_env_draw_uniform(e, &v, U1, U2, &at);
         else mcsi_env_draw_point(e, &v, U1, U2, 1.0, &at, &row, &col);
-        w = mcsi_env_direction(&axes, &at, (float)e->w, (float)e->h);
+        w = mcsi_env_direction(&axes, &at, e->turn, e->inner);
         node[k] = w.x, node[MCSI_GRID + k] = w.y, node[2 * MCSI_GRID + k] = w.z;
     }
 }
