@@ -3801,6 +3801,36 @@ MCSI_CORE MCSI_F MCSI_(corner_value)(const MCS_(frame) * axes, const mcsi_facing
     }
     return MCSI_(reflected)(f);
 }
+/* The density within a tile, relative to that of its light: bilinear in the places t1 of the columns and t2 of the rows among the
+ * light, from the reflection v towards the corners (column by column) as far as the light reaches them; its mean is 1. */
+typedef struct {
+    MCSI_F v[4];
+} MCSI_(warp);
+MCSI_CORE MCSI_(warp) MCSI_(warp_make)(MCSI_F value, MCSI_F pull, MCSI_F v00, MCSI_F v01, MCSI_F v10, MCSI_F v11) {
+    MCSI_(warp) w;
+    MCSI_F least, mean;
+    value = value * (1.0f - pull); /* so that no difference falls below 0 */
+    w.v[0] = value + pull * v00, w.v[1] = value + pull * v01, w.v[2] = value + pull * v10, w.v[3] = value + pull * v11;
+    mean = (w.v[0] + w.v[1]) + (w.v[2] + w.v[3]), least = 0.0075f * mean, mean = 1.0f / (0.25f * mean + least);
+    w.v[0] = (w.v[0] + least) * mean, w.v[1] = (w.v[1] + least) * mean, w.v[2] = (w.v[2] + least) * mean,
+    w.v[3] = (w.v[3] + least) * mean;
+    return w;
+}
+MCSI_CORE MCSI_F MCSI_(warp_density)(const MCSI_(warp) * w, MCSI_F t1, MCSI_F t2) {
+    MCSI_F a = w->v[0] + t2 * (w->v[1] - w->v[0]), b = w->v[2] + t2 * (w->v[3] - w->v[2]);
+    return a + t1 * (b - a);
+}
+/* The place of u when a linear density has a and b at its ends. */
+MCSI_CORE MCSI_F MCSI_(linear_place)(MCSI_F a, MCSI_F b, MCSI_F u) {
+    return MCSI_(min)(u * (a + b) / (a + MCSI_(sqrt)((1.0f - u) * (a * a) + u * (b * b))), MCSI_(set)(0.99999994f));
+}
+/* u1 and u2 become places; returns the density there. */
+MCSI_CORE MCSI_F MCSI_(warp_draw)(const MCSI_(warp) * w, MCSI_F *u1, MCSI_F *u2) {
+    MCSI_F a, b;
+    *u2 = MCSI_(linear_place)(w->v[0] + w->v[2], w->v[1] + w->v[3], *u2);
+    a = w->v[0] + *u2 * (w->v[1] - w->v[0]), b = w->v[2] + *u2 * (w->v[3] - w->v[2]), *u1 = MCSI_(linear_place)(a, b, *u1);
+    return a + *u1 * (b - a);
+}
 /* A grid of weights, light times value, column by column, as integers: cum[j][i] is the sum of row i's shares before column j,
  * cum[cols][i] that of the whole row. row[i] is the weight of a row. */
 MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
@@ -3851,6 +3881,23 @@ MCSI_BATCH_AS(mcsi_corner_values_n, corner_values_n,
                       MCSI_(store)(value + i, MCSI_(corner_value)(&axes, s, w));
                   }
               })
+#if MCSI_W == 1
+/* What warps are made of, and u1 and u2, which become places, with the density there. */
+typedef struct {
+    float value[MCSI_ENV_BLOCK], pull[MCSI_ENV_BLOCK], v00[MCSI_ENV_BLOCK], v01[MCSI_ENV_BLOCK], v10[MCSI_ENV_BLOCK],
+        v11[MCSI_ENV_BLOCK], u1[MCSI_ENV_BLOCK], u2[MCSI_ENV_BLOCK], density[MCSI_ENV_BLOCK];
+} mcsi_warp_block;
+#endif
+MCSI_BATCH_AS(mcsi_warps_n, warps_n, (size_t n, mcsi_warp_block *b), (n, b), {
+    size_t i;
+    for (i = 0; i < n; i += MCSI_W) {
+        MCSI_F u1 = MCSI_(load)(b->u1 + i), u2 = MCSI_(load)(b->u2 + i);
+        MCSI_(warp)
+        w = MCSI_(warp_make)(MCSI_(load)(b->value + i), MCSI_(load)(b->pull + i), MCSI_(load)(b->v00 + i), MCSI_(load)(b->v01 + i),
+                             MCSI_(load)(b->v10 + i), MCSI_(load)(b->v11 + i));
+        MCSI_(store)(b->density + i, MCSI_(warp_draw)(&w, &u1, &u2)), MCSI_(store)(b->u1 + i, u1), MCSI_(store)(b->u2 + i, u2);
+    }
+})
 /* clang-format off */
 MCSI_BATCH_AS(mcsi_grid_rows_n, grid_rows_n,
               (size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row),
@@ -4286,34 +4333,11 @@ MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const 
         value[k] = value[k] > 0.0f ? mcsi_max((float)((double)value[k] / (double)top), 1e-18f) : 0.0f;
     return mcsi_product_finish(p);
 }
-/* The density within a tile, relative to that of its light: bilinear in the places t1 of the columns and t2 of the rows among the
- * light, from the reflection v towards the corners (column by column) as far as the light reaches them; its mean is 1. */
-typedef struct {
-    float v[4];
-} mcsi_warp;
-MCSI_CORE mcsi_warp mcsi_warp_make(float value, float pull, float v00, float v01, float v10, float v11) {
-    mcsi_warp w;
-    float least, mean;
-    value *= 1.0f - pull; /* so that no difference falls below 0 */
-    w.v[0] = value + pull * v00, w.v[1] = value + pull * v01, w.v[2] = value + pull * v10, w.v[3] = value + pull * v11;
-    mean = (w.v[0] + w.v[1]) + (w.v[2] + w.v[3]), least = 0.0075f * mean, mean = 1.0f / (0.25f * mean + least);
-    w.v[0] = (w.v[0] + least) * mean, w.v[1] = (w.v[1] + least) * mean, w.v[2] = (w.v[2] + least) * mean,
-    w.v[3] = (w.v[3] + least) * mean;
-    return w;
-}
-MCSI_CORE float mcsi_warp_density(const mcsi_warp *w, float t1, float t2) {
-    float a = w->v[0] + t2 * (w->v[1] - w->v[0]), b = w->v[2] + t2 * (w->v[3] - w->v[2]);
-    return a + t1 * (b - a);
-}
-/* Linear densities: the place of U in [0, 2^31) when the ends are a and b. */
-MCSI_CORE float mcsi_linear_place(float a, float b, double U) {
-    float u = (float)(U * (1.0 / MCSI_ONE));
-    return mcsi_min(u * (a + b) / (a + mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b))), 0.99999994f);
-}
-MCSI_CORE void mcsi_warp_draw(const mcsi_warp *w, double *U1, double *U2, double *part) {
-    float t2 = mcsi_linear_place(w->v[0] + w->v[2], w->v[1] + w->v[3], *U2);
-    float a = w->v[0] + t2 * (w->v[1] - w->v[0]), b = w->v[2] + t2 * (w->v[3] - w->v[2]), t1 = mcsi_linear_place(a, b, *U1);
-    *U1 = (double)t1 * MCSI_ONE, *U2 = (double)t2 * MCSI_ONE, *part *= (double)(a + t1 * (b - a));
+/* A number in [0, 2^31) as one in [0, 1], and a place as such a number. */
+MCSI_CORE float mcsi_part_of_one(double U) { return (float)(U * (1.0 / MCSI_ONE)); }
+MCSI_CORE void mcsi_warp_place(const mcsi_warp *w, double *U1, double *U2, double *part) {
+    float u1 = mcsi_part_of_one(*U1), u2 = mcsi_part_of_one(*U2);
+    *part *= (double)mcsi_warp_draw(w, &u1, &u2), *U1 = (double)u1 * MCSI_ONE, *U2 = (double)u2 * MCSI_ONE;
 }
 /* A cell of the grid of a fine tile: entry of a list whose borders weigh w, by trapezoids; U becomes the place in it. */
 MCSI_CORE uint32_t mcsi_nodes_draw(const float *w, double *U, double *part) {
@@ -4335,7 +4359,7 @@ MCSI_CORE void mcsi_fine_draw(const float *v, double *U1, double *U2, double *pa
     j = mcsi_nodes_draw(both, U1, part), v += j * MCSI_NODES;
     w.v[0] = v[0], w.v[1] = v[1], w.v[2] = v[MCSI_NODES], w.v[3] = v[MCSI_NODES + 1];
     *part *= 4.0 / (((double)w.v[0] + (double)w.v[1]) + ((double)w.v[2] + (double)w.v[3]));
-    mcsi_warp_draw(&w, U1, U2, part);
+    mcsi_warp_place(&w, U1, U2, part);
     *U1 = (j * (double)MCSI_ONE + *U1) * (1.0 / (MCSI_NODES - 1)), *U2 = (i * (double)MCSI_ONE + *U2) * (1.0 / (MCSI_NODES - 1));
 }
 MCSI_CORE float mcsi_fine_density(const float *v, float t1, float t2) {
@@ -4352,13 +4376,22 @@ MCSI_CORE const float *mcsi_product_fine_of(const mcs_product *p, uint32_t i, ui
     uint32_t k = mcsi_product_fine(p)[(size_t)j * p->t->rows + i];
     return k ? mcsi_product_grids(p) + (k - 1) * (size_t)(MCSI_GRID + MCSI_NODES) : NULL;
 }
-MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, uint32_t i, uint32_t j) {
+/* Of what the warp of a tile is made; corners at either azimuth. */
+typedef struct {
+    const float *value, *pull, *first, *last;
+} mcsi_warp_source;
+MCSI_CORE mcsi_warp_source mcsi_product_source(const mcs_product *p, uint32_t i, uint32_t j) {
     const mcs_tiles *t = p->t;
-    const float *corner = mcsi_product_corners(p) + i, *a = corner + j * (t->rows + 1),
-                *b = corner + (j + 1 < t->cols ? j + 1 : 0) * (t->rows + 1);
     size_t k = (size_t)j * t->rows + i;
-    return mcsi_warp_make(mcsi_product_values(p)[k], mcsi_tiles_fields(t)[MCSI_TILE_PULL * (size_t)t->rows * t->cols + k], a[0],
-                          a[1], b[0], b[1]);
+    mcsi_warp_source s;
+    s.value = mcsi_product_values(p) + k, s.pull = mcsi_tiles_fields(t) + MCSI_TILE_PULL * (size_t)t->rows * t->cols + k;
+    s.first = mcsi_product_corners(p) + i, s.last = s.first + (j + 1 < t->cols ? j + 1 : 0) * (t->rows + 1);
+    s.first += j * (t->rows + 1);
+    return s;
+}
+MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, uint32_t i, uint32_t j) {
+    mcsi_warp_source s = mcsi_product_source(p, i, j);
+    return mcsi_warp_make(*s.value, *s.pull, s.first[0], s.first[1], s.last[0], s.last[1]);
 }
 /* Where among a tile's light the place of a direction lies, for mcsi_warp_density; somewhere in a row without light. */
 MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const mcsi_env_place_of *at, float *t1, float *t2) {
@@ -4426,22 +4459,12 @@ MCSI_CORE uint32_t mcsi_product_row(const mcs_product *p, double *U2) {
     *U2 = mcsi_shares_rest(*U2, rows[i], rows[i + 1] - rows[i]);
     return i;
 }
-MCSI_CORE const mcs_env_window *mcsi_product_col(const mcs_product *p, uint32_t i, double *U1, double *U2, double *part) {
-    const mcs_tiles *t = p->t;
+MCSI_CORE uint32_t mcsi_product_col(const mcs_product *p, uint32_t i, double *U1, double *part) {
     const uint32_t *cum = mcsi_product_cum(p) + i;
-    const float *fine;
-    uint32_t n = t->rows, j;
-    *U1 *= (int32_t)cum[t->cols * n] * (1.0 / MCSI_ONE), j = mcsi_shares_find(cum, t->cols, n, (uint32_t)(int32_t)*U1),
-                                                         cum += j * n;
+    uint32_t n = p->t->rows, cols = p->t->cols, j;
+    *U1 *= (int32_t)cum[cols * n] * (1.0 / MCSI_ONE), j = mcsi_shares_find(cum, cols, n, (uint32_t)(int32_t)*U1), cum += j * n;
     *U1 = mcsi_shares_rest(*U1, cum[0], cum[n] - cum[0]), *part = mcsi_product_units(p)[i] * (int32_t)(cum[n] - cum[0]);
-    fine = mcsi_product_fine_of(p, i, j);
-    if (fine) {
-        mcsi_fine_draw(fine, U1, U2, part);
-    } else if (p->warped) {
-        mcsi_warp w = mcsi_product_warp(p, i, j);
-        mcsi_warp_draw(&w, U1, U2, part);
-    }
-    return mcsi_tiles_window(t, i, j);
+    return j;
 }
 MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, double U1, double U2, double part, int ok) {
     mcsi_env_view v = mcsi_env_part(m);
@@ -4456,9 +4479,17 @@ MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
     if (mcsi_own_draw(&p->own, p->brdf_share, &u1, u2, &w, &ok)) {
         r = mcsi_product_look_up(p, w);
     } else if (p->lit) {
-        const mcs_env_window *m;
-        U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE, m = mcsi_product_col(p, mcsi_product_row(p, &U2), &U1, &U2, &part);
-        r = mcsi_tiled_draw(p->e, m, U1, U2, part, ok);
+        const float *fine;
+        uint32_t i, j;
+        U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE;
+        i = mcsi_product_row(p, &U2), j = mcsi_product_col(p, i, &U1, &part), fine = mcsi_product_fine_of(p, i, j);
+        if (fine) {
+            mcsi_fine_draw(fine, &U1, &U2, &part);
+        } else if (p->warped) {
+            mcsi_warp warp = mcsi_product_warp(p, i, j);
+            mcsi_warp_place(&warp, &U1, &U2, &part);
+        }
+        r = mcsi_tiled_draw(p->e, mcsi_tiles_window(p->t, i, j), U1, U2, part, ok);
         r.pdf = mcsi_own_mix(&p->own, p->brdf_share, r.w, r.pdf);
     } else {
         return mcsi_nothing(p->e);
@@ -4470,8 +4501,10 @@ MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
 MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
                                  float *pdf) {
     mcsi_env_block b;
+    mcsi_warp_block warps;
     double U1[MCSI_ENV_BLOCK], U2[MCSI_ENV_BLOCK], part[MCSI_ENV_BLOCK];
     const mcs_env_window *window[MCSI_ENV_BLOCK];
+    const float *fine[MCSI_ENV_BLOCK];
     uint32_t row[MCSI_ENV_BLOCK];
     int32_t ok[MCSI_ENV_BLOCK];
     size_t i, k, m;
@@ -4486,6 +4519,7 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
         return;
     }
     mcsi_env_block_start(&b, n);
+    if (n < MCSI_ENV_BLOCK) memset(&warps, 0, sizeof warps);
     for (i = 0; i < n; i += m) { /* by stages, as each of them is a long chain of operations */
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         for (k = 0; k < m; k++) {
@@ -4493,12 +4527,26 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
             row[k] = mcsi_product_row(p, &U2[k]);
         }
         for (k = 0; k < m; k++) {
-            window[k] = mcsi_product_col(p, row[k], &U1[k], &U2[k], &part[k]);
+            uint32_t col = mcsi_product_col(p, row[k], &U1[k], &part[k]);
+            mcsi_warp_source s = mcsi_product_source(p, row[k], col);
+            window[k] = mcsi_tiles_window(p->t, row[k], col), fine[k] = mcsi_product_fine_of(p, row[k], col);
             MCSI_PREFETCH(window[k]);
+            if (!p->warped) continue;
+            warps.value[k] = *s.value, warps.pull[k] = *s.pull, warps.v00[k] = s.first[0], warps.v01[k] = s.first[1];
+            warps.v10[k] = s.last[0], warps.v11[k] = s.last[1];
+            warps.u1[k] = mcsi_part_of_one(U1[k]), warps.u2[k] = mcsi_part_of_one(U2[k]);
         }
+        if (p->warped) mcsi_warps_n(m, &warps);
         for (k = 0; k < m; k++) {
             mcsi_env_view v = mcsi_env_part(window[k]);
-            uint32_t near_row = (uint32_t)(U2[k] * v.count * (1.0 / MCSI_ONE));
+            uint32_t near_row;
+            if (fine[k]) {
+                mcsi_fine_draw(fine[k], &U1[k], &U2[k], &part[k]);
+            } else if (p->warped) {
+                part[k] *= (double)warps.density[k];
+                U1[k] = (double)warps.u1[k] * MCSI_ONE, U2[k] = (double)warps.u2[k] * MCSI_ONE;
+            }
+            near_row = (uint32_t)(U2[k] * v.count * (1.0 / MCSI_ONE));
             MCSI_PREFETCH(v.guide + near_row), MCSI_PREFETCH(v.rows + near_row), MCSI_PREFETCH(v.line + near_row);
         }
         for (k = 0; k < m; k++) {
@@ -4608,7 +4656,7 @@ MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const 
     } else {
         U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE;
         if (!mcsi_oneshot_tile(t, &s, &U1, &U2, &i, &j, &part, &warp)) return mcsi_nothing(e);
-        mcsi_warp_draw(&warp, &U1, &U2, &part);
+        mcsi_warp_place(&warp, &U1, &U2, &part);
         x = mcsi_tiled_draw(e, mcsi_tiles_window(t, i, j), U1, U2, part, ok);
     }
     x.pdf = ok ? mcsi_own_mix(&own, share, x.w, x.pdf) : 0.0f;
