@@ -1,13 +1,15 @@
 /* mcsample.h, version 0.1.0: Monte Carlo sampling for rendering in one C header (C99 and C++11; MIT licence at the end).
  *
- * QUICK START. Copy this file into the project; there is nothing to build, link or initialise.
+ * QUICK START. Copy this file into the project; there is nothing to build or initialise (where the square root is a function, link
+ * libm).
  *
  *     #include "mcsample.h"
  *
  *     mcs_pcg32 rng = mcs_pcg32_make(1, 0);                    // seed, stream
  *     mcs_ggx   m   = mcs_ggx_make(0.3f, 0.1f);                // alpha along x and y, prepared once per material
  *     mcs_vec3  wo  = {0.6f, 0.0f, 0.8f};                      // to the eye; the surface normal is +z
- *     mcs_brdf  s   = mcs_ggx_vndf_sample(&m, wo, mcs_pcg32_float(&rng), mcs_pcg32_float(&rng));
+ *     float     u1  = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+ *     mcs_brdf  s   = mcs_ggx_vndf_sample(&m, wo, u1, u2);
  *     if (s.pdf > 0) radiance += s.weight * incoming(s.wi);    // weight = f cos / pdf
  *
  * CONVENTIONS
@@ -24,22 +26,26 @@
  *   lost mass   a half-vector lobe or a Phong lobe may reflect below the surface: such a sample has pdf 0 and weight 0 and still
  *               counts. The pdf over the upper hemisphere then integrates to less than 1; do not renormalise it.
  *   accuracy    stated per block as tested over the whole parameter range (tests/test_oracle.c prints it with MCS_TEST_VERBOSE=1):
- *               pdf errors are relative, in units of E = 1e-6 (1 + |ln(pdf/peak)|); directions in units of 2^-24 absolute.
+ *               pdf errors are relative, in units of E = 1e-6 (1 + |ln(pdf/peak)|), down to 2^-126 of the peak (below, it is just
+ *               small); directions in units of 2^-24 absolute. Where a cosine with a half-vector cancels, its condition comes on
+ *               top.
  *   bad input   never crashes and never gives NaN: pdf 0, weight 0 and a finite point. Bad are u outside [0,1), NaN anywhere,
  *               directions whose squared length is not within (1/4, 4), wo below the surface, parameters out of range (these also
- *               fire MCS_ASSERT). Densities above FLT_MAX are returned as FLT_MAX.
+ *               fire MCS_ASSERT in scalar functions). Densities above FLT_MAX are returned as FLT_MAX.
  *   widths      every function marked w in the index exists for 4, 8 and 16 lanes too: mcs8_ggx_pdf takes and returns mcs8_f and
  *               structs of mcs8_f. `_n` functions take plain arrays (one per component), pick the widest unit of the CPU at run
- *               time, accept any n and any alignment, may write over their inputs, and skip outputs that are NULL.
+ *               time, accept any n and any alignment, may write in place of their inputs, and skip outputs that are NULL. Those of
+ *               BRDFs have one material and one wo for all.
  *   same bits   with -ffp-contract=off (which gcc's -std=c99 and -std=c11 imply) scalar, 4, 8, 16 wide and `_n` forms give the same
- *               bits on every CPU. Where the compiler may contract a*b+c they differ by the rounding of single operations, and the
- *               `_n` forms are up to 30 % faster. -ffast-math compiles, but bad input is then not recognised.
+ *               bits on every CPU. Where the compiler may contract a*b+c they differ by the rounding of single operations, more
+ *               where those cancel, and the `_n` forms are up to 30 % faster. -ffast-math compiles, but does not recognise bad
+ *               input.
  *   state       none: no globals, no allocation, no I/O. Everything is thread-safe that does not share a caller's object.
  */
 /* INDEX: find [tag] for the block of a sampler. "w": also 4, 8, 16 wide (mcs4_, mcs8_, mcs16_). Every public name stands here once.
  *
  * types        mcs_f mcs_i mcs_u mcs_vec2 mcs_vec3 mcs_sample1 mcs_sample2 mcs_dir mcs_brdf w; mcs_status; lanes mcs4_f mcs4_i
- *              mcs4_u mcs8_f mcs8_i mcs8_u mcs16_f mcs16_i mcs16_u
+ *              mcs4_u mcs8_f mcs8_i mcs8_u mcs16_f mcs16_i mcs16_u; mcs_set mcs_load mcs_store w
  * [rng]        mcs_u01 mcs_u01_open w; mcs_pcg32 mcs_pcg32_make mcs_pcg32_next mcs_pcg32_float mcs_pcg32_advance mcs_pcg32_fill_n;
  *              mcs_philox4 mcs_philox mcs_philox_fill_n
  * [points]     mcs_sobol_bits mcs_sobol mcs_r2 mcs_hash w; mcs_sobol_n mcs_stratified mcs_latin
@@ -87,12 +93,13 @@
  * [tables]     per length on [0,1], or probability per entry; memory of the caller
  *              mcs_cell mcs_pick mcs_pwc mcs_pwc_bytes mcs_pwc_build mcs_pwc_build_fn mcs_pwc_sample mcs_pwc_pdf mcs_pwc_invert
  *              mcs_pwc_sample_n mcs_discrete_sample mcs_discrete_pmf mcs_pwl mcs_pwl_bytes mcs_pwl_build mcs_pwl_sample mcs_pwl_pdf
- *              mcs_pwl_invert mcs_pwl_sample_n mcs_alias mcs_alias_bytes mcs_alias_build mcs_alias_sample mcs_alias_pmf
+ *              mcs_pwl_invert mcs_pwl_sample_n mcs_alias mcs_alias_bytes mcs_alias_build mcs_alias_sample
+ *              mcs_alias_sample_bits mcs_alias_pmf
  * [env]        directions per solid angle; memory of the caller
  *              mcs_image mcs_image_make mcs_env mcs_texel mcs_env_bytes mcs_env_build mcs_env_build_rows mcs_env_finish
  *              mcs_env_check mcs_env_mean mcs_env_sample mcs_env_sample_bits mcs_env_pdf mcs_env_invert mcs_env_texel
- *              mcs_env_weight mcs_env_sample_n mcs_env_pdf_n mcs_env_window mcs_env_window_bytes mcs_env_window_build
- *              mcs_env_window_sample mcs_env_window_pdf mcs_env_window_sample_n
+ *              mcs_env_weight mcs_env_sample_n mcs_env_texel_n mcs_env_pdf_n mcs_env_window mcs_env_window_bytes
+ *              mcs_env_window_build mcs_env_window_sample mcs_env_window_pdf mcs_env_window_sample_n
  * [product]    directions per solid angle; memory of the caller
  *              mcs_tiles mcs_tiles_bytes mcs_tiles_build mcs_tiles_direction mcs_profile mcs_reflection mcs_product
  *              MCS_PRODUCT_BYTES mcs_product_bytes mcs_product_build mcs_product_build_weights mcs_product_sample
@@ -113,10 +120,10 @@
 
 /* ---- configuration: define before the include --------------------------------------------------------------------------------
  * MCS_NO_WIDE     no 4, 8, 16 wide functions; `_n` forms loop over the scalar ones   (default: off; on without vector extensions)
- * MCS_NO_BATCH    no `_n` forms                                                      (default: off)
+ * MCS_NO_BATCH    no `_n` forms but mcs_pcg32_fill_n                                 (default: off)
  * MCS_NO_1D       leaves out the one-dimensional densities                           (default: off)
- * MCS_NO_LOBES    leaves out Phong, Ward, Beckmann, GGX, Ashikhmin-Shirley           (default: off)
- * MCS_NO_TABLES   leaves out tables and the environment map                          (default: off)
+ * MCS_NO_LOBES    leaves out [microfacet], the BRDFs and [product]                   (default: off)
+ * MCS_NO_TABLES   leaves out [tables], [env] and [product]                           (default: off)
  * MCS_MAX_LANES   4, 8 or 16: the widest unit that `_n` forms pick at run time on x86, SSE2, AVX2 or AVX-512   (default: 16)
  * The MCS_NO_ switches only save compile time: functions that are not used leave no code in any case. */
 
@@ -147,7 +154,8 @@
 #endif
 
 #if defined(__GNUC__)
-/* About vectors passed to functions; here all of them are inlined. gcc reports it at the end of the file, so it stays off. */
+/* About vectors passed to functions; here all of them are inlined. gcc reports it at the end of the file, so it stays off for the
+ * rest of the including file as well. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
@@ -280,8 +288,8 @@ MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
 #define MCSI_EACH(b)                                                       \
     for ((b).more = 1; (b).more; (b).more = mcsi_batch_rest(&(b), MCSI_W)) \
         for (; (b).i + MCSI_W <= (b).n; (b).i += MCSI_W)
-#define MCSI_IN(b, k) MCSI_(load)((b).in[k] + (b).i)
-#define MCSI_OUT(b, k, v) (void)((b).out[k] ? (MCSI_(store)((b).out[k] + (b).i, v), 0) : 0)
+#define MCSI_IN(b, k) MCS_(load)((b).in[k] + (b).i)
+#define MCSI_OUT(b, k, v) (void)((b).out[k] ? (MCS_(store)((b).out[k] + (b).i, v), 0) : 0)
 #endif
 
 typedef enum {
@@ -445,7 +453,7 @@ typedef double mcsi_d;
 #define MCSI_BATCH(name, params, args, ...) MCSI_BATCH_AS(mcs_##name, name, params, args, __VA_ARGS__)
 #if defined(MCSI_LOOPS)
 #define MCSI_BATCH_AS(caller, name, params, args, ...) \
-    __attribute__((unused)) static void MCSI_(name) params { __VA_ARGS__ }
+    __attribute__((unused)) static inline void MCSI_(name) params { __VA_ARGS__ }
 #elif MCSI_W > 1
 #define MCSI_BATCH_AS(caller, name, params, args, ...)
 #elif defined(MCS_NO_WIDE)
@@ -453,7 +461,7 @@ typedef double mcsi_d;
     MCS_FN void caller params { __VA_ARGS__ }
 #else
 #if defined(MCSI_PICK_AVX512)
-#define MCSI_DECLARE_AVX512(name, params) MCSI_FOR_AVX512 static void mcsi_avx512_##name params;
+#define MCSI_DECLARE_AVX512(name, params) MCSI_FOR_AVX512 static inline void mcsi_avx512_##name params;
 #define MCSI_TRY_AVX512(name, args)                                                                                     \
     if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")) \
         mcsi_avx512_##name args;                                                                                        \
@@ -463,7 +471,7 @@ typedef double mcsi_d;
 #define MCSI_TRY_AVX512(name, args)
 #endif
 #if defined(MCSI_PICK_AVX2)
-#define MCSI_DECLARE_AVX2(name, params) MCSI_FOR_AVX2 static void mcsi_avx2_##name params;
+#define MCSI_DECLARE_AVX2(name, params) MCSI_FOR_AVX2 static inline void mcsi_avx2_##name params;
 #define MCSI_TRY_AVX2(name, args)                                                               \
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) mcsi_avx2_##name args; \
     else
@@ -471,19 +479,20 @@ typedef double mcsi_d;
 #define MCSI_DECLARE_AVX2(name, params)
 #define MCSI_TRY_AVX2(name, args)
 #endif
-#define MCSI_BATCH_AS(caller, name, params, args, ...)          \
-    MCSI_DECLARE_AVX512(name, params)                           \
-    MCSI_DECLARE_AVX2(name, params)                             \
-    __attribute__((unused)) static void MCSI_BASE(name) params; \
+#define MCSI_BATCH_AS(caller, name, params, args, ...)                 \
+    MCSI_DECLARE_AVX512(name, params)                                  \
+    MCSI_DECLARE_AVX2(name, params)                                    \
+    __attribute__((unused)) static inline void MCSI_BASE(name) params; \
     MCS_FN void caller params { MCSI_TRY_AVX512(name, args) MCSI_TRY_AVX2(name, args) MCSI_BASE(name) args; }
 #endif
 
 /* ---- lanes: what C has no operator for --------------------------------------------------------------------------------------- */
 
+/* Public: x in all lanes; lanes from and to an array of any alignment. */
 #if MCSI_W == 1
-MCSI_CORE float mcsi_set(float x) { return x; }
-MCSI_CORE float mcsi_load(const float *p) { return *p; }
-MCSI_CORE void mcsi_store(float *p, float x) { *p = x; }
+MCSI_CORE float mcs_set(float x) { return x; }
+MCSI_CORE float mcs_load(const float *p) { return *p; }
+MCSI_CORE void mcs_store(float *p, float x) { *p = x; }
 MCSI_CORE void mcsi_store_int(uint32_t *p, int32_t i) { *p = (uint32_t)i; }
 MCSI_CORE int32_t mcsi_bits(float x) {
     int32_t i;
@@ -507,14 +516,14 @@ MCSI_CORE float mcsi_sel(int32_t m, float a, float b) { return m ? a : b; }
 MCSI_CORE float mcsi_max(float a, float b) { return a > b ? a : b; }
 MCSI_CORE float mcsi_min(float a, float b) { return a < b ? a : b; }
 #else
-MCSI_CORE MCSI_F MCSI_(set)(float x) {
+MCSI_CORE MCSI_F MCS_(set)(float x) {
     MCSI_F zero = {0.0f};
     return x - zero;
 }
 /* Through a type that may lie anywhere: gcc 12 copies by memcpy in pieces of 16 bytes, and the vector then waits for them. */
 typedef float MCSI_(anywhere) __attribute__((vector_size(4 * MCSI_W), aligned(4), may_alias));
-MCSI_CORE MCSI_F MCSI_(load)(const float *p) { return *(const MCSI_(anywhere) *)(const void *)p; }
-MCSI_CORE void MCSI_(store)(float *p, MCSI_F v) { *(MCSI_(anywhere) *)(void *)p = v; }
+MCSI_CORE MCSI_F MCS_(load)(const float *p) { return *(const MCSI_(anywhere) *)(const void *)p; }
+MCSI_CORE void MCS_(store)(float *p, MCSI_F v) { *(MCSI_(anywhere) *)(void *)p = v; }
 MCSI_CORE void MCSI_(store_int)(uint32_t *p, MCSI_I i) { *(MCSI_(anywhere) *)(void *)p = (MCSI_F)i; }
 MCSI_CORE MCSI_I MCSI_(bits)(MCSI_F x) { return (MCSI_I)x; }
 MCSI_CORE MCSI_F MCSI_(from_bits)(MCSI_I i) { return (MCSI_F)i; }
@@ -525,7 +534,7 @@ MCSI_CORE MCSI_F MCSI_(to_float)(MCSI_I i) { return __builtin_convertvector(i, M
 #define MCSI_NARROW(x) __builtin_convertvector(x, MCSI_F)
 #define MCSI_INT_WIDEN(i) MCSI_WIDEN(MCSI_(to_float)(i)) /* |i| < 2^24; straight to double gcc 12 fails at -O0 */
 #define MCSI_TRUNC_D(x) MCSI_(trunc)(MCSI_NARROW(x))
-#define MCSI_MAX_D(x, y) MCSI_WIDEN(MCSI_(max)(MCSI_NARROW(x), MCSI_(set)(y)))
+#define MCSI_MAX_D(x, y) MCSI_WIDEN(MCSI_(max)(MCSI_NARROW(x), MCS_(set)(y)))
 MCSI_CORE MCSI_F MCSI_(sel)(MCSI_I m, MCSI_F a, MCSI_F b) { return (MCSI_F)(((MCSI_I)a & m) | ((MCSI_I)b & ~m)); }
 #if defined(MCSI_X86) && MCSI_W == 4
 MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps(a, b); }
@@ -588,7 +597,7 @@ MCSI_CORE MCSI_F MCSI_(unit)(MCSI_F u, MCSI_I *ok) {
 #if MCSI_W == 1
     if (u > 0.0f && u < 1.0f) return u;
 #endif
-    v = MCSI_(min)(MCSI_(max)(u, MCSI_(set)(0.0f)), MCSI_(set)(0.99999994f));
+    v = MCSI_(min)(MCSI_(max)(u, MCS_(set)(0.0f)), MCS_(set)(0.99999994f));
     *ok = *ok & (v == u);
     return v;
 }
@@ -597,16 +606,16 @@ MCSI_CORE MCSI_F MCSI_(keep)(MCSI_I ok, MCSI_F x) {
 #if MCSI_W == 1
     return ok && x > 0.0f ? mcsi_min(x, FLT_MAX) : 0.0f;
 #else
-    return MCSI_(sel)(ok & (x > 0.0f), MCSI_(min)(x, MCSI_(set)(FLT_MAX)), MCSI_(set)(0.0f));
+    return MCSI_(sel)(ok & (x > 0.0f), MCSI_(min)(x, MCS_(set)(FLT_MAX)), MCS_(set)(0.0f));
 #endif
 }
 /* A parameter made safe: x within [lo, hi] where x > 0 or x >= 0 holds as `ok` says, else `lo`. */
 MCSI_CORE MCSI_F MCSI_(within)(MCSI_I ok, MCSI_F x, float lo, float hi) {
-    return MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(x, MCSI_(set)(lo)), MCSI_(set)(hi)), MCSI_(set)(lo));
+    return MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(x, MCS_(set)(lo)), MCS_(set)(hi)), MCS_(set)(lo));
 }
 /* Lengths, rates and radii whose squares and inverses are floats. */
 MCSI_CORE MCSI_I MCSI_(scale_ok)(MCSI_F scale) { return (scale >= 1e-18f) & (scale <= 1e18f); }
-MCSI_CORE MCSI_I MCSI_(always)(void) { return MCSI_(set)(0.0f) == MCSI_(set)(0.0f); }
+MCSI_CORE MCSI_I MCSI_(always)(void) { return MCS_(set)(0.0f) == MCS_(set)(0.0f); }
 
 /* x as a float in memory holds it: where expressions keep more digits (x87), compilers leave them to variables as well. */
 MCSI_CORE MCSI_F MCSI_(stored)(MCSI_F x) {
@@ -626,7 +635,7 @@ MCSI_CORE MCSI_F MCSI_(stored)(MCSI_F x) {
  * room for nothing below step. Where compilers may take the difference for x itself it goes through *k. */
 MCSI_CORE MCSI_F MCSI_(to_grid)(MCSI_F x, float step, float big, MCSI_I *k) {
     MCSI_F sum = x + big;
-    *k = MCSI_(bits)(sum) - MCSI_(bits)(MCSI_(set)(big));
+    *k = MCSI_(bits)(sum) - MCSI_(bits)(MCS_(set)(big));
 #if defined(MCSI_SUMS_MAY_MOVE) || FLT_EVAL_METHOD != 0
     return step * MCSI_(to_float)(*k);
 #else
@@ -662,13 +671,13 @@ MCSI_CORE void MCSI_(sincos_turns)(MCSI_F t, MCSI_F *sine, MCSI_F *cosine) {
 /* atan2(y, x) in turns, [0, 1 - 2^-24]; (0, 0) gives 0. Absolute error below 2^-23 turns, relative 1.5e-7 in the first octant. */
 MCSI_CORE MCSI_F MCSI_(atan2_turns)(MCSI_F y, MCSI_F x) {
     MCSI_F ax = MCSI_(abs)(x), ay = MCSI_(abs)(y), big = MCSI_(max)(ax, ay);
-    MCSI_F a = MCSI_(min)(ax, ay) / MCSI_(max)(big, MCSI_(set)(FLT_MIN)), z = a * a;
+    MCSI_F a = MCSI_(min)(ax, ay) / MCSI_(max)(big, MCS_(set)(FLT_MIN)), z = a * a;
     MCSI_F t = a * (0.159154937f + z * (-0.0530508421f + z * (0.0318125151f + z * (-0.0225589965f + z * (0.016769575f +
                z * (-0.0116160437f + z * (0.00643095793f + z * (-0.00234468561f + z * 0.000402584235f))))))));
     t = MCSI_(sel)(ay > ax, 0.25f - t, t);
     t = MCSI_(sel)(x < 0.0f, 0.5f - t, t);
     t = MCSI_(sel)(y < 0.0f, 1.0f - t, t);
-    return MCSI_(min)(t, MCSI_(set)(0.99999994f));
+    return MCSI_(min)(t, MCS_(set)(0.99999994f));
 }
 
 /* The exponent of a positive normal float's bits, for a significand in [sqrt(1/2), sqrt(2)), in its place: 2^23 of it. */
@@ -719,7 +728,7 @@ MCSI_CORE MCSI_F MCSI_(times_2_to)(MCSI_F x, MCSI_I k, MCSI_I some) {
 /* e^min(x, 0), subnormal results included; NaN gives 0. 1 ulp. */
 MCSI_CORE MCSI_F MCSI_(exp_neg)(MCSI_F x) {
     MCSI_I k;
-    MCSI_F q = MCSI_(exp_reduced)(MCSI_(min)(MCSI_(max)(x, MCSI_(set)(-104.0f)), MCSI_(set)(0.0f)), &k);
+    MCSI_F q = MCSI_(exp_reduced)(MCSI_(min)(MCSI_(max)(x, MCS_(set)(-104.0f)), MCS_(set)(0.0f)), &k);
     return MCSI_(stored)(MCSI_(times_2_to)(1.0f + q, k, k | -1));
 }
 /* e^x and e^x - 1, x in [-80, 0]. 1 ulp. */
@@ -748,14 +757,14 @@ MCSI_CORE MCSI_F MCSI_(pow_unit)(MCSI_F x, MCSI_F n, double plus, int root, MCSI
     odd = r * ((0.6931471805350843 + z * 0.05550410975949026) + z * z * (0.001333342276368949 + z * 1.531643601070646e-05));
     q = MCSI_(times_2_to)(MCSI_NARROW(even + odd), j, some);
     if (root) *over = MCSI_(times_2_to)(head * MCSI_NARROW(even - odd), k - j, some);
-    if (!root) q = MCSI_(sel)(MCSI_NARROW(y) > -151.0f, q, MCSI_(set)(0.0f));
-    return plus > 0.0 ? q : MCSI_(sel)(n > 0.0f, q, MCSI_(set)(1.0f));
+    if (!root) q = MCSI_(sel)(MCSI_NARROW(y) > -151.0f, q, MCS_(set)(0.0f));
+    return plus > 0.0 ? q : MCSI_(sel)(n > 0.0f, q, MCS_(set)(1.0f));
 }
 
 /* Phi(-y) = erfc(y / sqrt 2) / 2, y >= 0: the lower tail of the normal distribution. 8 ulp. The square is split so that e^(-y^2/2)
  * keeps its relative accuracy in the far tail. */
 MCSI_CORE MCSI_F MCSI_(normal_tail)(MCSI_F y) {
-    MCSI_F c = MCSI_(min)(y, MCSI_(set)(14.5f)), v = 1.0f / (1.0f + 0.35f * c);
+    MCSI_F c = MCSI_(min)(y, MCS_(set)(14.5f)), v = 1.0f / (1.0f + 0.35f * c);
     MCSI_F head = MCSI_(from_bits)(MCSI_(bits)(c) & ~0xfff), hi = -0.5f * head * head, lo = -0.5f * (c - head) * (c + head);
     MCSI_F sum = hi + lo, rest = (hi - sum) + lo;
     MCSI_F g = -1.45437423e-06f + v * (0.139653593f + v * (0.139561504f + v * (0.12138617f + v * (0.100589871f +
@@ -771,7 +780,7 @@ MCSI_CORE MCSI_F MCSI_(normal_quantile)(MCSI_F p) {
 #if MCSI_W == 1
     if (z <= 0.140625f) return centre;
 #endif
-    t = MCSI_(sqrt)(-2.0f * MCSI_(log)(MCSI_(min)(MCSI_(min)(p, 1.0f - p), MCSI_(set)(0.125f))));
+    t = MCSI_(sqrt)(-2.0f * MCSI_(log)(MCSI_(min)(MCSI_(min)(p, 1.0f - p), MCS_(set)(0.125f))));
     v = 1.0f / (1.0f + 0.3f * t), vv = v * v;
     high = (-3.61969185f + v * -1.00470293f) + vv * (9.96816254f + v * -12.2509031f + vv * 5.70157146f);
     low = (0.0152368257f + v * 1.39166832f) + vv * (-1.32426488f + v * 3.72064948f);
@@ -823,19 +832,19 @@ MCSI_CORE MCS_(vec3) MCSI_(direction)(MCS_(vec3) w, MCSI_I *ok) {
     MCSI_F length2 = MCSI_(dot)(w, w);
     MCSI_I good = (length2 > 0.25f) & (length2 < 4.0f);
     *ok = *ok & good;
-    return MCSI_(vec3)(MCSI_(sel)(good, w.x, MCSI_(set)(0.0f)), MCSI_(sel)(good, w.y, MCSI_(set)(0.0f)),
-                       MCSI_(sel)(good, w.z, MCSI_(set)(1.0f)));
+    return MCSI_(vec3)(MCSI_(sel)(good, w.x, MCS_(set)(0.0f)), MCSI_(sel)(good, w.y, MCS_(set)(0.0f)),
+                       MCSI_(sel)(good, w.z, MCS_(set)(1.0f)));
 }
 /* The same for a direction that must lie above the surface. */
 MCSI_CORE MCS_(vec3) MCSI_(above)(MCS_(vec3) w, MCSI_I *ok) {
     MCSI_F length2 = MCSI_(dot)(w, w);
     MCSI_I good = (length2 > 0.25f) & (length2 < 4.0f) & (w.z > 0.0f);
     *ok = *ok & good;
-    return MCSI_(vec3)(MCSI_(sel)(good, w.x, MCSI_(set)(0.0f)), MCSI_(sel)(good, w.y, MCSI_(set)(0.0f)),
-                       MCSI_(sel)(good, w.z, MCSI_(set)(1.0f)));
+    return MCSI_(vec3)(MCSI_(sel)(good, w.x, MCS_(set)(0.0f)), MCSI_(sel)(good, w.y, MCS_(set)(0.0f)),
+                       MCSI_(sel)(good, w.z, MCS_(set)(1.0f)));
 }
 /* All lanes alike: how the array forms spread the scalars of a call. */
-MCSI_CORE MCS_(vec3) MCSI_(spread)(mcs_vec3 v) { return MCSI_(vec3)(MCSI_(set)(v.x), MCSI_(set)(v.y), MCSI_(set)(v.z)); }
+MCSI_CORE MCS_(vec3) MCSI_(spread)(mcs_vec3 v) { return MCSI_(vec3)(MCS_(set)(v.x), MCS_(set)(v.y), MCS_(set)(v.z)); }
 
 #define MCSI_PI 3.14159274f
 #define MCSI_1_PI 0.318309873f
@@ -957,7 +966,7 @@ MCSI_CORE void MCSI_(philox_blocks)(uint64_t key, uint64_t counter, float *out) 
     }
     v[3] = v[2] = v[0] & 0u;
     MCSI_(philox_rounds)(key, v);
-    for (k = 0; k < 4; k++) MCSI_(store)(words[k], MCS_(u01)(v[k]));
+    for (k = 0; k < 4; k++) MCS_(store)(words[k], MCS_(u01)(v[k]));
     for (lane = 0; lane < MCSI_W; lane++, out += 4)
         out[0] = words[0][lane], out[1] = words[1][lane], out[2] = words[2][lane], out[3] = words[3][lane];
 }
@@ -1059,7 +1068,7 @@ MCS_FN uint32_t mcsi_permute(uint32_t i, uint32_t n, uint32_t seed) {
     for (k = 1; k < 32; k *= 2) mask |= mask >> k;
     for (half = 1; mask >> (2 * half); half++) {}
     do
-        for (r = 0; r < 4; r++) {
+        for (r = 0; r < 12; r++) {
             const uint32_t h = mcs_hash(r, seed);
             i = (i * (h | 1u) + (h >> 7)) & mask;
             i ^= i >> half;
@@ -1099,23 +1108,24 @@ MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed) 
  * A; evenpower is slide 13 of the lecture for n = 2. */
 
 MCSI_CORE MCSI_F MCSI_(u_of)(MCSI_I ok, MCSI_F u) {
-    return MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u, MCSI_(set)(0.0f)), MCSI_(set)(0.99999994f)), MCSI_(set)(0.0f));
+    return MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u, MCS_(set)(0.0f)), MCS_(set)(0.99999994f)), MCS_(set)(0.0f));
 }
 MCSI_CORE MCS_(sample1) MCSI_(sample1)(MCSI_I ok, MCSI_F x, MCSI_F pdf) {
     MCS_(sample1) s;
-    s.x = MCSI_(sel)(ok, x, MCSI_(set)(0.0f));
+    s.x = MCSI_(sel)(ok, x, MCS_(set)(0.0f));
     s.pdf = MCSI_(keep)(ok, pdf);
     return s;
 }
 
-/* linear: weights a, b >= 0 times a power of two that brings the larger one to 2^60 or, from below 2^-67, as near as it can:
- * then neither square overflows, and the smaller one underflows only where it is below 2^-123 of the larger. */
+/* linear: weights a, b >= 0 times powers of two that bring the larger one to 2^60, or to 2^42 at least: then neither square
+ * overflows, and the smaller one underflows only where it is below 2^-105 of the larger. */
 MCSI_CORE MCSI_I MCSI_(linear_ends)(MCSI_F *a, MCSI_F *b) {
-    MCSI_F top = MCSI_(max)(*a, *b), scale;
+    MCSI_F top = MCSI_(max)(*a, *b), least = MCS_(set)(6.77626358e-21f), scale;
     MCSI_I ok = (*a >= 0.0f) & (*b >= 0.0f) & (top > 0.0f) & (top <= FLT_MAX);
     MCSI_REQUIRE(ok);
-    scale =
-        MCSI_(from_bits)((MCSI_I)(0x9d000000u - ((MCSI_U)MCSI_(bits)(MCSI_(max)(top, MCSI_(set)(6.77626358e-21f))) & 0x7f800000u)));
+    scale = MCSI_(sel)(top < least, MCS_(set)(1.84467441e+19f), MCS_(set)(1.0f));
+    *a = *a * scale, *b = *b * scale, top = MCSI_(max)(top * scale, least);
+    scale = MCSI_(from_bits)((MCSI_I)(0x9d000000u - ((MCSI_U)MCSI_(bits)(top) & 0x7f800000u)));
     *a = *a * scale, *b = *b * scale;
     return ok;
 }
@@ -1124,7 +1134,7 @@ MCSI_CORE MCS_(sample1) MCS_(linear_sample)(MCSI_F a, MCSI_F b, MCSI_F u) {
     MCSI_F r;
     u = MCSI_(unit)(u, &ok);
     r = MCSI_(sqrt)((1.0f - u) * (a * a) + u * (b * b));
-    return MCSI_(sample1)(ok, MCSI_(min)(u * (a + b) / MCSI_(max)(a + r, MCSI_(set)(FLT_MIN)), MCSI_(set)(1.0f)),
+    return MCSI_(sample1)(ok, MCSI_(min)(u * (a + b) / MCSI_(max)(a + r, MCS_(set)(FLT_MIN)), MCS_(set)(1.0f)),
                           r * (2.0f / (a + b)));
 }
 MCSI_FN MCSI_F MCS_(linear_pdf)(MCSI_F a, MCSI_F b, MCSI_F x) {
@@ -1133,7 +1143,7 @@ MCSI_FN MCSI_F MCS_(linear_pdf)(MCSI_F a, MCSI_F b, MCSI_F x) {
 }
 MCSI_FN MCSI_F MCS_(linear_invert)(MCSI_F a, MCSI_F b, MCSI_F x) {
     MCSI_I ok = MCSI_(linear_ends)(&a, &b);
-    x = MCSI_(min)(MCSI_(max)(x, MCSI_(set)(0.0f)), MCSI_(set)(1.0f));
+    x = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), MCS_(set)(1.0f));
     return MCSI_(u_of)(ok, x * ((a * (2.0f - x) + b * x) / (a + b)));
 }
 
@@ -1152,9 +1162,9 @@ MCSI_FN MCSI_F MCS_(tent_pdf)(MCSI_F r, MCSI_F x) {
 }
 MCSI_FN MCSI_F MCS_(tent_invert)(MCSI_F r, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(r);
-    MCSI_F t = MCSI_(max)((r - MCSI_(abs)(x)) / r, MCSI_(set)(0.0f)), half = 0.5f * t * t;
+    MCSI_F t = MCSI_(max)((r - MCSI_(abs)(x)) / r, MCS_(set)(0.0f)), half = 0.5f * t * t;
     MCSI_REQUIRE(ok);
-    return MCSI_(u_of)(ok, MCSI_(sel)(x < 0.0f, half, 1.0f - half));
+    return MCSI_(u_of)(ok & (x == x), MCSI_(sel)(x < 0.0f, half, 1.0f - half));
 }
 
 MCSI_CORE MCS_(sample1) MCS_(exponential_sample)(MCSI_F rate, MCSI_F u) {
@@ -1172,7 +1182,7 @@ MCSI_FN MCSI_F MCS_(exponential_invert)(MCSI_F rate, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(rate);
     MCSI_F minus_one;
     MCSI_REQUIRE(ok);
-    MCSI_(exp_both)(-MCSI_(min)(MCSI_(max)(rate * x, MCSI_(set)(0.0f)), MCSI_(set)(80.0f)), &minus_one);
+    MCSI_(exp_both)(-MCSI_(min)(MCSI_(max)(rate * x, MCS_(set)(0.0f)), MCS_(set)(80.0f)), &minus_one);
     return MCSI_(u_of)(ok, -minus_one);
 }
 
@@ -1182,7 +1192,7 @@ MCSI_CORE MCSI_I MCSI_(truncexp_ends)(MCSI_F rate, MCSI_F m, MCSI_F *e, MCSI_F *
     MCSI_F t = rate * m;
     MCSI_REQUIRE(ok);
     *flat = t < 1e-8f;
-    *e = MCSI_(exp_both)(-MCSI_(sel)(ok & (t < 80.0f), t, MCSI_(set)(80.0f)), one_minus_e);
+    *e = MCSI_(exp_both)(-MCSI_(sel)(ok & (t < 80.0f), t, MCS_(set)(80.0f)), one_minus_e);
     *one_minus_e = -*one_minus_e;
     return ok;
 }
@@ -1191,7 +1201,7 @@ MCSI_CORE MCS_(sample1) MCS_(truncexp_sample)(MCSI_F rate, MCSI_F m, MCSI_F u) {
     MCSI_I flat, ok = MCSI_(truncexp_ends)(rate, m, &e, &d, &flat);
     u = MCSI_(unit)(u, &ok);
     w = MCSI_(stored)((1.0f - u) + u * e); /* 1 - u d = e^(-rate x); u d itself has more digits of it where it is small */
-    c = MCSI_(blend)((0x3effffff - MCSI_(bits)(w)) >> 31, (1.0f - w) - u * d, MCSI_(set)(0.0f)); /* where w >= 1/2 */
+    c = MCSI_(blend)((0x3effffff - MCSI_(bits)(w)) >> 31, (1.0f - w) - u * d, MCS_(set)(0.0f)); /* where w >= 1/2 */
     x = MCSI_(min)(MCSI_(log_of_sum)(w, c) / -rate, m);
     return MCSI_(sample1)(ok, MCSI_(sel)(flat, u * m, x), MCSI_(sel)(flat, 1.0f / m, w * (rate / d)));
 }
@@ -1203,8 +1213,8 @@ MCSI_FN MCSI_F MCS_(truncexp_pdf)(MCSI_F rate, MCSI_F m, MCSI_F x) {
 MCSI_FN MCSI_F MCS_(truncexp_invert)(MCSI_F rate, MCSI_F m, MCSI_F x) {
     MCSI_F e, d, p;
     MCSI_I flat, ok = MCSI_(truncexp_ends)(rate, m, &e, &d, &flat);
-    x = MCSI_(min)(MCSI_(max)(x, MCSI_(set)(0.0f)), m);
-    MCSI_(exp_both)(-MCSI_(min)(MCSI_(max)(rate * x, MCSI_(set)(0.0f)), MCSI_(set)(80.0f)), &p);
+    x = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), m);
+    MCSI_(exp_both)(-MCSI_(min)(MCSI_(max)(rate * x, MCS_(set)(0.0f)), MCS_(set)(80.0f)), &p);
     return MCSI_(u_of)(ok, MCSI_(sel)(flat, x / m, -p / d));
 }
 
@@ -1213,7 +1223,7 @@ MCSI_CORE MCS_(sample1) MCS_(normal_sample)(MCSI_F mean, MCSI_F sd, MCSI_F u) {
     MCSI_F z;
     MCSI_REQUIRE(ok);
     u = MCSI_(unit)(u, &ok);
-    z = MCSI_(normal_quantile)(MCSI_(max)(u, MCSI_(set)(FLT_MIN)));
+    z = MCSI_(normal_quantile)(MCSI_(max)(u, MCS_(set)(FLT_MIN)));
     return MCSI_(sample1)(ok, mean + sd * z, MCSI_(exp_neg)(-0.5f * z * z) * (0.398942280f / sd));
 }
 MCSI_FN MCSI_F MCS_(normal_pdf)(MCSI_F mean, MCSI_F sd, MCSI_F x) {
@@ -1233,7 +1243,7 @@ MCSI_CORE MCS_(sample1) MCS_(logistic_sample)(MCSI_F mean, MCSI_F s, MCSI_F u) {
     MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
     MCSI_F v;
     MCSI_REQUIRE(ok);
-    v = MCSI_(max)(MCSI_(unit)(u, &ok), MCSI_(set)(FLT_MIN)); /* 2v and 2(1-v) are near 1 where the logarithms nearly cancel */
+    v = MCSI_(max)(MCSI_(unit)(u, &ok), MCS_(set)(FLT_MIN));
     return MCSI_(sample1)(ok, mean + s * MCSI_(log)(v / (1.0f - v)), v * (1.0f - v) / s);
 }
 MCSI_FN MCSI_F MCS_(logistic_pdf)(MCSI_F mean, MCSI_F s, MCSI_F x) {
@@ -1246,14 +1256,14 @@ MCSI_FN MCSI_F MCS_(logistic_invert)(MCSI_F mean, MCSI_F s, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
     MCSI_F z = (x - mean) / s, e = MCSI_(exp_neg)(-MCSI_(abs)(z));
     MCSI_REQUIRE(ok);
-    return MCSI_(u_of)(ok & (z == z), MCSI_(sel)(z < 0.0f, e, MCSI_(set)(1.0f)) / (1.0f + e));
+    return MCSI_(u_of)(ok & (z == z), MCSI_(sel)(z < 0.0f, e, MCS_(set)(1.0f)) / (1.0f + e));
 }
 
 MCSI_CORE MCSI_I MCSI_(exponent_ok)(MCSI_F n) { return (n >= 0.0f) & (n <= 1e9f); }
 /* v^(1/(n+1)) and the density (n+1) x^n = (n+1) v / x there. */
 MCSI_CORE MCSI_F MCSI_(root)(MCSI_F n, MCSI_F v, MCSI_F *density) {
     MCSI_F over, x = MCSI_(pow_unit)(v, n, 1.0, 1, &over);
-    *density = MCSI_(sel)(n > 0.0f, (n + 1.0f) * over, MCSI_(set)(1.0f));
+    *density = MCSI_(sel)(n > 0.0f, (n + 1.0f) * over, MCS_(set)(1.0f));
     return x;
 }
 MCSI_CORE MCSI_F MCSI_(power)(MCSI_F n, double plus, MCSI_F x) { return MCSI_(pow_unit)(x, n, plus, 0, NULL); }
@@ -1261,18 +1271,20 @@ MCSI_CORE MCS_(sample1) MCS_(power_sample)(MCSI_F n, MCSI_F u) {
     MCSI_I ok = MCSI_(exponent_ok)(n);
     MCSI_F x, pdf;
     MCSI_REQUIRE(ok);
-    n = MCSI_(sel)(ok, n, MCSI_(set)(0.0f)), u = MCSI_(unit)(u, &ok);
+    n = MCSI_(sel)(ok, n, MCS_(set)(0.0f)), u = MCSI_(unit)(u, &ok);
     x = MCSI_(root)(n, u, &pdf);
     return MCSI_(sample1)(ok, x, pdf);
 }
 MCSI_FN MCSI_F MCS_(power_pdf)(MCSI_F n, MCSI_F x) {
-    MCSI_I ok = MCSI_(exponent_ok)(n) & (x >= 0.0f) & (x <= 1.0f);
-    n = MCSI_(within)(ok, n, 0.0f, 1e9f);
+    MCSI_I ok = MCSI_(exponent_ok)(n);
+    MCSI_REQUIRE(ok);
+    ok = ok & (x >= 0.0f) & (x <= 1.0f), n = MCSI_(within)(ok, n, 0.0f, 1e9f);
     return MCSI_(keep)(ok, (n + 1.0f) * MCSI_(power)(n, 0.0, MCSI_(within)(ok, x, 0.0f, 1.0f)));
 }
 MCSI_FN MCSI_F MCS_(power_invert)(MCSI_F n, MCSI_F x) {
-    MCSI_I ok = MCSI_(exponent_ok)(n) & (x == x);
-    n = MCSI_(within)(ok, n, 0.0f, 1e9f);
+    MCSI_I ok = MCSI_(exponent_ok)(n);
+    MCSI_REQUIRE(ok);
+    ok = ok & (x == x), n = MCSI_(within)(ok, n, 0.0f, 1e9f);
     return MCSI_(u_of)(ok, MCSI_(power)(n, 1.0, MCSI_(within)(ok, x, 0.0f, 1.0f)));
 }
 
@@ -1280,15 +1292,16 @@ MCSI_CORE MCS_(sample1) MCS_(evenpower_sample)(MCSI_F n, MCSI_F u) {
     MCSI_I ok = MCSI_(exponent_ok)(n);
     MCSI_F d, x, pdf;
     MCSI_REQUIRE(ok);
-    n = MCSI_(sel)(ok, n, MCSI_(set)(0.0f)), d = 2.0f * MCSI_(unit)(u, &ok) - 1.0f;
+    n = MCSI_(sel)(ok, n, MCS_(set)(0.0f)), d = 2.0f * MCSI_(unit)(u, &ok) - 1.0f;
     x = MCSI_(root)(n, MCSI_(abs)(d), &pdf);
     return MCSI_(sample1)(ok, MCSI_(with_sign)(x, d), 0.5f * pdf);
 }
 MCSI_FN MCSI_F MCS_(evenpower_pdf)(MCSI_F n, MCSI_F x) { return 0.5f * MCS_(power_pdf)(n, MCSI_(abs)(x)); }
 MCSI_FN MCSI_F MCS_(evenpower_invert)(MCSI_F n, MCSI_F x) {
-    MCSI_I ok = MCSI_(exponent_ok)(n) & (x == x);
+    MCSI_I ok = MCSI_(exponent_ok)(n);
     MCSI_F half;
-    n = MCSI_(within)(ok, n, 0.0f, 1e9f);
+    MCSI_REQUIRE(ok);
+    ok = ok & (x == x), n = MCSI_(within)(ok, n, 0.0f, 1e9f);
     half = 0.5f * MCSI_(power)(n, 1.0, MCSI_(within)(ok, MCSI_(abs)(x), 0.0f, 1.0f));
     return MCSI_(u_of)(ok, MCSI_(sel)(x < 0.0f, 0.5f - half, 0.5f + half));
 }
@@ -1304,11 +1317,11 @@ MCSI_FN MCSI_F MCS_(evenpower_invert)(MCSI_F n, MCSI_F x) {
                    MCSI_OUT(b, 1, s.pdf); \
                })
 #define MCSI_BATCH_1D_1(NAME, P) \
-    MCSI_BATCH_1D(NAME, (float P, size_t n, const float *u, float *x, float *pdf), (P, n, u, x, pdf), MCSI_(set)(P))
+    MCSI_BATCH_1D(NAME, (float P, size_t n, const float *u, float *x, float *pdf), (P, n, u, x, pdf), MCS_(set)(P))
 #define MCSI_COMMA ,
 #define MCSI_BATCH_1D_2(NAME, P, Q) \
     MCSI_BATCH_1D(NAME, (float P, float Q, size_t n, const float *u, float *x, float *pdf), (P, Q, n, u, x, pdf), \
-                  MCSI_(set)(P) MCSI_COMMA MCSI_(set)(Q))
+                  MCS_(set)(P) MCSI_COMMA MCS_(set)(Q))
 /* clang-format on */
 MCSI_BATCH_1D_2(linear, a, b_)
 MCSI_BATCH_1D_1(tent, r)
@@ -1333,7 +1346,7 @@ MCSI_CORE MCS_(sample2) MCSI_(sample2)(MCSI_I ok, MCSI_F R, MCSI_F r, MCSI_F tur
     MCSI_F s, c;
     ok = ok & MCSI_(scale_ok)(R);
     MCSI_REQUIRE(MCSI_(scale_ok)(R));
-    r = MCSI_(sel)(ok, R * r, MCSI_(set)(0.0f));
+    r = MCSI_(sel)(ok, R * r, MCS_(set)(0.0f));
     MCSI_(sincos_turns)(turns, &s, &c);
     d.x = r * c, d.y = r * s;
     d.pdf = MCSI_(keep)(ok, MCSI_1_PI / R / R);
@@ -1345,7 +1358,7 @@ MCSI_CORE MCSI_F MCSI_(disk_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) {
     return MCSI_(keep)(MCSI_(scale_ok)(R) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / R / R);
 }
 MCSI_CORE MCS_(vec2) MCSI_(uv)(MCSI_I ok, MCSI_F u1, MCSI_F u2) {
-    MCSI_F top = MCSI_(set)(0.99999994f), zero = MCSI_(set)(0.0f);
+    MCSI_F top = MCS_(set)(0.99999994f), zero = MCS_(set)(0.0f);
     return MCSI_(vec2)(MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u1, zero), top), zero),
                        MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u2, zero), top), zero));
 }
@@ -1358,6 +1371,7 @@ MCSI_CORE MCS_(sample2) MCS_(disk_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
 MCSI_FN MCSI_F MCS_(disk_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) { return MCSI_(disk_pdf)(R, x, y); }
 MCSI_FN MCS_(vec2) MCS_(disk_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
     MCSI_F p = x / R, q = y / R;
+    MCSI_REQUIRE(MCSI_(scale_ok)(R));
     return MCSI_(uv)(MCSI_(scale_ok)(R) & (p * p + q * q < 4.0f), p * p + q * q, MCSI_(atan2_turns)(q, p));
 }
 
@@ -1368,18 +1382,19 @@ MCSI_CORE MCS_(sample2) MCS_(concentric_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) 
     a = 2.0f * u1 - 1.0f, b = 2.0f * u2 - 1.0f;
     wide = MCSI_(abs)(a) > MCSI_(abs)(b);
     r = MCSI_(sel)(wide, a, b), q = MCSI_(sel)(wide, b, -a);
-    axis = MCSI_(sel)(wide, MCSI_(set)(0.0f), MCSI_(set)(0.25f));
-    q = 0.125f * (q / MCSI_(sel)(r == 0.0f, MCSI_(set)(1.0f), r));
+    axis = MCSI_(sel)(wide, MCS_(set)(0.0f), MCS_(set)(0.25f));
+    q = 0.125f * (q / MCSI_(sel)(r == 0.0f, MCS_(set)(1.0f), r));
     return MCSI_(sample2)(ok, R, r, axis + q); /* the radius has a sign: angles stay within an eighth of a turn of +x or +y */
 }
 MCSI_FN MCSI_F MCS_(concentric_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) { return MCSI_(disk_pdf)(R, x, y); }
 MCSI_FN MCS_(vec2) MCS_(concentric_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
     MCSI_F p = MCSI_(stored)(x / R), q = MCSI_(stored)(y / R), r2 = p * p + q * q,
-           r = MCSI_(sqrt)(MCSI_(sel)(r2 < 4.0f, r2, MCSI_(set)(0.0f)));
+           r = MCSI_(sqrt)(MCSI_(sel)(r2 < 4.0f, r2, MCS_(set)(0.0f)));
     MCSI_I wide = MCSI_(abs)(p) > MCSI_(abs)(q);
     MCSI_F along = MCSI_(sel)(wide, p, q), across = MCSI_(sel)(wide, q, p); /* the nearer axis, and the other one */
     MCSI_F eighths = 8.0f * MCSI_(atan2_turns)(MCSI_(abs)(across), MCSI_(abs)(along));
     MCSI_F major = MCSI_(with_sign)(r, along), minor = MCSI_(with_sign)(r * eighths, across);
+    MCSI_REQUIRE(MCSI_(scale_ok)(R));
     return MCSI_(uv)(MCSI_(scale_ok)(R) & (r2 < 4.0f), 0.5f + 0.5f * MCSI_(sel)(wide, major, minor),
                      0.5f + 0.5f * MCSI_(sel)(wide, minor, major));
 }
@@ -1412,12 +1427,12 @@ MCSI_CORE MCSI_F MCSI_(one_minus_z)(MCS_(vec3) w) {
 MCSI_CORE MCS_(dir) MCS_(sphere_sample)(MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    return MCSI_(around_z)(ok, 2.0f * MCSI_(sqrt)(u1 * (1.0f - u1)), 1.0f - 2.0f * u1, u2, MCSI_(set)(MCSI_1_4PI));
+    return MCSI_(around_z)(ok, 2.0f * MCSI_(sqrt)(u1 * (1.0f - u1)), 1.0f - 2.0f * u1, u2, MCS_(set)(MCSI_1_4PI));
 }
 MCSI_FN MCSI_F MCS_(sphere_pdf)(MCS_(vec3) w) {
     MCSI_I ok = MCSI_(always)();
     MCSI_(direction)(w, &ok);
-    return MCSI_(keep)(ok, MCSI_(set)(MCSI_1_4PI));
+    return MCSI_(keep)(ok, MCS_(set)(MCSI_1_4PI));
 }
 MCSI_FN MCS_(vec2) MCS_(sphere_invert)(MCS_(vec3) w) {
     MCSI_I ok = MCSI_(always)();
@@ -1428,12 +1443,12 @@ MCSI_FN MCS_(vec2) MCS_(sphere_invert)(MCS_(vec3) w) {
 MCSI_CORE MCS_(dir) MCS_(hemisphere_sample)(MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    return MCSI_(around_z)(ok, MCSI_(sqrt)(u1 * (2.0f - u1)), 1.0f - u1, u2, MCSI_(set)(MCSI_1_2PI));
+    return MCSI_(around_z)(ok, MCSI_(sqrt)(u1 * (2.0f - u1)), 1.0f - u1, u2, MCS_(set)(MCSI_1_2PI));
 }
 MCSI_FN MCSI_F MCS_(hemisphere_pdf)(MCS_(vec3) w) {
     MCSI_I ok = MCSI_(always)();
     MCSI_(above)(w, &ok);
-    return MCSI_(keep)(ok, MCSI_(set)(MCSI_1_2PI));
+    return MCSI_(keep)(ok, MCS_(set)(MCSI_1_2PI));
 }
 MCSI_FN MCS_(vec2) MCS_(hemisphere_invert)(MCS_(vec3) w) {
     MCSI_I ok = MCSI_(always)();
@@ -1459,7 +1474,7 @@ MCSI_FN MCS_(vec2) MCS_(cosine_invert)(MCS_(vec3) w) {
 }
 
 MCSI_FN MCSI_F MCS_(cone_from_sin2)(MCSI_F sin2) {
-    MCSI_F s = MCSI_(min)(MCSI_(max)(sin2, MCSI_(set)(0.0f)), MCSI_(set)(1.0f));
+    MCSI_F s = MCSI_(min)(MCSI_(max)(sin2, MCS_(set)(0.0f)), MCS_(set)(1.0f));
     return s / (1.0f + MCSI_(sqrt)(1.0f - s));
 }
 MCSI_CORE MCSI_I MCSI_(cone_ok)(MCSI_F k) { return (k >= 1e-30f) & (k <= 2.0f); }
@@ -1467,8 +1482,8 @@ MCSI_CORE MCS_(dir) MCS_(cone_sample)(MCSI_F k, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(cone_ok)(k);
     MCSI_F t;
     MCSI_REQUIRE(ok);
-    k = MCSI_(sel)(ok, k, MCSI_(set)(1e-30f)), u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok), t = k * u1;
-    return MCSI_(around_z)(ok, MCSI_(sqrt)(t * (2.0f - t)), 1.0f - t, u2, MCSI_1_2PI / k);
+    k = MCSI_(sel)(ok, k, MCS_(set)(1e-30f)), u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok), t = k * u1;
+    return MCSI_(around_z)(ok, MCSI_(sqrt)(t * ((2.0f - k) + k * (1.0f - u1))), 1.0f - t, u2, MCSI_1_2PI / k);
 }
 MCSI_FN MCSI_F MCS_(cone_pdf)(MCSI_F k, MCS_(vec3) w) {
     MCSI_I ok = MCSI_(cone_ok)(k);
@@ -1478,6 +1493,7 @@ MCSI_FN MCSI_F MCS_(cone_pdf)(MCSI_F k, MCS_(vec3) w) {
 }
 MCSI_FN MCS_(vec2) MCS_(cone_invert)(MCSI_F k, MCS_(vec3) w) {
     MCSI_I ok = MCSI_(cone_ok)(k);
+    MCSI_REQUIRE(ok);
     w = MCSI_(direction)(w, &ok);
     return MCSI_(uv)(ok, MCSI_(one_minus_z)(w) / k, MCSI_(atan2_turns)(w.y, w.x));
 }
@@ -1510,7 +1526,7 @@ MCSI_FN MCS_(vec2) MCS_(cone_invert)(MCSI_F k, MCS_(vec3) w) {
     }
 #define MCSI_BATCH_PLANE(NAME) \
     MCSI_BATCH(NAME##_sample_n, (float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf), \
-               (R, n, u1, u2, x, y, pdf), MCSI_LOOP_PLANE(MCS_(NAME##_sample)(MCSI_(set)(R), p, q)))
+               (R, n, u1, u2, x, y, pdf), MCSI_LOOP_PLANE(MCS_(NAME##_sample)(MCS_(set)(R), p, q)))
 #define MCSI_BATCH_DIR(NAME) \
     MCSI_BATCH(NAME##_sample_n, (size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf), \
                (n, u1, u2, x, y, z, pdf), MCSI_LOOP_DIR(MCS_(NAME##_sample)(p, q)))
@@ -1520,7 +1536,7 @@ MCSI_BATCH_DIR(sphere)
 MCSI_BATCH_DIR(hemisphere)
 MCSI_BATCH_DIR(cosine)
 MCSI_BATCH(cone_sample_n, (float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf),
-           (k, n, u1, u2, x, y, z, pdf), MCSI_LOOP_DIR(MCS_(cone_sample)(MCSI_(set)(k), p, q)))
+           (k, n, u1, u2, x, y, z, pdf), MCSI_LOOP_DIR(MCS_(cone_sample)(MCS_(set)(k), p, q)))
 #endif
 
 /* ==== [frame] an orthonormal frame from a normal ===============================================================================
@@ -1535,14 +1551,14 @@ MCSI_FN MCS_(frame) MCS_(frame_make)(MCS_(vec3) n) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F sign, a, b;
     n = MCSI_(direction)(n, &ok);
-    sign = MCSI_(with_sign)(MCSI_(set)(1.0f), n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+    sign = MCSI_(with_sign)(MCS_(set)(1.0f), n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
     f.s = MCSI_(vec3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
     f.t = MCSI_(vec3)(b, sign + n.y * n.y * a, -n.y);
     f.n = n;
     return f;
 }
 /* Any finite v; components that are NaN or beyond 1e37 count as 0. */
-MCSI_CORE MCSI_F MCSI_(finite)(MCSI_F x) { return MCSI_(sel)(MCSI_(abs)(x) <= 1e37f, x, MCSI_(set)(0.0f)); }
+MCSI_CORE MCSI_F MCSI_(finite)(MCSI_F x) { return MCSI_(sel)(MCSI_(abs)(x) <= 1e37f, x, MCS_(set)(0.0f)); }
 MCSI_CORE MCS_(vec3) MCSI_(to_world)(const MCS_(frame) * f, MCS_(vec3) v) {
     return MCSI_(vec3)(f->s.x * v.x + f->t.x * v.y + f->n.x * v.z, f->s.y * v.x + f->t.y * v.y + f->n.y * v.z,
                        f->s.z * v.x + f->t.z * v.y + f->n.z * v.z);
@@ -1585,8 +1601,8 @@ MCSI_FN MCS_(vec3) MCS_(half)(MCS_(vec3) wo, MCS_(vec3) wi) {
     wo = MCSI_(direction)(wo, &ok), wi = MCSI_(direction)(wi, &ok);
     h = MCSI_(sum)(wo, wi);
     l = MCSI_(max)(MCSI_(max)(MCSI_(abs)(h.x), MCSI_(abs)(h.y)), MCSI_(abs)(h.z)), some = l > 0.0f;
-    l = MCSI_(sel)(some, l, MCSI_(set)(1.0f));
-    h = MCSI_(vec3)(h.x / l, h.y / l, MCSI_(sel)(some, h.z / l, MCSI_(set)(1.0f)));
+    l = MCSI_(sel)(some, l, MCS_(set)(1.0f));
+    h = MCSI_(vec3)(h.x / l, h.y / l, MCSI_(sel)(some, h.z / l, MCS_(set)(1.0f)));
     l = MCSI_(sqrt)(MCSI_(dot)(h, h));
     return MCSI_(vec3)(h.x / l, h.y / l, h.z / l);
 }
@@ -1598,7 +1614,7 @@ MCSI_FN MCSI_F MCS_(cos_d)(MCS_(vec3) wo, MCS_(vec3) wi) {
     return MCSI_(keep)(ok, 0.5f * MCSI_(sqrt)(MCSI_(dot)(h, h)));
 }
 MCSI_FN MCSI_F MCS_(schlick)(MCSI_F f0, MCSI_F cos_d) {
-    MCSI_F zero = MCSI_(set)(0.0f), one = MCSI_(set)(1.0f), m, m2;
+    MCSI_F zero = MCS_(set)(0.0f), one = MCS_(set)(1.0f), m, m2;
     f0 = MCSI_(min)(MCSI_(max)(f0, zero), one), m = 1.0f - MCSI_(min)(MCSI_(max)(cos_d, zero), one), m2 = m * m;
     return f0 + (1.0f - f0) * (m2 * m2 * m);
 }
@@ -1720,8 +1736,8 @@ MCSI_CORE MCSI_I MCSI_(cancelled)(MCSI_F wo_z, MCSI_F d, MCSI_F p2) { return (2.
  *                    mcs_frame_make(R). What dips below the surface is lost mass. weight = (n+2)/(n+1) wi.z.
  * parameters         n in [0, 1e9] (0: uniform hemisphere); n < 0 or NaN is bad, larger n count as 1e9
  * cost               1 log1p, 1 exp, 1 sqrt, 1 sincos, 1 div; pdf of a direction 1 log1p, 1 exp, 1 div
- * accuracy           pdf of u 0.4 E (n below 1: 0.7 E), of w 0.4 E, |w| 4 ulp; sin(theta) relative to the lobe: from
- *                    1 - c = -expm1(L), L = ln(1-u1)/(n+1), and from tan^2 by a cross product, because cos alone cannot hold a
+ * accuracy           pdf of u 0.4 E (n below 1: 0.7 E, below 0.1: 2.6 E), of w 0.4 E, |w| 4 ulp; sin(theta) relative to the lobe:
+ *                    from 1 - c = -expm1(L), L = ln(1-u1)/(n+1), and from tan^2 by a cross product, because cos alone cannot hold a
  *                    narrow lobe (powf(cos, n) is 35 % off at n = 1e7)
  * source             Phong 1975; normalisation Lafortune and Willems 1994, "Using the modified Phong reflectance model"
  * prefer             GGX for anything measured: this lobe loses up to half its mass at grazing incidence */
@@ -1732,7 +1748,7 @@ typedef struct {
 MCSI_FN MCS_(phong) MCS_(phong_make)(MCSI_F n) {
     MCS_(phong) m;
     MCSI_I ok = n >= 0.0f;
-    MCSI_F none = MCSI_(set)(0.0f);
+    MCSI_F none = MCS_(set)(0.0f);
     MCSI_REQUIRE(ok);
     m.n = MCSI_(within)(ok, n, 0.0f, 1e9f);
     m.power = 1.0f / (m.n + 1.0f);
@@ -1743,7 +1759,7 @@ MCSI_FN MCS_(phong) MCS_(phong_make)(MCSI_F n) {
 }
 /* cos^n from tan^2. */
 MCSI_CORE MCSI_F MCSI_(cos_power)(MCSI_F n, MCSI_F tan2) {
-    return MCSI_(exp_neg)(-0.5f * n * MCSI_(log1p)(MCSI_(min)(tan2, MCSI_(set)(1e37f))));
+    return MCSI_(exp_neg)(-0.5f * n * MCSI_(log1p)(MCSI_(min)(tan2, MCS_(set)(1e37f))));
 }
 
 MCSI_CORE MCS_(dir) MCS_(phong_lobe_sample)(const MCS_(phong) * m, MCSI_F u1, MCSI_F u2) {
@@ -1762,8 +1778,8 @@ MCSI_FN MCS_(vec2) MCS_(phong_lobe_invert)(const MCS_(phong) * m, MCS_(vec3) w) 
     MCSI_I ok = m->lobe > 0.0f;
     MCSI_F tan2, d;
     w = MCSI_(above)(w, &ok);
-    tan2 = MCSI_(min)((w.x * w.x + w.y * w.y) / (w.z * w.z), MCSI_(set)(1e37f));
-    MCSI_(exp_both)(MCSI_(max)(-0.5f * (m->n + 1.0f) * MCSI_(log1p)(tan2), MCSI_(set)(-80.0f)), &d);
+    tan2 = MCSI_(min)((w.x * w.x + w.y * w.y) / (w.z * w.z), MCS_(set)(1e37f));
+    MCSI_(exp_both)(MCSI_(max)(-0.5f * (m->n + 1.0f) * MCSI_(log1p)(tan2), MCS_(set)(-80.0f)), &d);
     return MCSI_(uv)(ok, -d, MCSI_(atan2_turns)(w.y, w.x));
 }
 
@@ -1799,14 +1815,14 @@ MCSI_FN MCSI_F MCS_(phong_eval)(const MCS_(phong) * m, MCS_(vec3) wo, MCS_(vec3)
 }
 MCSI_FN MCSI_F MCS_(phong_weight)(const MCS_(phong) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
     MCSI_I ok = MCSI_(always)();
-    MCSI_(above)(wo, &ok), MCSI_(above)(wi, &ok);
-    return MCSI_(keep)(ok, m->gain * wi.z);
+    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok);
+    return MCSI_(keep)(ok & (MCSI_(exact_dot)(MCSI_(vec3)(-wo.x, -wo.y, wo.z), wi) > 0.0f), m->gain * wi.z);
 }
 #ifndef MCS_NO_BATCH
 MCSI_CORE MCS_(phong) MCSI_(phong_spread)(const mcs_phong *m) {
     MCS_(phong) all;
-    all.n = MCSI_(set)(m->n), all.power = MCSI_(set)(m->power), all.lobe = MCSI_(set)(m->lobe);
-    all.value = MCSI_(set)(m->value), all.gain = MCSI_(set)(m->gain);
+    all.n = MCS_(set)(m->n), all.power = MCS_(set)(m->power), all.lobe = MCS_(set)(m->lobe);
+    all.value = MCS_(set)(m->value), all.gain = MCS_(set)(m->gain);
     return all;
 }
 #endif
@@ -1827,14 +1843,14 @@ MCSI_CORE MCSI_(slopes) MCSI_(slopes_make)(MCSI_F ax, MCSI_F ay) {
     MCSI_REQUIRE(ok);
     m.ax = MCSI_(within)(ok, ax, 1e-7f, 1e4f), m.ay = MCSI_(within)(ok, ay, 1e-7f, 1e4f);
     m.inv_ax = 1.0f / m.ax, m.inv_ay = 1.0f / m.ay;
-    m.norm = MCSI_(sel)(ok, MCSI_1_PI * m.inv_ax * m.inv_ay, MCSI_(set)(0.0f));
+    m.norm = MCSI_(sel)(ok, MCSI_1_PI * m.inv_ax * m.inv_ay, MCS_(set)(0.0f));
     return m;
 }
 #ifndef MCS_NO_BATCH
 MCSI_CORE MCSI_(slopes) MCSI_(slopes_spread)(const mcsi_slopes *m) {
     MCSI_(slopes) all;
-    all.ax = MCSI_(set)(m->ax), all.ay = MCSI_(set)(m->ay), all.norm = MCSI_(set)(m->norm);
-    all.inv_ax = MCSI_(set)(m->inv_ax), all.inv_ay = MCSI_(set)(m->inv_ay);
+    all.ax = MCS_(set)(m->ax), all.ay = MCS_(set)(m->ay), all.norm = MCS_(set)(m->norm);
+    all.inv_ax = MCS_(set)(m->inv_ax), all.inv_ay = MCS_(set)(m->inv_ay);
     return all;
 }
 #endif
@@ -1842,7 +1858,7 @@ MCSI_CORE MCSI_(slopes) MCSI_(slopes_spread)(const mcsi_slopes *m) {
 MCSI_CORE MCS_(vec3) MCSI_(slope_vector)(const MCSI_(slopes) * m, MCSI_F r, MCSI_F turns) {
     MCSI_F s, c;
     MCSI_(sincos_turns)(turns, &s, &c);
-    return MCSI_(vec3)(m->ax * (r * c), m->ay * (r * s), MCSI_(set)(1.0f));
+    return MCSI_(vec3)(m->ax * (r * c), m->ay * (r * s), MCS_(set)(1.0f));
 }
 /* The half-vector of slopes of radius r with density g / cos^3 per solid angle. */
 MCSI_CORE MCS_(dir) MCSI_(slope_dir)(const MCSI_(slopes) * m, MCSI_I ok, MCSI_F r, MCSI_F g, MCSI_F u2) {
@@ -1880,7 +1896,7 @@ MCSI_CORE MCS_(brdf)
         MCSI_I off = MCSI_(cancelled)(wo.z, *d, *p2);
         if (MCSI_(rarely)(off)) *d = MCSI_(slope_cosine)(*m, wo, r, u2, off, *d);
     }
-    return MCSI_(brdf)(ok & (*d > 0.0f), MCSI_(mirror)(wo, p, 2.0f * *d / *p2), g * (*p2 * *p2) / (4.0f * *d), MCSI_(set)(1.0f));
+    return MCSI_(brdf)(ok & (*d > 0.0f), MCSI_(mirror)(wo, p, 2.0f * *d / *p2), g * (*p2 * *p2) / (4.0f * *d), MCS_(set)(1.0f));
 }
 MCSI_CORE MCS_(vec2) MCSI_(slope_invert)(const MCSI_(slopes) * m, MCSI_I ok, MCS_(vec3) h, MCSI_F u1) {
     return MCSI_(uv)(ok & (m->norm > 0.0f), u1, MCSI_(atan2_turns)(h.y * m->inv_ay, h.x * m->inv_ax));
@@ -1931,7 +1947,7 @@ MCSI_CORE MCS_(vec2) MCSI_(gauss_h_invert)(const MCSI_(slopes) * m, MCS_(vec3) h
     MCSI_I ok = MCSI_(always)();
     MCSI_F d;
     h = MCSI_(above)(h, &ok);
-    MCSI_(exp_both)(-MCSI_(min)(MCSI_(slope_square)(m, h), MCSI_(set)(80.0f)), &d);
+    MCSI_(exp_both)(-MCSI_(min)(MCSI_(slope_square)(m, h), MCS_(set)(80.0f)), &d);
     return MCSI_(slope_invert)(m, ok, h, -d);
 }
 /* Density of wi = p_h/(4 wo.h) = norm exp(-e) |H|^2/(2 H.z^3). */
@@ -2010,9 +2026,9 @@ MCSI_FN MCS_(beckmann) MCS_(beckmann_make)(MCSI_F ax, MCSI_F ay) {
 /* z L(w): L = exp(-a^2)/(2 a sqrt pi) - erfc(a)/2 with a = z/t, t = |(ax x, ay y)|; times z it stays finite at the horizon. */
 MCSI_CORE MCSI_F MCSI_(beckmann_shadow)(const MCSI_(slopes) * m, MCS_(vec3) w) {
     MCSI_F x = m->ax * w.x, y = m->ay * w.y, t = MCSI_(sqrt)(x * x + y * y);
-    MCSI_F a = w.z / MCSI_(max)(t, MCSI_(set)(FLT_MIN));
+    MCSI_F a = w.z / MCSI_(max)(t, MCS_(set)(FLT_MIN));
     MCSI_F l = t * 0.282094792f * MCSI_(exp_neg)(-a * a) - w.z * MCSI_(normal_tail)(a * 1.41421356f);
-    return MCSI_(max)(l, MCSI_(set)(0.0f));
+    return MCSI_(max)(l, MCS_(set)(0.0f));
 }
 MCSI_CORE MCS_(dir) MCS_(beckmann_h_sample)(const MCS_(beckmann) * m, MCSI_F u1, MCSI_F u2) {
     return MCSI_(gauss_h_sample)(&m->s, u1, u2);
@@ -2087,8 +2103,8 @@ MCSI_FN MCS_(ggx) MCS_(ggx_make)(MCSI_F ax, MCSI_F ay) {
     MCS_(ggx) m;
     MCSI_F wide, least;
     m.s = MCSI_(slopes_make)(ax, ay);
-    wide = 0.25f * MCSI_(max)(m.s.ax, m.s.ay), least = MCSI_(min)(MCSI_(min)(m.s.ax, m.s.ay), MCSI_(set)(1.0f));
-    m.wide = MCSI_(sel)(wide > least, wide * wide, MCSI_(set)(0.0f));
+    wide = 0.25f * MCSI_(max)(m.s.ax, m.s.ay), least = MCSI_(min)(MCSI_(min)(m.s.ax, m.s.ay), MCS_(set)(1.0f));
+    m.wide = MCSI_(sel)(wide > least, wide * wide, MCS_(set)(0.0f));
     return m;
 }
 MCSI_FN MCSI_I MCS_(is_mirror)(MCSI_F ax, MCSI_F ay) { return (ax < 1e-7f) & (ay < 1e-7f); }
@@ -2136,7 +2152,7 @@ MCSI_FN MCSI_F MCS_(ggx_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) h) {
 MCSI_FN MCS_(vec2) MCS_(ggx_h_invert)(const MCS_(ggx) * m, MCS_(vec3) h) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F e;
-    h = MCSI_(above)(h, &ok), e = MCSI_(min)(MCSI_(slope_square)(&m->s, h), MCSI_(set)(1e30f));
+    h = MCSI_(above)(h, &ok), e = MCSI_(min)(MCSI_(slope_square)(&m->s, h), MCS_(set)(1e30f));
     return MCSI_(slope_invert)(&m->s, ok, h, e / (1.0f + e));
 }
 MCSI_CORE MCS_(brdf) MCS_(ggx_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
@@ -2180,12 +2196,12 @@ MCSI_CORE MCSI_(visible) MCSI_(visible_make)(const MCSI_(slopes) * m, MCS_(vec3)
     MCSI_F x = m->ax * wo.x * 1.09951163e12f, y = m->ay * wo.y * 1.09951163e12f,
            r = MCSI_(sqrt)(x * x + y * y); /* 2^40: no underflow */
     MCSI_I off_axis = r > 0.0f;
-    MCSI_F inv = 1.0f / MCSI_(sel)(off_axis, r, MCSI_(set)(1.0f)), less = MCSI_(set)(0.0f); /* 1 - k */
-    v.x_dir = MCSI_(sel)(off_axis, x * inv, MCSI_(set)(1.0f)), v.y_dir = y * inv;
+    MCSI_F inv = 1.0f / MCSI_(sel)(off_axis, r, MCS_(set)(1.0f)), less = MCS_(set)(0.0f); /* 1 - k */
+    v.x_dir = MCSI_(sel)(off_axis, x * inv, MCS_(set)(1.0f)), v.y_dir = y * inv;
     r = r * 9.09494702e-13f, v.z = wo.z, v.t = MCSI_(sqrt)(r * r + wo.z * wo.z);
     v.i_sin = r / v.t, v.i_z = wo.z / v.t, v.one_minus_iz = v.i_sin * v.i_sin / (1.0f + v.i_z);
     if (bounded) {
-        MCSI_F a = MCSI_(min)(MCSI_(min)(m->ax, m->ay), MCSI_(set)(1.0f)), s = 1.0f + MCSI_(sqrt)(wo.x * wo.x + wo.y * wo.y);
+        MCSI_F a = MCSI_(min)(MCSI_(min)(m->ax, m->ay), MCS_(set)(1.0f)), s = 1.0f + MCSI_(sqrt)(wo.x * wo.x + wo.y * wo.y);
         less = a * a * (s * s + wo.z * wo.z) / (s * s + a * a * wo.z * wo.z);
     }
     v.cap = 1.0f + (1.0f - less) * v.i_z, v.lift = less * v.i_z, v.denominator = (1.0f - less) * wo.z + v.t;
@@ -2238,7 +2254,7 @@ MCSI_CORE MCSI_(visible_half)
     MCSI_F s = MCSI_(sqrt)(q * (v->one_minus_iz + hz)), r, along, across; /* sin^2 = (1 - c.z) (1 + c.z) */
     MCSI_(sincos_behind)(u1, &sine, &cosine, &behind, &one_plus);
     behind = behind & (hz < 1.0f);
-    h.scale = MCSI_(sel)(behind, v->i_sin + s, MCSI_(set)(1.0f));
+    h.scale = MCSI_(sel)(behind, v->i_sin + s, MCS_(set)(1.0f));
     r = s * h.scale;
     along = MCSI_(sel)(behind, r * one_plus + (hz - 2.0f * v->i_z) * hz, s * cosine + v->i_sin);
     across = r * sine, hz = hz * h.scale;
@@ -2347,7 +2363,7 @@ MCSI_FN MCSI_F MCS_(ggx_bounded_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_
 #ifndef MCS_NO_BATCH
 MCSI_CORE MCS_(ggx) MCSI_(ggx_spread)(const mcs_ggx *m) {
     MCS_(ggx) all;
-    all.s = MCSI_(slopes_spread)(&m->s), all.wide = MCSI_(set)(m->wide);
+    all.s = MCSI_(slopes_spread)(&m->s), all.wide = MCS_(set)(m->wide);
     return all;
 }
 #endif
@@ -2370,7 +2386,8 @@ MCSI_BATCH_VALUE(ggx_bounded_pdf, ggx)
  *                    weight wi.z/max(wo.z, wi.z) <= 1
  * parameters         nu, nv in [0, 1e9]; negative or NaN is bad, larger count as 1e9
  * cost               1 log1p, 1 exp, 1 sincos, 1 sqrt, 2 div, weight 1 div; pdf of a direction 1 log1p, 1 exp, 1 sqrt, 3 div
- * accuracy           pdf of u 0.4 E (an exponent below 1: 1 E), of h, wi 0.3 E, eval 0.3 E, weight 0.1 E, |h|, |wi| 4 ulp
+ * accuracy           pdf of u 0.4 E (an exponent below 1: 1 E, below 0.1: 2.6 E), of h, wi 0.3 E, eval 0.3 E, weight 0.1 E, |h| and
+ *                    |wi| 4 ulp
  * source             Ashikhmin and Shirley 2000, "An anisotropic Phong BRDF model", equations 4, 6, 8, 10 */
 
 typedef struct {
@@ -2382,12 +2399,12 @@ MCSI_FN MCS_(ashikhmin) MCS_(ashikhmin_make)(MCSI_F nu, MCSI_F nv) {
     MCSI_REQUIRE(ok);
     m.nu = MCSI_(within)(ok, nu, 0.0f, 1e9f), m.nv = MCSI_(within)(ok, nv, 0.0f, 1e9f);
     m.u = 1.0f / (m.nu + 1.0f), m.v = 1.0f / (m.nv + 1.0f), m.stretch = MCSI_(sqrt)((m.nu + 1.0f) / (m.nv + 1.0f));
-    m.norm = MCSI_(sel)(ok, MCSI_(sqrt)(m.nu + 1.0f) * MCSI_(sqrt)(m.nv + 1.0f) * MCSI_1_2PI, MCSI_(set)(0.0f));
+    m.norm = MCSI_(sel)(ok, MCSI_(sqrt)(m.nu + 1.0f) * MCSI_(sqrt)(m.nv + 1.0f) * MCSI_1_2PI, MCS_(set)(0.0f));
     return m;
 }
 MCSI_CORE MCSI_F MCSI_(ashikhmin_exponent)(const MCS_(ashikhmin) * m, MCS_(vec3) h) {
-    MCSI_F x2 = h.x * h.x, y2 = h.y * h.y;
-    return (m->nu * x2 + m->nv * y2) / MCSI_(max)(x2 + y2, MCSI_(set)(FLT_MIN));
+    MCSI_F x = h.x * 1.07374182e+09f, y = h.y * 1.07374182e+09f, x2 = x * x, y2 = y * y;
+    return (m->nu * x2 + m->nv * y2) / MCSI_(max)(x2 + y2, MCS_(set)(FLT_MIN));
 }
 MCSI_CORE MCSI_F MCSI_(tan2)(MCS_(vec3) h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
 
@@ -2420,8 +2437,8 @@ MCSI_FN MCS_(vec2) MCS_(ashikhmin_h_invert)(const MCS_(ashikhmin) * m, MCS_(vec3
     MCSI_I ok = m->norm > 0.0f;
     MCSI_F l, d;
     h = MCSI_(above)(h, &ok);
-    l = MCSI_(log1p)(MCSI_(min)(MCSI_(tan2)(h), MCSI_(set)(1e37f)));
-    MCSI_(exp_both)(MCSI_(max)(-0.5f * (MCSI_(ashikhmin_exponent)(m, h) + 1.0f) * l, MCSI_(set)(-80.0f)), &d);
+    l = MCSI_(log1p)(MCSI_(min)(MCSI_(tan2)(h), MCS_(set)(1e37f)));
+    MCSI_(exp_both)(MCSI_(max)(-0.5f * (MCSI_(ashikhmin_exponent)(m, h) + 1.0f) * l, MCS_(set)(-80.0f)), &d);
     return MCSI_(uv)(ok, -d, MCSI_(atan2_turns)(h.y, h.x * m->stretch));
 }
 /* h.wo of the lanes `off` again. */
@@ -2444,7 +2461,7 @@ MCSI_CORE MCS_(brdf) MCS_(ashikhmin_sample)(const MCS_(ashikhmin) * m, MCS_(vec3
     wo = MCSI_(above)(wo, &ok), u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
     h = MCSI_(ashikhmin_half)(m, u1, u2, &p, &scale), d = MCSI_(dot)(h, wo);
     if (MCSI_(rarely)(wo.z < 0.25f)) {
-        MCSI_I off = MCSI_(cancelled)(wo.z, d, MCSI_(set)(1.0f));
+        MCSI_I off = MCSI_(cancelled)(wo.z, d, MCS_(set)(1.0f));
         if (MCSI_(rarely)(off)) d = MCSI_(ashikhmin_cosine)(*m, wo, h.z, scale, u2, off, d);
     }
     wi = MCSI_(mirror)(wo, h, 2.0f * d * (2.0f - MCSI_(dot)(h, h))); /* 1/|h|^2 near 1 */
@@ -2469,8 +2486,8 @@ MCSI_FN MCSI_F MCS_(ashikhmin_weight)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, 
 #ifndef MCS_NO_BATCH
 MCSI_CORE MCS_(ashikhmin) MCSI_(ashikhmin_spread)(const mcs_ashikhmin *m) {
     MCS_(ashikhmin) all;
-    all.nu = MCSI_(set)(m->nu), all.nv = MCSI_(set)(m->nv), all.norm = MCSI_(set)(m->norm);
-    all.u = MCSI_(set)(m->u), all.v = MCSI_(set)(m->v), all.stretch = MCSI_(set)(m->stretch);
+    all.nu = MCS_(set)(m->nu), all.nv = MCS_(set)(m->nv), all.norm = MCS_(set)(m->norm);
+    all.u = MCS_(set)(m->u), all.v = MCS_(set)(m->v), all.stretch = MCS_(set)(m->stretch);
     return all;
 }
 #endif
@@ -2485,11 +2502,12 @@ MCSI_BATCH_VALUE(ashikhmin_eval, ashikhmin)
  * mcs_mis_power(pf, pg)     pf^2/(pf^2+pg^2)            the power heuristic, beta = 2
  * mcs_mix_pdf(c, pf, pg)    c pf + (1-c) pg             the density of one-sample MIS: choose f with probability c
  * Weights of a sample drawn from f, in [0,1]; multiply the densities by the sample counts when those differ. From g/f, so that
- * 1e30, 1e-30 and infinity are fine; 0 where pf is 0, negative or NaN; the two weights of a sample add up to 1. 1-2 div. */
+ * 1e30, 1e-30 and infinity are fine; 0 where pf is 0 or one of them is negative or NaN; the two weights of a sample add up to 1. A
+ * mixture takes bad densities for 0 and the nearest c in [0,1], 0 for NaN. 1-2 div. */
 
 MCSI_CORE MCSI_F MCSI_(mis_ratio)(MCSI_F pf, MCSI_F pg, MCSI_I *ok) {
     *ok = (pf > 0.0f) & (pg >= 0.0f);
-    return MCSI_(sel)(pf == pg, MCSI_(set)(1.0f), pg / MCSI_(sel)(*ok, pf, MCSI_(set)(1.0f)));
+    return MCSI_(sel)(pf == pg, MCS_(set)(1.0f), pg / MCSI_(sel)(*ok, pf, MCS_(set)(1.0f)));
 }
 MCSI_FN MCSI_F MCS_(mis_balance)(MCSI_F pf, MCSI_F pg) {
     MCSI_I ok;
@@ -2502,8 +2520,9 @@ MCSI_FN MCSI_F MCS_(mis_power)(MCSI_F pf, MCSI_F pg) {
     return MCSI_(keep)(ok, 1.0f / (1.0f + r * r));
 }
 MCSI_FN MCSI_F MCS_(mix_pdf)(MCSI_F c, MCSI_F pf, MCSI_F pg) {
-    c = MCSI_(min)(MCSI_(max)(c, MCSI_(set)(0.0f)), MCSI_(set)(1.0f));
-    return MCSI_(keep)(MCSI_(always)(), c * MCSI_(keep)(pf > 0.0f, pf) + (1.0f - c) * MCSI_(keep)(pg > 0.0f, pg));
+    MCSI_I ok = c == c;
+    c = MCSI_(min)(MCSI_(max)(c, MCS_(set)(0.0f)), MCS_(set)(1.0f));
+    return MCSI_(keep)(ok, c * MCSI_(keep)(pf > 0.0f, pf) + (1.0f - c) * MCSI_(keep)(pg > 0.0f, pg));
 }
 
 #if MCSI_W == 1
@@ -2511,15 +2530,17 @@ MCSI_FN MCSI_F MCS_(mix_pdf)(MCSI_F c, MCSI_F pf, MCSI_F pg) {
 /* ==== [tables] densities given as numbers ======================================================================================
  * Built once into memory of the caller's (8-byte aligned, mcs_x_bytes(n) bytes), then constant; no pointers inside, so a table may
  * be copied, written to a file or shared. Probabilities are integers that add up to exactly 2^31: sample, pdf and pmf agree
- * exactly, every entry that is not zero can be drawn, and zero entries are never drawn. Negative, NaN and infinite entries count as
- * 0.
+ * exactly, every entry that is not zero has a share (a u of 24 bits may miss it below 2^-24), and zero entries are never drawn.
+ * Negative, NaN and infinite entries count as 0. The x of pwc and pwl is a float: beyond 2^24 cells it cannot tell them apart.
  *
  *   pwc        piecewise constant density on [0,1], n cells           mcs_pwc_build from n samples, _build_fn from a function
  *              (4-point Gauss per cell); mcs_pwc_sample(t, u) -> {x, pdf, cell}, _pdf(t, x), _invert(t, x)
  *   discrete   the same table as n probabilities                      mcs_discrete_sample(t, u) -> {i, pmf, u rescaled for reuse}
  *   pwl        piecewise linear density on [0,1], n cells, n+1 vertices
  *   alias      n probabilities by the alias method                    one look-up, but the map jumps about: stratified u are lost.
- *              For independent u and tables much larger than the cache only.
+ *              For independent u and tables much larger than the cache only. mcs_alias_sample(t, u) -> {i, pmf, u} finds a
+ *              column and the place in it by the 24 bits of one u: frequencies are off by up to n 2^-24 of 1/n. Beyond some
+ *              thousand entries use mcs_alias_sample_bits(t, b1, b2), 32 random bits each
  *
  * _build returns MCS_OK, MCS_UNIFORM (all entries zero: a uniform table was made), MCS_ERR_ARG (NULL or misaligned), MCS_ERR_SIZE
  * (n is 0 or too large), MCS_ERR_MEMORY (too few bytes). After an error nothing was written. t->bad counts bad entries, t->total is
@@ -2659,10 +2680,16 @@ MCS_FN float mcsi_in_cell(uint32_t i, double f, uint32_t n) {
     float x = mcsi_below_one(((double)i + f) / n);
     while ((double)x * n >= (double)i + 1.0) x = mcsi_from_bits(mcsi_bits(x) - 1);
     while ((double)x * n < (double)i) x = mcsi_from_bits(mcsi_bits(x) + 1);
-    return x;
+    return mcsi_min(x, 0.99999994f);
 }
+/* One less than the alignment of the caller's memory: that of a double, 8 bytes but on i386. */
+typedef struct {
+    char before;
+    double at;
+} mcsi_aligned;
+#define MCSI_ALIGN (offsetof(mcsi_aligned, at) - 1)
 MCS_FN mcs_status mcsi_table_check(const void *t, size_t bytes, const void *source, size_t need) {
-    if (!t || !source || ((uintptr_t)t & 7u)) return MCS_ERR_ARG;
+    if (!t || !source || ((uintptr_t)t & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (need == 0) return MCS_ERR_SIZE;
     return bytes < need ? MCS_ERR_MEMORY : MCS_OK;
 }
@@ -2874,9 +2901,8 @@ MCS_FN mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, ui
         uint64_t upto;
         sum += v, seen += v > 0.0;
         part = some ? sum / t->total * (double)(all - some) : (double)seen * MCSI_ONE;
-        upto = seen == (some ? some : n)
-                   ? all
-                   : (some ? seen : 0) + (uint64_t)(part < (double)(all - some) ? part : (double)(all - some));
+        upto = (uint64_t)part, upto = upto < all - some ? upto : all - some; /* their difference as double rounds, up to 2^54 */
+        upto = seen == (some ? some : n) ? all : (some ? seen : 0) + upto;
         c[i].weight = upto - given, given = upto;
         mcsi_column_leave(&c[i], c[i].weight);
     }
@@ -2897,17 +2923,22 @@ MCS_FN mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, ui
         if (c[i].cut == MCSI_ONE) c[i].alias = i;
     return some ? MCS_OK : MCS_UNIFORM;
 }
-MCS_FN mcs_pick mcs_alias_sample(const mcs_alias *t, float u) {
+MCSI_CORE mcs_pick mcsi_alias_pick(const mcs_alias *t, uint32_t i, double place, int ok) {
     mcs_pick c;
-    int32_t ok = 1;
-    double U = (double)mcsi_unit(u, &ok) * t->n, place;
-    uint32_t i = (uint32_t)U;
     const mcsi_column *k = mcsi_columns(t) + i;
-    place = (U - i) * MCSI_ONE;
     c.i = place < k->cut ? i : k->alias;
     c.u = mcsi_below_one(place < k->cut ? place / k->cut : (place - k->cut) / (MCSI_ONE - k->cut));
     c.pmf = ok ? (float)((double)mcsi_columns(t)[c.i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
     return c;
+}
+MCS_FN mcs_pick mcs_alias_sample(const mcs_alias *t, float u) {
+    int32_t ok = 1;
+    double U = (double)mcsi_unit(u, &ok) * t->n;
+    return mcsi_alias_pick(t, (uint32_t)U, (U - (uint32_t)U) * MCSI_ONE, ok);
+}
+MCS_FN mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t b2) {
+    uint64_t U = (uint64_t)b1 * t->n + ((uint64_t)b2 * t->n >> 32); /* 2^32 times that of sample */
+    return mcsi_alias_pick(t, (uint32_t)(U >> 32), 0.5 * (uint32_t)U, 1);
 }
 MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
     return i < t->n ? (float)((double)mcsi_columns(t)[i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
@@ -2934,28 +2965,32 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  *                                texels than a float u can tell apart
  *   mcs_env_pdf(e, w); mcs_env_texel(e, w) -> the same struct, for radiance and density in one look-up
  *   mcs_env_invert(e, w) -> (u1, u2)
- *   mcs_env_sample_n, _pdf_n     arrays; memory is fetched ahead, so these are the fast forms for large maps
+ *   mcs_env_sample_n, _texel_n, _pdf_n   arrays; memory is fetched ahead, so these are the fast forms for large maps
  *   mcs_env_check(e, bytes)      whether memory (a file read or mapped) is a table: MCS_OK; MCS_ERR_MEMORY when cut short,
- *                                MCS_ERR_FORMAT when it is none, of another version or byte order, or damaged. Reads all of it.
+ *                                MCS_ERR_FORMAT when it is none, of another version or byte order, or damaged. Reads all
+ *                                that samplers use
  *   mcs_env_mean(&image)         mean luminance over the sphere
  *   mcs_env_weight(e, pdf)       1/pdf, for an estimator without other strategies: 0 and MCS_ASSERT for a map with a floor
  *   mcs_env_window_*             the same for a rectangle of texels: `rows` rows from `row`, `cols` columns from `col`, across the
  *                                seam where need be. _bytes(rows); _build(m, bytes, e, row, rows, col, cols), MCS_UNIFORM when it
  *                                is black; the window holds no pointer and goes with any table of the same image
- *   e->frame                     orientation: world directions of local x, y, z. build makes it the axes; it may be changed at any
- *                                time
+ *   e->frame                     orientation: world directions of local x, y, z, orthonormal. build makes it the axes; it may be
+ *                                changed at any time but for products built with it. Seen from inside, +z up, columns run to the
+ *                                left: a mirrored frame (t negated) shows a photograph as it was taken
  *
  * Tables are exact as in [tables]: texel probabilities are integers over 2^31 by row and by column; a texel that is not black can
- * be drawn, black ones never are, and texel and pdf of the returned float direction are those of the sample (a place within a
- * rounding error of the texel's border is moved inside; with the axes as frame). Bad texels count as black (e->bad). e->total is
- * the luminance integrated over the sphere. Maps are monotone: stratified u stay stratified.
+ * be drawn, black ones never are, and texel and pdf of the returned float direction are those of the sample, as samples keep a
+ * rounding error off the borders of their texel (with the axes as frame: the rounding of another one's takes up to 2 % of the
+ * samples near the poles of a map of 4096 columns to the next texel). Bad texels count as black (e->bad). e->total is the luminance
+ * integrated over the sphere. Maps are monotone: stratified u stay stratified.
  * Bilinear: weights are the texels filtered by (1 2 1)/4 along rows and columns, at least a quarter of what a filtered look-up
  * finds anywhere in the texel: L/pdf is at most 4 times the filtered total.
  * MIS compensation (Karlik et al. 2019): with image.floor = mcs_env_mean(&image), what is darker than the mean is left to the other
  * strategy. Such a table is incomplete (e->incomplete): its density is 0 where the map is not black.
  * Skipped: a constant map is the uniform sphere and its rows are never read; an all-black one likewise, build returns MCS_UNIFORM;
  * rows without light are not written, texels outside rows [row0, row1) and columns [col0, col1) not read.
- * Cost: two cache misses; 4.4 bytes a texel. Source: Pharr, Jakob, Humphreys 2023, section 12.5. */
+ * Cost: two cache misses; 4.3 bytes a texel from 1024 x 512 on, 5.3 at 64 x 32. Source: Pharr, Jakob, Humphreys 2023, section
+ * 12.5. */
 
 #ifndef MCS_NO_TABLES
 /* A point on its way: where it lies in its row's share of 2^31 and that share, where the row (less its margins) begins in
@@ -2981,7 +3016,7 @@ MCSI_CORE void MCSI_(env_locate)(const MCS_(frame) * f, MCS_(vec3) w, MCSI_F *of
     MCSI_F sine2, up;
     w = MCSI_(to_local)(f, MCSI_(direction)(w, &ok));
     sine2 = w.x * w.x + w.y * w.y, up = MCSI_(abs)(w.z);
-    *off_pole = MCSI_(sel)(ok, MCSI_(with_sign)(sine2 / (1.0f + up), w.z), MCSI_(set)(4.0f));
+    *off_pole = MCSI_(sel)(ok, MCSI_(with_sign)(sine2 / (1.0f + up), w.z), MCS_(set)(4.0f));
     *polar = MCSI_(atan2_turns)(MCSI_(sqrt)(sine2), up);
     *turns = MCSI_(atan2_turns)(w.y, w.x);
 }
@@ -3009,11 +3044,11 @@ MCSI_BATCH_AS(mcsi_env_directions_n, env_directions_n, (const mcs_frame *f, size
                   for (i = 0; i < n; i += MCSI_W) {
                       MCSI_(env_point) p;
                       MCS_(vec3) v;
-                      p.row_rest = MCSI_(load)(b->row_rest + i), p.row_mass = MCSI_(load)(b->row_mass + i);
-                      p.edge = MCSI_(load)(b->edge + i), p.height = MCSI_(load)(b->height + i), p.col = MCSI_(load)(b->col + i);
-                      p.col_rest = MCSI_(load)(b->col_rest + i), p.col_mass = MCSI_(load)(b->col_mass + i);
+                      p.row_rest = MCS_(load)(b->row_rest + i), p.row_mass = MCS_(load)(b->row_mass + i);
+                      p.edge = MCS_(load)(b->edge + i), p.height = MCS_(load)(b->height + i), p.col = MCS_(load)(b->col + i);
+                      p.col_rest = MCS_(load)(b->col_rest + i), p.col_mass = MCS_(load)(b->col_mass + i);
                       v = MCSI_(env_direction)(&frame, &p, turn, inner);
-                      MCSI_(store)(b->x + i, v.x), MCSI_(store)(b->y + i, v.y), MCSI_(store)(b->z + i, v.z);
+                      MCS_(store)(b->x + i, v.x), MCS_(store)(b->y + i, v.y), MCS_(store)(b->z + i, v.z);
                   }
               })
 MCSI_BATCH_AS(mcsi_env_locate_n, env_locate_n,
@@ -3167,7 +3202,7 @@ MCS_FN int mcsi_image_ok(const mcs_image *im) {
     return !row || (row >= (im->w - 1) * step + im->channels && row <= most);
 }
 MCS_FN mcs_status mcsi_env_refuse(const mcs_env *e, size_t bytes, const mcs_image *im) {
-    if (!e || !im || !im->pixels || ((uintptr_t)e & 7u) || im->channels == 0 || im->channels == 2) return MCS_ERR_ARG;
+    if (!e || !im || !im->pixels || ((uintptr_t)e & MCSI_ALIGN) || im->channels == 0 || im->channels == 2) return MCS_ERR_ARG;
     if (!mcs_env_bytes(im->w, im->h) || !mcsi_image_ok(im)) return MCS_ERR_SIZE;
     return bytes < mcs_env_bytes(im->w, im->h) ? MCS_ERR_MEMORY : MCS_OK;
 }
@@ -3210,12 +3245,13 @@ MCS_FN void mcsi_image_weights(const mcs_image *im, uint32_t y, uint32_t x, uint
         for (k = 0; k < n; k++) v[k] = mcsi_max(v[k] - im->floor, 0.0f);
 }
 MCS_FN float mcs_env_mean(const mcs_image *im) {
-    mcs_image plain = *im;
+    mcs_image plain;
     double sum = 0.0;
     uint32_t x, y, k, n, bad = 0;
     float v[MCSI_ENV_CHUNK];
-    if (!im->pixels || im->channels == 0 || im->channels == 2 || !mcs_env_bytes(im->w, im->h) || !mcsi_image_ok(im)) return 0.0f;
-    plain.floor = 0.0f;
+    if (!im || !im->pixels || im->channels == 0 || im->channels == 2 || !mcs_env_bytes(im->w, im->h) || !mcsi_image_ok(im))
+        return 0.0f;
+    plain = *im, plain.floor = 0.0f;
     for (y = 0; y < im->h; y++) {
         double row = 0.0;
         for (x = 0; x < im->w; x += n) {
@@ -3320,26 +3356,33 @@ MCS_FN int mcsi_same(double a, double b, double relative) {
     double slack = relative * (b < 0.0 ? -b : b);
     return a - b <= slack && b - a <= slack;
 }
+MCS_FN int mcsi_finite_vec3(mcs_vec3 v) { return mcsi_abs(v.x) <= FLT_MAX && mcsi_abs(v.y) <= FLT_MAX && mcsi_abs(v.z) <= FLT_MAX; }
+/* Whether light fills just these rows and columns. */
+MCS_FN int mcsi_env_holds(const mcs_env *e, uint32_t row0, uint32_t row1, uint32_t col0, uint32_t col1) {
+    return e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1;
+}
 MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     mcsi_env_parts at;
     mcsi_env_view v;
     mcs_env turns;
-    uint32_t y;
+    const uint32_t *cdf;
+    uint32_t y, row0, row1 = 0, col0, col1 = 0;
     size_t i;
-    if (!e || ((uintptr_t)e & 7u)) return MCS_ERR_ARG;
+    if (!e || ((uintptr_t)e & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (bytes < sizeof *e) return MCS_ERR_MEMORY;
     if (e->magic != MCSI_ENV_MAGIC || e->version != MCSI_ENV_VERSION || !mcs_env_bytes(e->w, e->h)) return MCS_ERR_FORMAT;
     at = mcsi_env_layout(e->w, e->h);
     for (i = 0; i < sizeof at; i++) /* memcmp, which kernels do not have */
         if (((const char *)&at)[i] != ((const char *)&e->at)[i]) return MCS_ERR_FORMAT;
-    if (e->uniform > 1 || e->incomplete > 1) return MCS_ERR_FORMAT;
+    if (e->uniform > 1 || e->incomplete > 1 || !(e->total >= 0.0 && e->total <= DBL_MAX)) return MCS_ERR_FORMAT;
+    if (!mcsi_finite_vec3(e->frame.s) || !mcsi_finite_vec3(e->frame.t) || !mcsi_finite_vec3(e->frame.n)) return MCS_ERR_FORMAT;
     if (bytes < at.bytes) return MCS_ERR_MEMORY;
-    v = mcsi_env_whole(e), turns.w = e->w, mcsi_env_set_turn(&turns);
+    v = mcsi_env_whole(e), row0 = e->h, col0 = e->w, turns.w = e->w, mcsi_env_set_turn(&turns);
     if (!mcsi_same((double)e->turn, (double)turns.turn, 1.2e-7) || !mcsi_same((double)e->inner, (double)turns.inner, 1.2e-7))
         return MCS_ERR_FORMAT;
     for (y = 0; y <= (e->h + 1) / 2; y++)
         if (!mcsi_same(mcsi_env_edge(e)[y], mcsi_one_minus_cos_pi((double)y / e->h), 1e-14)) return MCS_ERR_FORMAT;
-    if (e->uniform) return MCS_OK;
+    if (e->uniform) return mcsi_env_holds(e, 0, e->h, 0, e->w) || mcsi_env_holds(e, e->h, 0, e->w, 0) ? MCS_OK : MCS_ERR_FORMAT;
     if (!mcsi_cdf_ok(v.rows, e->h, v.guide, v.shift)) return MCS_ERR_FORMAT;
     for (y = 0; y < e->h; y++) {
         const mcsi_env_line *line = v.line + y;
@@ -3350,8 +3393,14 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
             !mcsi_same((double)line->height, (double)want.height, 1.2e-7) ||
             (want.scale > 0.0 && !mcsi_cdf_ok(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.col_shift)))
             return MCS_ERR_FORMAT;
+        if (!(want.scale > 0.0)) continue;
+        cdf = mcsi_env_cdf(e, y), row0 = y < row0 ? y : row0, row1 = y + 1;
+        for (i = 0; cdf[i + 1] == 0; i++) {}
+        col0 = i < col0 ? (uint32_t)i : col0;
+        for (i = e->w; cdf[i - 1] == MCSI_ONE; i--) {}
+        col1 = i > col1 ? (uint32_t)i : col1;
     }
-    return MCS_OK;
+    return mcsi_env_holds(e, row0, row1, col0, col1) ? MCS_OK : MCS_ERR_FORMAT;
 }
 
 /* ---- drawing ---- */
@@ -3428,7 +3477,7 @@ MCSI_CORE void mcsi_env_draw_uniform(const mcs_env *e, const mcsi_env_view *v, d
     double at = v->col + U1 / MCSI_ONE * v->cols;
     a += (mcsi_env_top(e, v->row + 1) - a) * margin, b -= (b - mcsi_env_top(e, v->row + v->count - 1)) * margin;
     t = a + (b - a) * (U2 / MCSI_ONE), at = at < e->w ? at : at - e->w;
-    p->row_rest = 0.5f, p->row_mass = 1.0f, p->edge = (float)(t < 1.0 ? t : 2.0 - t), p->height = t < 1.0 ? 0.0f : -0.0f;
+    p->row_rest = 0.5f, p->row_mass = 1.0f, p->edge = (float)(t < 1.0 ? t : 2.0 - t), p->height = t < 1.0 ? FLT_MIN : -FLT_MIN;
     p->col = (float)(uint32_t)at, p->col_rest = (float)(at - (uint32_t)at), p->col_mass = 1.0f;
 }
 MCSI_CORE int mcsi_env_in_view(const mcs_env *e, const mcsi_env_view *v, uint32_t row, uint32_t col) {
@@ -3568,20 +3617,27 @@ MCS_FN void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const 
     mcsi_env_view v = mcsi_env_whole(e);
     mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf);
 }
-MCS_FN void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+MCS_FN void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
+                            uint32_t *row, float *pdf) {
     mcsi_env_view v = mcsi_env_whole(e);
     float off_pole[MCSI_ENV_BLOCK], polar[MCSI_ENV_BLOCK], turns[MCSI_ENV_BLOCK];
-    uint32_t row[MCSI_ENV_BLOCK], col[MCSI_ENV_BLOCK];
+    uint32_t at_row[MCSI_ENV_BLOCK], at_col[MCSI_ENV_BLOCK];
     size_t i, k, m;
-    for (i = 0; pdf && i < n; i += m) {
+    for (i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         mcsi_env_locate_n(&e->frame, m, x + i, y + i, z + i, off_pole, polar, turns);
         for (k = 0; k < m; k++) {
-            row[k] = off_pole[k] < 4.0f ? mcsi_env_row_at(e, off_pole[k], polar[k]) : e->h, col[k] = mcsi_env_col_at(e, turns[k]);
-            if (!v.uniform && row[k] < e->h) MCSI_PREFETCH(mcsi_env_cdf(e, row[k]) + col[k]);
+            int ok = off_pole[k] < 4.0f;
+            at_row[k] = ok ? mcsi_env_row_at(e, off_pole[k], polar[k]) : e->h, at_col[k] = mcsi_env_col_at(e, turns[k]);
+            if (pdf && ok && !v.uniform) MCSI_PREFETCH(mcsi_env_cdf(e, at_row[k]) + at_col[k]);
+            if (col) col[i + k] = at_col[k];
+            if (row) row[i + k] = ok ? at_row[k] : 0;
         }
-        for (k = 0; k < m; k++) pdf[i + k] = mcsi_env_density(e, &v, row[k], col[k]);
+        for (k = 0; pdf && k < m; k++) pdf[i + k] = mcsi_env_density(e, &v, at_row[k], at_col[k]);
     }
+}
+MCS_FN void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+    mcs_env_texel_n(e, n, x, y, z, NULL, NULL, pdf);
 }
 #endif
 MCS_FN mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2) {
@@ -3639,7 +3695,7 @@ MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mc
     uint32_t *cdf, i;
     uint16_t *guide;
     double total;
-    if (!m || !e || ((uintptr_t)m & 7u)) return MCS_ERR_ARG;
+    if (!m || !e || ((uintptr_t)m & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (rows == 0 || cols == 0 || rows > e->h || row > e->h - rows || cols > e->w || col >= e->w) return MCS_ERR_SIZE;
     if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
     all = mcsi_env_whole(e), line = (mcsi_env_line *)(void *)(m + 1);
@@ -3701,8 +3757,9 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  *
  * Support: every direction above the surface from which light comes can be drawn: tiles that the horizon may cross, judged by the
  * distance of a tile's corners from its mean direction, weigh at least a ten-thousandth of what a white surface would make of them.
- * Below the horizon only parts of tiles that it crosses are drawn. A product keeps pointers to t and e. Bad u or a bad direction
- * give pdf 0, as does a surface that no light reaches (build returns MCS_UNIFORM); a black map counts as even light, as in [env].
+ * Below the horizon only parts of tiles that it crosses are drawn. Frames must be orthonormal. A product keeps pointers to t and e,
+ * and holds for the e->frame that it was built with. Bad u or a bad direction give pdf 0, as does a surface that no light reaches
+ * (build returns MCS_UNIFORM); a black map counts as even light, as in [env].
  * Narrow lobes (4 pi alpha_x alpha_y cos(theta_o) below 8 mean tiles): in the prepared form the tiles that by their mean
  * direction or a corner weigh more than a 256th of all, the 32 heaviest at most, have the reflection on a grid of 8 x 8 places
  * among their light, are bilinear in its 7 x 7 cells and weigh what that says. A lobe narrower than the cells gets a share
@@ -3711,7 +3768,8 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * three times as much for _GAUSS and _PHONG, which have no tails): directions by mcs_ggx_vndf, mcs_ward or mcs_phong; the density
  * is that of the mixture, and what the lobe sends below the surface is lost. To join samplers of one's own by MIS, set
  * p->brdf_share to 0.
- * For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified.
+ * For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified, which gains little below several thousand
+ * samples, as every tile has a residue of its own.
  * Tile weights: light E times reflection towards its mean direction; matte (c + r)^2/(4 pi r), or c/pi where c >= r, c the cosine
  * and r 1.5 times the spread s of the light about that direction; lobe: with alpha^2 + s^2/4. Tile probabilities are integers.
  * Within a tile the density is that of the light times a bilinear function of the place among the light (the parts of the tile's
@@ -3750,7 +3808,7 @@ typedef struct {
 #endif
 /* Nearly exp(-x), x >= 0, and never less. */
 MCSI_CORE MCSI_F MCSI_(falloff)(MCSI_F x) {
-    MCSI_F p = 1.0f / (1.0f + 0.00390625f * MCSI_(min)(x, MCSI_(set)(64.0f))); /* subnormal products would be slow */
+    MCSI_F p = 1.0f / (1.0f + 0.00390625f * MCSI_(min)(x, MCS_(set)(64.0f))); /* subnormal products would be slow */
     p = p * p, p = p * p, p = p * p, p = p * p;
     p = p * p, p = p * p, p = p * p, p = p * p;
     return p;
@@ -3765,7 +3823,7 @@ MCSI_CORE MCSI_F MCSI_(tile_lobe)(const mcsi_facing *s, MCS_(vec3) w, MCSI_F spr
         return MCSI_1_PI * MCSI_(falloff)((hx * hx * ay2 + hy * hy * ax2) / (aa * h2)) * hh * w.z / (root * h2 * h2);
     }
     if (s->profile == MCS_PROFILE_PHONG) {
-        MCSI_F n = MCSI_(max)(0.5f / root - 2.0f, MCSI_(set)(0.0f)), z = w.z - s->wo.z; /* h without its z: w less the mirror's */
+        MCSI_F n = MCSI_(max)(0.5f / root - 2.0f, MCS_(set)(0.0f)), z = w.z - s->wo.z; /* h without its z: w less the mirror's */
         return (n + 2.0f) * MCSI_1_2PI * MCSI_(falloff)(0.5f * n * (hx * hx + hy * hy + z * z)) * w.z;
     }
     ratio = root * hh / (hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa);
@@ -3775,29 +3833,29 @@ MCSI_CORE MCSI_F MCSI_(tile_lobe)(const mcsi_facing *s, MCS_(vec3) w, MCSI_F spr
 }
 /* Never 0, nor what bad axes make of it. */
 MCSI_CORE MCSI_F MCSI_(reflected)(MCSI_F f) {
-    return MCSI_(sel)(f > 0.0f, MCSI_(min)(f, MCSI_(set)(1e30f)), MCSI_(set)(0.0f)) + MCSI_TILE_LEAST;
+    return MCSI_(sel)(f > 0.0f, MCSI_(min)(f, MCS_(set)(1e30f)), MCS_(set)(0.0f)) + MCSI_TILE_LEAST;
 }
 /* Reflection towards the light of tiles; more than 0 wherever there may be light above the horizon. */
 MCSI_CORE MCSI_F MCSI_(tile_value)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride) {
-    MCSI_F r = MCSI_(load)(tile + MCSI_TILE_RADIUS * stride), reach = MCSI_(load)(tile + MCSI_TILE_REACH * stride);
-    MCSI_F c, crossing, cosine, f, zero = MCSI_(set)(0.0f);
+    MCSI_F r = MCS_(load)(tile + MCSI_TILE_RADIUS * stride), reach = MCS_(load)(tile + MCSI_TILE_REACH * stride);
+    MCSI_F c, crossing, cosine, f, zero = MCS_(set)(0.0f);
     MCS_(vec3) m;
-    m.x = MCSI_(load)(tile + MCSI_TILE_X * stride), m.y = MCSI_(load)(tile + MCSI_TILE_Y * stride);
-    m.z = MCSI_(load)(tile + MCSI_TILE_Z * stride), c = MCSI_(dot)(axes->n, m), crossing = MCSI_(max)(c + reach, zero);
+    m.x = MCS_(load)(tile + MCSI_TILE_X * stride), m.y = MCS_(load)(tile + MCSI_TILE_Y * stride);
+    m.z = MCS_(load)(tile + MCSI_TILE_Z * stride), c = MCSI_(dot)(axes->n, m), crossing = MCSI_(max)(c + reach, zero);
     cosine = MCSI_(sel)(c >= reach, c, crossing * crossing / (4.0f * reach)), f = MCSI_1_PI * cosine;
     if (s->matte < 1.0f) {
-        MCSI_F unit = MCSI_(load)(tile + MCSI_TILE_UNIT * stride);
+        MCSI_F unit = MCS_(load)(tile + MCSI_TILE_UNIT * stride);
         MCS_(vec3) w = MCSI_(vec3)(MCSI_(dot)(axes->s, m) * unit, MCSI_(dot)(axes->t, m) * unit, MCSI_(max)(c * unit, cosine));
-        f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCSI_(load)(tile + MCSI_TILE_SPREAD * stride));
+        f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCS_(load)(tile + MCSI_TILE_SPREAD * stride));
     }
     return MCSI_(sel)(c + r > 0.0f, MCSI_(reflected)(f), zero);
 }
 /* Reflection towards the corners of tiles. */
 MCSI_CORE MCSI_F MCSI_(corner_value)(const MCS_(frame) * axes, const mcsi_facing *s, MCS_(vec3) w) {
-    MCSI_F z = MCSI_(max)(MCSI_(dot)(axes->n, w), MCSI_(set)(0.0f)), f = MCSI_1_PI * z;
+    MCSI_F z = MCSI_(max)(MCSI_(dot)(axes->n, w), MCS_(set)(0.0f)), f = MCSI_1_PI * z;
     if (s->matte < 1.0f) {
         w = MCSI_(vec3)(MCSI_(dot)(axes->s, w), MCSI_(dot)(axes->t, w), z);
-        f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCSI_(set)(0.0f));
+        f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCS_(set)(0.0f));
     }
     return MCSI_(reflected)(f);
 }
@@ -3822,7 +3880,7 @@ MCSI_CORE MCSI_F MCSI_(warp_density)(const MCSI_(warp) * w, MCSI_F t1, MCSI_F t2
 }
 /* The place of u when a linear density has a and b at its ends. */
 MCSI_CORE MCSI_F MCSI_(linear_place)(MCSI_F a, MCSI_F b, MCSI_F u) {
-    return MCSI_(min)(u * (a + b) / (a + MCSI_(sqrt)((1.0f - u) * (a * a) + u * (b * b))), MCSI_(set)(0.99999994f));
+    return MCSI_(min)(u * (a + b) / (a + MCSI_(sqrt)((1.0f - u) * (a * a) + u * (b * b))), MCS_(set)(0.99999994f));
 }
 /* u1 and u2 become places; returns the density there. */
 MCSI_CORE MCSI_F MCSI_(warp_draw)(const MCSI_(warp) * w, MCSI_F *u1, MCSI_F *u2) {
@@ -3836,16 +3894,16 @@ MCSI_CORE MCSI_F MCSI_(warp_draw)(const MCSI_(warp) * w, MCSI_F *u1, MCSI_F *u2)
 MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
     size_t i, j;
     for (i = 0; i < rows; i += MCSI_W) {
-        MCSI_F sum = MCSI_(set)(0.0f), scale;
+        MCSI_F sum = MCS_(set)(0.0f), scale;
         MCSI_I at = MCSI_(trunc)(sum);
-        for (j = 0; j < cols; j++) sum = sum + MCSI_(load)(light + j * rows + i) * MCSI_(load)(value + j * rows + i);
-        scale = (16777216.0f - (float)cols) / MCSI_(max)(sum, MCSI_(set)(MCSI_ROW_LEAST));
+        for (j = 0; j < cols; j++) sum = sum + MCS_(load)(light + j * rows + i) * MCS_(load)(value + j * rows + i);
+        scale = (16777216.0f - (float)cols) / MCSI_(max)(sum, MCS_(set)(MCSI_ROW_LEAST));
         for (j = 0; j < cols; j++) {
-            MCSI_F w = MCSI_(load)(light + j * rows + i) * MCSI_(load)(value + j * rows + i);
+            MCSI_F w = MCS_(load)(light + j * rows + i) * MCS_(load)(value + j * rows + i);
             MCSI_(store_int)(cum + j * rows + i, at);
-            at = at + MCSI_(trunc)(MCSI_(sel)(w > 0.0f, w * scale + 1.0f, MCSI_(set)(0.0f)));
+            at = at + MCSI_(trunc)(MCSI_(sel)(w > 0.0f, w * scale + 1.0f, MCS_(set)(0.0f)));
         }
-        MCSI_(store_int)(cum + cols * rows + i, at), MCSI_(store)(row + i, sum);
+        MCSI_(store_int)(cum + cols * rows + i, at), MCS_(store)(row + i, sum);
     }
 }
 /* What tiles weigh at most, by their mean direction or a corner, and the sums of rows. */
@@ -3853,15 +3911,15 @@ MCSI_CORE void MCSI_(grid_bounds)(size_t rows, size_t cols, const float *light, 
                                   float *weight, float *row) {
     size_t i, j;
     for (i = 0; i < rows; i += MCSI_W) {
-        MCSI_F sum = MCSI_(set)(0.0f), left = MCSI_(max)(MCSI_(load)(corner + i), MCSI_(load)(corner + i + 1)), first = left;
+        MCSI_F sum = MCS_(set)(0.0f), left = MCSI_(max)(MCS_(load)(corner + i), MCS_(load)(corner + i + 1)), first = left;
         for (j = 0; j < cols; j++) {
             const float *next = corner + (j + 1) * (rows + 1) + i;
-            MCSI_F right = j + 1 < cols ? MCSI_(max)(MCSI_(load)(next), MCSI_(load)(next + 1)) : first;
-            MCSI_F v = MCSI_(load)(value + j * rows + i), most = MCSI_(max)(v, MCSI_(max)(left, right));
-            v = MCSI_(load)(light + j * rows + i) * MCSI_(keep)(v > 0.0f, most);
-            MCSI_(store)(weight + j * rows + i, v), sum = sum + v, left = right;
+            MCSI_F right = j + 1 < cols ? MCSI_(max)(MCS_(load)(next), MCS_(load)(next + 1)) : first;
+            MCSI_F v = MCS_(load)(value + j * rows + i), most = MCSI_(max)(v, MCSI_(max)(left, right));
+            v = MCS_(load)(light + j * rows + i) * MCSI_(keep)(v > 0.0f, most);
+            MCS_(store)(weight + j * rows + i, v), sum = sum + v, left = right;
         }
-        MCSI_(store)(row + i, sum);
+        MCS_(store)(row + i, sum);
     }
 }
 #ifndef MCS_NO_BATCH
@@ -3869,7 +3927,7 @@ MCSI_BATCH_AS(mcsi_tile_values_n, tile_values_n, (const mcsi_facing *s, size_t n
               (s, n, tile, stride, value), {
                   MCS_(frame) axes = MCSI_(spread_frame)(&s->axes);
                   size_t i;
-                  for (i = 0; i < n; i += MCSI_W) MCSI_(store)(value + i, MCSI_(tile_value)(&axes, s, tile + i, stride));
+                  for (i = 0; i < n; i += MCSI_W) MCS_(store)(value + i, MCSI_(tile_value)(&axes, s, tile + i, stride));
               })
 MCSI_BATCH_AS(mcsi_corner_values_n, corner_values_n,
               (const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value), (s, n, corner, stride, value), {
@@ -3877,8 +3935,8 @@ MCSI_BATCH_AS(mcsi_corner_values_n, corner_values_n,
                   size_t i;
                   for (i = 0; i < n; i += MCSI_W) {
                       const float *c = corner + i;
-                      MCS_(vec3) w = MCSI_(vec3)(MCSI_(load)(c), MCSI_(load)(c + stride), MCSI_(load)(c + 2 * stride));
-                      MCSI_(store)(value + i, MCSI_(corner_value)(&axes, s, w));
+                      MCS_(vec3) w = MCSI_(vec3)(MCS_(load)(c), MCS_(load)(c + stride), MCS_(load)(c + 2 * stride));
+                      MCS_(store)(value + i, MCSI_(corner_value)(&axes, s, w));
                   }
               })
 #if MCSI_W == 1
@@ -3891,11 +3949,11 @@ typedef struct {
 MCSI_BATCH_AS(mcsi_warps_n, warps_n, (size_t n, mcsi_warp_block *b), (n, b), {
     size_t i;
     for (i = 0; i < n; i += MCSI_W) {
-        MCSI_F u1 = MCSI_(load)(b->u1 + i), u2 = MCSI_(load)(b->u2 + i);
+        MCSI_F u1 = MCS_(load)(b->u1 + i), u2 = MCS_(load)(b->u2 + i);
         MCSI_(warp)
-        w = MCSI_(warp_make)(MCSI_(load)(b->value + i), MCSI_(load)(b->pull + i), MCSI_(load)(b->v00 + i), MCSI_(load)(b->v01 + i),
-                             MCSI_(load)(b->v10 + i), MCSI_(load)(b->v11 + i));
-        MCSI_(store)(b->density + i, MCSI_(warp_draw)(&w, &u1, &u2)), MCSI_(store)(b->u1 + i, u1), MCSI_(store)(b->u2 + i, u2);
+        w = MCSI_(warp_make)(MCS_(load)(b->value + i), MCS_(load)(b->pull + i), MCS_(load)(b->v00 + i), MCS_(load)(b->v01 + i),
+                             MCS_(load)(b->v10 + i), MCS_(load)(b->v11 + i));
+        MCS_(store)(b->density + i, MCSI_(warp_draw)(&w, &u1, &u2)), MCS_(store)(b->u1 + i, u1), MCS_(store)(b->u2 + i, u2);
     }
 })
 /* clang-format off */
@@ -3934,8 +3992,9 @@ typedef struct {
     const mcs_tiles *t;
     const mcs_env *e;
     mcsi_own_lobe own;
+    double lit; /* shares of the rows over 2^31: 0 where no light is reflected */
     float brdf_share;
-    uint32_t lit, warped;
+    uint32_t warped;
 } mcs_product; /* the rest: mcsi_product_units and below */
 
 enum { MCSI_TILE_BLOCK = 4, MCSI_TILES_MAX = 64, MCSI_NODES = 8, MCSI_GRID = MCSI_NODES * MCSI_NODES, MCSI_FINE = 32 };
@@ -3990,7 +4049,7 @@ MCS_FN void mcsi_patch_store(const mcs_env *e, const mcsi_patch *p, float *field
     for (k = 0; k < 4; k++) {
         double x, y, z;
         mcsi_patch_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0, &corner);
-        x = (double)corner.x - m.x, y = (double)corner.y - m.y, z = (double)corner.z - m.z, x = x * x + y * y + z * z;
+        x = (double)(corner.x - m.x), y = (double)(corner.y - m.y), z = (double)(corner.z - m.z), x = x * x + y * y + z * z;
         r2 = x > r2 ? x : r2;
     }
     d = p->e > 0.0 && d > 0.0 ? d / p->e : 1.0;
@@ -4026,7 +4085,7 @@ MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_env_view *all, uint3
         double w = e->uniform ? (double)MCSI_ONE / e->w : cdf[x + 1] - cdf[x];
         if (!(w > 0.0)) continue;
         mcsi_sincos_turns((float)((x + 0.5) / e->w), &s, &c);
-        row += w, cx += w * c, cy += w * s;
+        row += w, cx += w * (double)c, cy += w * (double)s;
     }
     height = (e->uniform ? 0.5 * height : mass / (double)MCSI_ONE) / MCSI_ONE;
     p->e += height * row, p->x += height * sine * cx, p->y += height * sine * cy, p->z += height * row * (1.0 - t);
@@ -4060,7 +4119,7 @@ MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, 
     mcsi_patch block;
     uint32_t I, J, k, n = 2 * rows * rows;
     float *field, *corner;
-    if (!t || !e || ((uintptr_t)t & 7u)) return MCS_ERR_ARG;
+    if (!t || !e || ((uintptr_t)t & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (!mcsi_tiles_ok(rows)) return MCS_ERR_SIZE;
     if (bytes < mcs_tiles_bytes(e, rows)) return MCS_ERR_MEMORY;
     all = mcsi_env_whole(e), field = (float *)(void *)(t + 1);
@@ -4079,7 +4138,7 @@ MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, 
                 if (p.e > 0.0) mcs_env_window_build(m, t->window_bytes, e, p.row0, p.row1 - p.row0, p.col0, p.col1 - p.col0);
                 mcsi_patch_store(e, &p, field + (size_t)j * rows + i, n);
                 mcsi_patch_nodes(e, m, &p, (float *)(uintptr_t)mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * (j * rows + i));
-                block.e += p.e, block.x += p.x, block.y += p.y, block.z += p.z;
+                block.e += p.e, block.x += p.x, block.y += p.y, block.z += p.z, block.within += p.within;
                 if (k == 0) block.row0 = p.row0, block.col0 = p.col0;
                 block.row1 = p.row1, block.col1 = p.col1;
             }
@@ -4160,7 +4219,7 @@ MCSI_CORE uint8_t *mcsi_product_fine(const mcs_product *p) {
     return (uint8_t *)(void *)(mcsi_product_grids(p) + MCSI_FINE * (MCSI_GRID + MCSI_NODES));
 }
 MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e) {
-    if (!p || !t || !e || ((uintptr_t)p & 7u)) return MCS_ERR_ARG;
+    if (!p || !t || !e || ((uintptr_t)p & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (bytes < mcs_product_bytes(t->rows)) return MCS_ERR_MEMORY;
     memset(p, 0, sizeof *p);
     p->t = t, p->e = e;
@@ -4178,13 +4237,13 @@ MCSI_CORE void mcsi_product_add_up(mcs_product *p) {
 }
 MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
     size_t n = (size_t)p->t->rows * p->t->cols;
-    uint32_t *rows = mcsi_product_rows(p), i;
+    uint32_t *rows = mcsi_product_rows(p), lit, i;
     mcsi_product_add_up(p);
-    p->lit = mcsi_shares(rows, mcsi_product_sums(p), p->t->rows);
+    lit = mcsi_shares(rows, mcsi_product_sums(p), p->t->rows), p->lit = lit * (1.0 / MCSI_ONE);
     for (i = 0; i < p->t->rows; i++)
         mcsi_product_units(p)[i] =
-            rows[i + 1] > rows[i] ? (rows[i + 1] - rows[i]) / ((double)p->lit * mcsi_product_cum(p)[n + i]) : 0.0;
-    return p->lit ? MCS_OK : MCS_UNIFORM;
+            rows[i + 1] > rows[i] ? (rows[i + 1] - rows[i]) / ((double)lit * mcsi_product_cum(p)[n + i]) : 0.0;
+    return lit ? MCS_OK : MCS_UNIFORM;
 }
 MCSI_CORE void mcsi_tiles_value(const mcsi_facing *s, size_t n, const float *fields, size_t stride, float *value) {
 #ifndef MCS_NO_BATCH
@@ -4393,7 +4452,7 @@ MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, uint32_t i, uint32_t
     mcsi_warp_source s = mcsi_product_source(p, i, j);
     return mcsi_warp_make(*s.value, *s.pull, s.first[0], s.first[1], s.last[0], s.last[1]);
 }
-/* Where among a tile's light the place of a direction lies, for mcsi_warp_density; somewhere in a row without light. */
+/* Where among a tile's light the place of a direction in a row with light lies, for mcsi_warp_density. */
 MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const mcsi_env_place_of *at, float *t1, float *t2) {
     const uint32_t *rows = v->rows + (at->row - v->row), *cdf;
     const mcsi_env_line *line = v->line + (at->row - v->row);
@@ -4416,6 +4475,7 @@ MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double 
     mcsi_env_view v = mcsi_env_part(mcsi_tiles_window(t, i, j));
     const uint32_t *cdf;
     double scale;
+    if (!v.uniform && !(v.line[at->row - v.row].scale > 0.0)) return 0.0f; /* such a row was not written */
     if (fine || warp) {
         float t1, t2;
         mcsi_tiled_place(e, &v, at, &t1, &t2);
@@ -4423,7 +4483,7 @@ MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double 
     }
     if (v.uniform) return (float)(part * (double)mcsi_env_uniform_pdf(e, &v));
     scale = part * v.line[at->row - v.row].scale, cdf = mcsi_env_cdf(e, at->row) + at->col;
-    return scale > 0.0 ? (float)((cdf[1] - cdf[0]) * scale) : 0.0f;
+    return (float)((cdf[1] - cdf[0]) * scale);
 }
 MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcsi_env_place_of *at) {
     const mcs_tiles *t = p->t;
@@ -4447,7 +4507,7 @@ MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
     mcs_texel r;
     if (!mcsi_env_find(p->e, w, &at)) return mcsi_nothing(p->e);
     r.w = w, r.row = at.row, r.col = at.col;
-    r.pdf = mcsi_own_mix(&p->own, p->brdf_share, w, p->lit ? mcsi_product_density(p, &at) : 0.0f);
+    r.pdf = mcsi_own_mix(&p->own, p->brdf_share, w, p->lit > 0.0 ? mcsi_product_density(p, &at) : 0.0f);
     return r;
 }
 MCS_FN float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
@@ -4455,7 +4515,7 @@ MCS_FN float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_pro
 MCSI_CORE uint32_t mcsi_product_row(const mcs_product *p, double *U2) {
     const uint32_t *rows = mcsi_product_rows(p);
     uint32_t i;
-    *U2 *= (int32_t)p->lit * (1.0 / MCSI_ONE), i = mcsi_shares_find(rows, p->t->rows, 1, (uint32_t)(int32_t)*U2);
+    *U2 *= p->lit, i = mcsi_shares_find(rows, p->t->rows, 1, (uint32_t)(int32_t)*U2);
     *U2 = mcsi_shares_rest(*U2, rows[i], rows[i + 1] - rows[i]);
     return i;
 }
@@ -4478,7 +4538,7 @@ MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
     u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
     if (mcsi_own_draw(&p->own, p->brdf_share, &u1, u2, &w, &ok)) {
         r = mcsi_product_look_up(p, w);
-    } else if (p->lit) {
+    } else if (p->lit > 0.0) {
         const float *fine;
         uint32_t i, j;
         U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE;
@@ -4508,7 +4568,7 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
     uint32_t row[MCSI_ENV_BLOCK];
     int32_t ok[MCSI_ENV_BLOCK];
     size_t i, k, m;
-    if (p->brdf_share > 0.0f || !p->lit) {
+    if (p->brdf_share > 0.0f || !(p->lit > 0.0)) {
         for (i = 0; i < n; i++) {
             mcs_texel r = mcs_product_sample(p, u1[i], u2[i]);
             if (x) x[i] = r.w.x;
@@ -4605,7 +4665,7 @@ MCSI_CORE int mcsi_level_draw(const mcsi_facing *s, uint32_t rows, uint32_t cols
 MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcsi_facing *s, double *U1, double *U2, uint32_t *i, uint32_t *j,
                                 double *part, mcsi_warp *warp) {
     enum { B = MCSI_TILE_BLOCK };
-    float fields[MCSI_TILE_FIELDS * B * B], value, corner[3 * B * B], v[B * B];
+    float fields[(int)MCSI_TILE_FIELDS * B * B], value, corner[3 * B * B], v[B * B];
     uint32_t I = *i / B, J = *j / B;
     const float *from;
     size_t k, c, n = (size_t)t->rows * t->cols;

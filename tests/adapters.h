@@ -28,29 +28,21 @@
 #define F_ mcs16_f
 #endif
 
-static inline F_ A_(load)(const float *a) {
-    F_ v;
-    memcpy(&v, a, sizeof v);
-    return v;
-}
-
-static inline void A_(store)(float *a, F_ v) { memcpy(a, &v, sizeof v); }
-
 static inline M_(vec3) A_(load3)(const float *a) {
     M_(vec3) v;
-    v.x = A_(load)(a);
-    v.y = A_(load)(a + MCST_W);
-    v.z = A_(load)(a + 2 * MCST_W);
+    v.x = M_(load)(a);
+    v.y = M_(load)(a + MCST_W);
+    v.z = M_(load)(a + 2 * MCST_W);
     return v;
 }
 
 static inline void A_(store3)(float *a, M_(vec3) v) {
-    A_(store)(a, v.x);
-    A_(store)(a + MCST_W, v.y);
-    A_(store)(a + 2 * MCST_W, v.z);
+    M_(store)(a, v.x);
+    M_(store)(a + MCST_W, v.y);
+    M_(store)(a + 2 * MCST_W, v.z);
 }
 
-#define LD(i) A_(load)(p + (i)*MCST_W)
+#define LD(i) M_(load)(p + (i)*MCST_W)
 #define WO A_(load3)(p + 3 * MCST_W)
 #define ARGS_0
 #define ARGS_1 LD(0),
@@ -66,51 +58,51 @@ static inline void A_(store3)(float *a, M_(vec3) v) {
 
 #define MCST_LINE(row, fn, args, unused)                                                                \
     static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
-        const M_(sample1) s = M_(fn##_sample)(ARGS_##args A_(load)(u1));                                \
+        const M_(sample1) s = M_(fn##_sample)(ARGS_##args M_(load)(u1));                                \
         (void)p, (void)u2;                                                                              \
-        A_(store)(out, s.x);                                                                            \
-        A_(store)(out + 3 * MCST_W, s.pdf);                                                             \
+        M_(store)(out, s.x);                                                                            \
+        M_(store)(out + 3 * MCST_W, s.pdf);                                                             \
     }                                                                                                   \
     static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
-        A_(store)(out, M_(fn##_pdf)(ARGS_##args A_(load)(x)));                                          \
+        M_(store)(out, M_(fn##_pdf)(ARGS_##args M_(load)(x)));                                          \
     }                                                                                                   \
     static inline void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
-        A_(store)(out, M_(fn##_invert)(ARGS_##args A_(load)(x)));                                       \
+        M_(store)(out, M_(fn##_invert)(ARGS_##args M_(load)(x)));                                       \
     }
 
 #define MCST_PLANE(row, fn, args, unused)                                                               \
     static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
-        const M_(sample2) s = M_(fn##_sample)(ARGS_##args A_(load)(u1), A_(load)(u2));                  \
-        A_(store)(out, s.x);                                                                            \
-        A_(store)(out + MCST_W, s.y);                                                                   \
-        A_(store)(out + 3 * MCST_W, s.pdf);                                                             \
+        const M_(sample2) s = M_(fn##_sample)(ARGS_##args M_(load)(u1), M_(load)(u2));                  \
+        M_(store)(out, s.x);                                                                            \
+        M_(store)(out + MCST_W, s.y);                                                                   \
+        M_(store)(out + 3 * MCST_W, s.pdf);                                                             \
     }                                                                                                   \
     static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
-        A_(store)(out, M_(fn##_pdf)(ARGS_##args A_(load)(x), A_(load)(x + MCST_W)));                    \
+        M_(store)(out, M_(fn##_pdf)(ARGS_##args M_(load)(x), M_(load)(x + MCST_W)));                    \
     }                                                                                                   \
     static inline void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
-        const M_(vec2) u = M_(fn##_invert)(ARGS_##args A_(load)(x), A_(load)(x + MCST_W));              \
-        A_(store)(out, u.x);                                                                            \
-        A_(store)(out + MCST_W, u.y);                                                                   \
+        const M_(vec2) u = M_(fn##_invert)(ARGS_##args M_(load)(x), M_(load)(x + MCST_W));              \
+        M_(store)(out, u.x);                                                                            \
+        M_(store)(out + MCST_W, u.y);                                                                   \
     }
 
 /* A direction from a sampler whose leading arguments are given by `lead` (with its comma) after the statement `make`. */
 #define MCST_DIRECTION(row, fn, make, lead)                                                             \
     static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
         make;                                                                                           \
-        const M_(dir) s = M_(fn##_sample)(lead A_(load)(u1), A_(load)(u2));                             \
+        const M_(dir) s = M_(fn##_sample)(lead M_(load)(u1), M_(load)(u2));                             \
         A_(store3)(out, s.w);                                                                           \
-        A_(store)(out + 3 * MCST_W, s.pdf);                                                             \
+        M_(store)(out + 3 * MCST_W, s.pdf);                                                             \
     }                                                                                                   \
     static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
         make;                                                                                           \
-        A_(store)(out, M_(fn##_pdf)(lead A_(load3)(x)));                                                \
+        M_(store)(out, M_(fn##_pdf)(lead A_(load3)(x)));                                                \
     }                                                                                                   \
     static inline void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
         make;                                                                                           \
         const M_(vec2) u = M_(fn##_invert)(lead A_(load3)(x));                                          \
-        A_(store)(out, u.x);                                                                            \
-        A_(store)(out + MCST_W, u.y);                                                                   \
+        M_(store)(out, u.x);                                                                            \
+        M_(store)(out + MCST_W, u.y);                                                                   \
     }
 #define LEAD_M &m,
 #define LEAD_M_WO &m, WO,
@@ -121,22 +113,22 @@ static inline void A_(store3)(float *a, M_(vec3) v) {
 #define MCST_BRDF(row, fn, mat, base)                                                                   \
     static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
         MAKE_##mat;                                                                                     \
-        const M_(brdf) s = M_(fn##_sample)(&m, WO, A_(load)(u1), A_(load)(u2));                         \
+        const M_(brdf) s = M_(fn##_sample)(&m, WO, M_(load)(u1), M_(load)(u2));                         \
         A_(store3)(out, s.wi);                                                                          \
-        A_(store)(out + 3 * MCST_W, s.pdf);                                                             \
-        A_(store)(out + 4 * MCST_W, s.weight);                                                          \
+        M_(store)(out + 3 * MCST_W, s.pdf);                                                             \
+        M_(store)(out + 4 * MCST_W, s.weight);                                                          \
     }                                                                                                   \
     static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
         MAKE_##mat;                                                                                     \
-        A_(store)(out, M_(fn##_pdf)(&m, WO, A_(load3)(x)));                                             \
+        M_(store)(out, M_(fn##_pdf)(&m, WO, A_(load3)(x)));                                             \
     }                                                                                                   \
     static inline void A_(row##_eval)(const float *p, const float *x, float *out) {                     \
         MAKE_##mat;                                                                                     \
-        A_(store)(out, M_(base##_eval)(&m, WO, A_(load3)(x)));                                          \
+        M_(store)(out, M_(base##_eval)(&m, WO, A_(load3)(x)));                                          \
     }                                                                                                   \
     static inline void A_(row##_weight)(const float *p, const float *x, float *out) {                   \
         MAKE_##mat;                                                                                     \
-        A_(store)(out, M_(fn##_weight)(&m, WO, A_(load3)(x)));                                          \
+        M_(store)(out, M_(fn##_weight)(&m, WO, A_(load3)(x)));                                          \
     }
 
 #define MCST_ADAPT(shape, row, fn, arg, base, coord, grid) MCST_##shape(row, fn, arg, base)

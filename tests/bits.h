@@ -21,14 +21,15 @@
     X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n) \
     X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) \
     X(discrete_sample) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) \
-    X(alias_bytes) X(alias_build) X(alias_sample) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) X(stat_error) X(stat_ci)
+    X(alias_bytes) X(alias_build) X(alias_sample) X(alias_sample_bits) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) \
+    X(stat_error) X(stat_ci)
 #define BITS_MAPPED(X) \
     X(image_make) X(env_bytes) X(env_build) X(env_build_rows) X(env_finish) X(env_check) X(env_mean) X(env_sample) \
     X(env_sample_bits) X(env_pdf) X(env_invert) X(env_texel) X(env_weight) X(env_window_bytes) X(env_window_build) \
     X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(product_bytes) X(product_sample) \
     X(product_pdf) X(oneshot_sample) X(oneshot_pdf)
 #define BITS_HOST(X) X(product_build) X(product_build_weights)
-#define BITS_ARRAYS(X) X(env_sample_n) X(env_pdf_n) X(env_window_sample_n) X(product_sample_n)
+#define BITS_ARRAYS(X) X(env_sample_n) X(env_texel_n) X(env_pdf_n) X(env_window_sample_n) X(product_sample_n)
 #endif
 /* clang-format on */
 
@@ -267,6 +268,11 @@ FN(alias_build) {
 FN(alias_sample) {
     TABLE(alias);
     const mcs_pick c = mcs_alias_sample(t, IN(6));
+    PUT_WORD(0, c.i), PUT(1, c.pmf), PUT(2, c.u);
+}
+FN(alias_sample_bits) {
+    TABLE(alias);
+    const mcs_pick c = mcs_alias_sample_bits(t, WORD(11), WORD(12));
     PUT_WORD(0, c.i), PUT(1, c.pmf), PUT(2, c.u);
 }
 FN(alias_pmf) {
@@ -604,7 +610,7 @@ static void bits_put_product(const float *in, float *out, mcs_status status) {
     PUT_WORD(0, (uint32_t)status);
     if (status < 0) return;
     t = mcs_product_sample(p, IN(6), IN(7));
-    PUT_WORD(1, p->lit), PUT(2, p->brdf_share), bits_put_texel(out, 3, t), PUT(9, mcs_product_pdf(p, t.w));
+    PUT(1, (float)p->lit), PUT(2, p->brdf_share), bits_put_texel(out, 3, t), PUT(9, mcs_product_pdf(p, t.w));
 }
 HOST(product_build) {
     MAP;
@@ -671,6 +677,17 @@ HOST(env_sample_n) {
     bits_put_point(out, mcs_env_sample(m->env, IN(6), IN(7)));
 }
 ARRAY(env_sample_n, BITS_MAPS, bits_map_of, bits_map_at(k)->env, DRAWN)
+HOST(env_texel_n) {
+    MAP;
+    const mcs_texel t = mcs_env_texel(m->env, IN3(8));
+    PUT_WORD(0, t.col), PUT_WORD(1, t.row), PUT(2, t.pdf);
+}
+static void bits_call_env_texel_n(int k, size_t n, float (*in)[CASES], float (*out)[CASES]) {
+    static uint32_t col[CASES], row[CASES];
+    mcs_env_texel_n(bits_map_at(k)->env, n, in[2], in[3], in[4], col, row, out[2]);
+    memcpy(out[0], col, n * sizeof *col), memcpy(out[1], row, n * sizeof *row);
+}
+static void bits_array_env_texel_n(void) { bits_arrays(BITS_MAPS, bits_map_of, bits_call_env_texel_n); }
 HOST(env_pdf_n) { bits1_env_pdf(in, out); }
 ARRAY(env_pdf_n, BITS_MAPS, bits_map_of, bits_map_at(k)->env, n, in[2], in[3], in[4], out[0])
 HOST(env_window_sample_n) {

@@ -13,7 +13,10 @@ warnings='-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror'
 
 # compile COMPILER STANDARD LEVEL SWITCH FILE: one cell of the matrix, used through xargs below. The object stays.
 if [ "${1:-}" = compile ]; then
-    case $3 in c++*) language=c++ ;; *) language=c ;; esac
+    case $3 in
+        c++*) language=c++ ;;
+        *) language=c && warnings="$warnings -Wdouble-promotion" ;;
+    esac
     case $5 in none) switch= ;; *) switch=-D$5 ;; esac
     cell=$2-$3-$4-$(basename "$6" .c)
     unit=-DUNIT=unit_$(echo "$cell" | tr -c 'a-zA-Z0-9\n' _)
@@ -43,7 +46,7 @@ check() {
 
 rm -rf "$dir"
 mkdir -p "$dir/matrix" || exit 1
-echo "warnings: $warnings"
+echo "warnings: $warnings; in C -Wdouble-promotion, too"
 compilers=
 for c in gcc clang; do
     if command -v $c >/dev/null; then
@@ -143,8 +146,13 @@ done
 
 # --- the matrix: compilers x standards x switches. A file that only includes the header is compiled at -O0 and -O2; the one that uses
 # everything goes through the front end each time, and through code generation (a minute of work) in plain form and with
-# MCS_NO_WIDE, which changes bodies where the other switches only leave some out.
+# MCS_NO_WIDE, which changes bodies where the other switches only leave some out. The standards after C++17, as far as the compiler
+# knows them, may deprecate what those allow: the front end will say.
 for c in $compilers; do
+    for std in c++20 c++2b; do # 2b: C++23, by the name that older compilers know, too
+        "$c" -x c++ -std=$std -fsyntax-only /dev/null 2>/dev/null || continue
+        for s in none MCS_NO_WIDE; do echo "$c $std fsyntax-only $s $dir/use_$s.c"; done
+    done
     for std in c99 c11 c17 c++11 c++17; do
         for s in none $switches; do
             echo "$c $std fsyntax-only $s $dir/use_$s.c"
@@ -176,6 +184,15 @@ gcc "$dir/main.c" "$@" -o "$dir/units" -lm -lstdc++ 2>"$dir/units.log" && "$dir/
 linked=$?
 [ $# -ge 4 ] && [ $linked = 0 ]
 check $? "$# units that include the header and use everything link into one program" "$(head -n 4 "$dir/units.log")"
+
+# --- a unit that only includes the header has hardly any code, even at -O0: gcc keeps the two functions that must not be inlined (and
+# what those call), one function returns the version, the rest is what describes it
+# to debuggers and unwinders
+for c in $compilers; do
+    most=$(size "$dir"/matrix/"$c"-*-O0-include_*.o | awk 'NR > 1 && $1 > most { most = $1 } END { print most + 0 }')
+    [ "$most" -gt 0 ] && [ "$most" -le 16384 ]
+    check $? "$c: at -O0 the header alone leaves $most bytes (limit 16384: two functions are never inlined)"
+done
 
 # --- symbols of an optimised object that uses everything
 for c in $compilers; do

@@ -338,7 +338,7 @@ static inline ld o_phong_eval(ld n, o_vec3 wo, o_vec3 wi) {
     return o_above(wo, wi) ? (n + 2.0L) / (2.0L * O_PI) * o_phong_cos_pow(n, wo, wi) : 0.0L;
 }
 static inline ld o_phong_weight(ld n, o_vec3 wo, o_vec3 wi) {
-    return o_above(wo, wi) ? (n + 2.0L) / (n + 1.0L) * wi.z : 0.0L;
+    return o_above(wo, wi) && o_dot(o_mirror(wo), wi) > 0.0L ? (n + 2.0L) / (n + 1.0L) * wi.z : 0.0L;
 }
 
 /* ---- lobes of elliptical slopes: Ward, Beckmann (Gaussian) and GGX ---- */

@@ -123,15 +123,16 @@ static const float mcst_grid_truncexp[][2] = {{3, 1},    {0, 1},        {1, 1}, 
 static const float mcst_grid_normal[][2] = {{0, 1}, {-3, 100}, {5, 0.01f}, {0.3f, 1e-6f}, {0, 1e-18f}, {1e10f, 1e18f}};
 static const float mcst_grid_power[][2] = {{2, 0},  {0, 0},   {1, 0},    {0.5f, 0}, {1e-3f, 0},
                                            {10, 0}, {100, 0}, {1e4f, 0}, {1e6f, 0}, {1e9f, 0}};
-static const float mcst_grid_cone[][2] = {{0.5f, 0}, {2, 0}, {1.9f, 0}, {1, 0}, {0.01f, 0}, {1e-5f, 0}, {1e-8f, 0}, {1e-20f, 0}};
-static const float mcst_grid_phong[][2] = {{10, 0},   {0, 0},    {0.5f, 0}, {1, 0},    {2, 0},   {100, 0},
-                                           {1e3f, 0}, {1e4f, 0}, {1e5f, 0}, {1e6f, 0}, {1e9f, 0}};
+static const float mcst_grid_cone[][2] = {{0.5f, 0}, {2, 0},     {1.9997f, 0}, {1.99f, 0}, {1.9f, 0},
+                                          {1, 0},    {0.01f, 0}, {1e-5f, 0},   {1e-8f, 0}, {1e-20f, 0}};
+static const float mcst_grid_phong[][2] = {{10, 0},  {0, 0},    {1e-3f, 0}, {1e-2f, 0}, {0.5f, 0}, {1, 0},   {2, 0},
+                                           {100, 0}, {1e3f, 0}, {1e4f, 0},  {1e5f, 0},  {1e6f, 0}, {1e9f, 0}};
 static const float mcst_grid_alpha[][2] = {
     {0.5f, 0.2f},   {0.2f, 0.5f},   {1, 1},     {0.3f, 0.3f}, {0.1f, 0.1f},   {0.01f, 0.01f}, {1e-3f, 1e-3f}, {1e-4f, 1e-4f},
     {1e-5f, 1e-5f}, {1e-6f, 1e-6f}, {0.01f, 1}, {1, 0.01f},   {1e-6f, 1e-4f}, {3, 3},         {10, 10},       {10, 0.1f}};
-static const float mcst_grid_exponents[][2] = {{10, 100},  {100, 10},    {0, 0},       {1, 1},       {3, 0.5f},
-                                               {100, 100}, {1e3f, 1e3f}, {1e4f, 1e4f}, {1e6f, 1e6f}, {1e9f, 1e9f},
-                                               {0, 100},   {1e4f, 1},    {1e9f, 1e5f}};
+static const float mcst_grid_exponents[][2] = {
+    {10, 100},    {100, 10}, {0, 0},    {1, 1},       {3, 0.5f},      {100, 100},     {1e3f, 1e3f}, {1e4f, 1e4f},  {1e6f, 1e6f},
+    {1e9f, 1e9f}, {0, 100},  {1e4f, 1}, {1e9f, 1e5f}, {1e-3f, 1e-3f}, {1e-2f, 1e-2f}, {1e-3f, 100}, {1e4f, 1e-2f}, {1e-2f, 1e9f}};
 
 /* From the pole over 45 degrees to a cosine of 1e-6, azimuths off the axes. */
 static const float mcst_incidence[][2] = {{1, 0},        {0.95f, 0.4f},  {0.70710678f, 0.7f}, {0.35f, 2.1f}, {0.0871557f, -2.5f},

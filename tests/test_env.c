@@ -709,6 +709,28 @@ static void test_frame(void) {
     arena_free(&b);
 }
 
+/* The texels of directions by array, with any output left out, are those one by one; bad directions too. */
+static void check_texels(const mcs_env *e, size_t n, float *x, const float *y, const float *z) {
+    enum { ROOM = 4096 };
+    static uint32_t col[ROOM], row[ROOM];
+    static float pdf[ROOM];
+    const float kept = n ? x[n - 1] : 0;
+    size_t i, skip;
+    if (n > ROOM) return;
+    if (n) x[n - 1] = NAN;
+    for (skip = 0; skip < 8; skip++) {
+        int same = 1;
+        mcs_env_texel_n(e, n, x, y, z, skip & 1 ? NULL : col, skip & 2 ? NULL : row, skip & 4 ? NULL : pdf);
+        for (i = 0; i < n; i++) {
+            const mcs_vec3 w = {x[i], y[i], z[i]};
+            const mcs_texel t = mcs_env_texel(e, w);
+            same &= (skip & 1 || col[i] == t.col) && (skip & 2 || row[i] == t.row) && (skip & 4 || pdf[i] == t.pdf);
+        }
+        CHECK(same, "n = %zu, without %zx: other texels than one by one", n, skip);
+    }
+    if (n) x[n - 1] = kept;
+}
+
 /* ---- batches, memory ---- */
 
 static void test_batch(void) {
@@ -748,6 +770,7 @@ static void test_batch(void) {
                     for (i = 0; i < count; i++) CHECK(pdf[at + i] == out[3][at + i], "n = %zu: pdf_n of sample %zu", count, i);
                     CHECK(pdf[at - 1] == -7.0f && pdf[at + count] == -7.0f, "n = %zu: pdf_n wrote outside", count);
                     mcs_env_pdf_n(env_in(&a), count, out[0] + at, out[1] + at, out[2] + at, NULL);
+                    check_texels(env_in(&a), count, out[0] + at, out[1] + at, out[2] + at);
                     memcpy(pdf, u1 + shift, count * sizeof *pdf); /* in place */
                     mcs_env_sample_n(env_in(&a), count, pdf, u2 + at, pdf, NULL, NULL, NULL);
                     CHECK(memcmp(pdf, out[0] + at, count * sizeof *pdf) == 0, "n = %zu: in place", count);

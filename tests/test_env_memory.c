@@ -613,8 +613,13 @@ static void check_file(picture p, mcs_status status) {
             if (now != was) {
                 const int no = check_damaged(e, bytes, "header word at", i);
                 /* magic, version, the whole layout and both sizes are what everything else is found by */
-                if (i < offsetof(mcs_env, total) || i == offsetof(mcs_env, w) || i == offsetof(mcs_env, h))
+                if (i < offsetof(mcs_env, total) || i == offsetof(mcs_env, w) || i == offsetof(mcs_env, h) ||
+                    (i >= offsetof(mcs_env, row0) && i <= offsetof(mcs_env, col1)))
                     CHECK(no, "header word at %zu: %08x accepted for %08x", i, now, was);
+                /* and words of the frame that are no numbers, sizes of a column that are off by more than rounding */
+                if (i >= offsetof(mcs_env, turn) && (now == 0x7f800000u || now == 0xffffffffu)) CHECK(no, "NaN at %zu accepted", i);
+                if ((i == offsetof(mcs_env, turn) || i == offsetof(mcs_env, inner)) && k < 8)
+                    CHECK(no, "column of %08x turns accepted for %08x", now, was);
             }
         }
         memcpy(byte + i, &was, 4);
@@ -647,6 +652,9 @@ static void check_file(picture p, mcs_status status) {
     memcpy(e, a.at, bytes);
     e->version++;
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "a later version");
+    memcpy(e, a.at, bytes);
+    e->total = -1;
+    CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "negative light");
     memset(e, 0, bytes);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "zeros");
     memset(e, 0xff, bytes);

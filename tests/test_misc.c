@@ -180,6 +180,18 @@ static void test_microfacet(void) {
             const double got = (double)mcs_beckmann_weight(&m, wo, wi), want = 1.772453850905516 * (double)z / (double)a;
             CHECK(fabs(got - want) <= 16 * eps * want, "z = %g: %g, not %g", (double)z, got, want);
         }
+    /* H = wo + wi is about (6e-20, 0, 2e-15): the square of x, and with it the azimuth, lies below FLT_MIN. Within E of the header,
+     * which is 1e-6 at least. */
+    if (mcst_case("density of Ashikhmin and Shirley near the normal, wo grazing")) {
+        const mcs_ashikhmin m = mcs_ashikhmin_make(1e9f, 0.0194f);
+        const mcs_vec3 wo = {-1.8e-16f, -1, 1.03e-15f};
+        for (i = 60; i < 127; i += 6) {
+            const mcs_vec3 wi = mcs_ashikhmin_sample(&m, wo, 0x1.e23e8cp-2f, (float)ldexp(0x1.0007b2p0, -i)).wi;
+            const double got = (double)mcs_ashikhmin_pdf(&m, wo, wi),
+                         want = (double)o_ashikhmin_pdf(1e9f, 0.0194f, o_v3(wo.x, wo.y, wo.z), o_v3(wi.x, wi.y, wi.z));
+            CHECK(fabs(got - want) <= 1e-6 * want, "u2 = 2^-%d: %g, not %g", i, got, want);
+        }
+    }
     if (mcst_case("reflect_pdf")) {
         const float odd[] = {0.0f, -0.0f, -1e-3f, -1.0f, -INFINITY, NAN};
         for (i = 0; i < 100000; i++) {
@@ -220,6 +232,27 @@ static void test_microfacet(void) {
                   (sqrt(dot(h, h)) - 1) / eps);
         }
     }
+}
+
+/* ---- one dimension ---- */
+
+/* Subnormal weights, and numbers u that only some generator of the caller makes: x within 4 ulp, its density within 0.2 E, as the
+ * header promises for all; densities below 2^-126 of the peak may be lost. */
+static void test_linear_tiny(void) {
+    static const float weights[] = {0.0f, 1e-45f, 3e-45f, 1e-44f, 1e-42f, 1e-40f, 1e-38f, FLT_MIN, 1e-30f},
+                       u[] = {0.0f, 1e-45f, 1e-40f, FLT_MIN, 1e-35f, 1e-32f, 1e-25f, 1e-20f, 1e-12f, 1e-6f, 0.3f, 0.99999994f};
+    enum { WEIGHTS = (int)(sizeof weights / sizeof *weights), US = (int)(sizeof u / sizeof *u) };
+    int i, k;
+    for (i = 1; i < WEIGHTS * WEIGHTS; i++)
+        for (k = 0; k < US; k++) {
+            const float a = weights[i / WEIGHTS], b = weights[i % WEIGHTS];
+            const mcs_sample1 s = mcs_linear_sample(a, b, u[k]);
+            const ld x = o_linear_map(a, b, u[k]), pdf = o_linear_pdf_u(a, b, u[k]), peak = 2 * fmaxl(a, b) / ((ld)a + b);
+            const ld e = pdf > 0 ? 1e-6L * (1 + fabsl(logl(pdf / peak))) : 0;
+            CHECK(o_ulp(s.x, x) <= 4, "a = %g, b = %g, u = %g: x %g, not %Lg", (double)a, (double)b, (double)u[k], (double)s.x, x);
+            CHECK(fabsl((ld)s.pdf - pdf) <= 0.2L * e * pdf + FLT_MIN * peak, "a = %g, b = %g, u = %g: pdf %g, not %Lg", (double)a,
+                  (double)b, (double)u[k], (double)s.pdf, pdf);
+        }
 }
 
 /* ---- multiple importance sampling ---- */
@@ -280,6 +313,7 @@ static void test_heuristics(void) {
             CHECK(fabs(p - want) <= 3 * eps * want, "c = %g, f = %g, g = %g: %g, not %g", (double)w, (double)f, (double)g, p, want);
         }
         for (i = 0; i < DENSITIES; i++) CHECK(isfinite(mcs_mix_pdf(densities[i], 1.0f, 2.0f)), "c = %g", (double)densities[i]);
+        CHECK(mcs_mix_pdf(NAN, 1.0f, 2.0f) == 0, "c = NaN: %g", (double)mcs_mix_pdf(NAN, 1.0f, 2.0f));
     }
 }
 
@@ -587,6 +621,8 @@ int main(int argc, char **argv) {
     test_frame();
     mcst_group("microfacet");
     test_microfacet();
+    mcst_group("one dimension");
+    if (mcst_case("linear: subnormal weights, tiny u")) test_linear_tiny();
     mcst_group("mis");
     test_heuristics();
     if (mcst_case("estimates of a known integral agree")) test_mis_estimates();

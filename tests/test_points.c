@@ -137,6 +137,24 @@ static void strata(void) {
             count[(int)(mcs_latin(7, SLABS, 0, i) * SLABS) * SLABS + (int)(mcs_latin(7, SLABS, 1, i) * SLABS)]++;
         uniform(count, SLABS * SLABS, DRAWS, "the slab");
     }
+    /* each point in each slab, each pair of points in each pair of slabs; points 0 and 8 of 16 differ in the bit that moves last */
+    if (mcst_case("Latin hypercube: the permutation is random over seeds")) {
+        enum { LARGEST = 16, LEFT = LARGEST - 1, DRAWS = 1 << 18 };
+        static double slab[LARGEST], pair[LARGEST * LEFT];
+        uint32_t n;
+        for (n = 9; n <= LARGEST; n += 7)
+            for (k = 0; k < 3; k++) { /* the first, the middle, the last point */
+                memset(slab, 0, sizeof slab);
+                for (i = 0; i < DRAWS; i++) slab[(int)((double)mcs_latin(k * (n - 1) / 2, n, 0, i) * n)]++;
+                uniform(slab, (int)n, DRAWS, "the slab of one point");
+            }
+        memset(pair, 0, sizeof pair);
+        for (i = 0; i < DRAWS; i++) {
+            const int a = (int)(mcs_latin(0, LARGEST, 0, i) * LARGEST), b = (int)(mcs_latin(8, LARGEST, 0, i) * LARGEST);
+            pair[a * LEFT + b - (b > a)]++; /* b: of the slabs that a leaves */
+        }
+        uniform(pair, LARGEST * LEFT, DRAWS, "the pair of slabs of two points");
+    }
     if (mcst_case("counts out of range")) {
         const uint32_t odd[] = {0, 1u << 21, 0xffffffffu};
         for (i = 0; i < 9; i++) {

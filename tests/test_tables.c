@@ -658,6 +658,47 @@ static void test_relocation(const kind *k) {
     arena_free(&b);
 }
 
+/* Tables of more entries than a float u can tell apart: the mean of 1/(n pmf) over draws is 1 when frequencies are the pmf. Half
+ * the weights are 0.01, half 1.99: the variance of one draw is 0.5/0.01 + 0.5/1.99 - 1 = 49.3. Four standard errors. */
+static void test_long_alias(uint32_t n) {
+    enum { DRAWS = 1 << 20 };
+    const size_t bytes = mcs_alias_bytes(n);
+    float *const w = malloc(n * sizeof *w);
+    mcs_alias *const t = malloc(bytes);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 151);
+    double sum = 0;
+    uint32_t i;
+    int wrong = 0;
+    if (!w || !t) exit(puts("no memory"));
+    for (i = 0; i < n; i++) w[i] = i & 1 ? 1.99f : 0.01f;
+    CHECK(mcs_alias_build(t, bytes, w, n) == MCS_OK, "build");
+    for (i = 0; i < DRAWS; i++) {
+        const uint32_t b1 = mcs_pcg32_next(&rng), b2 = mcs_pcg32_next(&rng);
+        const mcs_pick c = mcs_alias_sample_bits(t, b1, b2);
+        sum += 1 / ((double)n * (double)c.pmf);
+        wrong += !(c.i < n && c.u >= 0 && c.u < 1 && c.pmf == mcs_alias_pmf(t, c.i));
+    }
+    CHECK(wrong == 0, "%d wrong picks", wrong);
+    CHECK(fabs(sum / DRAWS - 1) <= 4 * sqrt(49.3 / DRAWS), "n = %u: mean of 1/(n pmf) is %g", n, sum / DRAWS);
+    CHECK(mcs_alias_sample_bits(t, 0xffffffffu, 0xffffffffu).i < n, "the last column");
+    free(w), free(t);
+}
+/* n 2^31 above 2^54, where the room for shares, n 2^31 - n, rounds up as double: shares must still add up. */
+static void test_huge_alias(void) {
+    const uint32_t n = 8388610;
+    const size_t bytes = mcs_alias_bytes(n);
+    float *const w = malloc(n * sizeof *w);
+    mcs_alias *const t = malloc(bytes);
+    double sum = 0;
+    uint32_t i;
+    if (!w || !t) exit(puts("no memory"));
+    for (i = 0; i < n; i++) w[i] = i ? 1e-30f : 1e30f;
+    CHECK(mcs_alias_build(t, bytes, w, n) == MCS_OK, "build");
+    for (i = 0; i < n; i++) sum += (double)mcs_alias_pmf(t, i);
+    CHECK(fabs(sum - 1) <= 0x1p-20, "probabilities add up to %g", sum);
+    free(w), free(t);
+}
+
 int main(int argc, char **argv) {
     int k;
     mcst_start(argc, argv);
@@ -670,6 +711,10 @@ int main(int argc, char **argv) {
     mcst_group("alias");
     test_alias();
     if (mcst_case("rest of u")) test_rest(&kinds[ALIAS]);
+    if (mcst_case("2^18 entries by 64 bits")) test_long_alias(1u << 18);
+    if (mcst_case("1000001 entries by 64 bits")) test_long_alias(1000001);
+    if (mcst_case("8388610 entries")) test_huge_alias();
+    if (mcst_case("last of more cells than floats")) CHECK(mcsi_in_cell((1u << 25) - 1, 0.9, 1u << 25) < 1, "x is 1");
     mcst_group("table batches");
     if (mcst_case("n = 0..67, 1000, 4099, shifted, in place, NULL outputs")) test_batch();
     mcst_group("pwc from a function");

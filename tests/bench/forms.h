@@ -12,21 +12,6 @@
 #endif
 #define B_(name) FORM_CAT(bench, BENCH_W, _##name)
 
-/* By pointers to unaligned vectors: gcc 12 copies with memcpy in halves, and a load of both halves then waits for the stores. */
-#if BENCH_W == 1
-typedef float B_(any);
-#else
-typedef F_ B_(any) __attribute__((aligned(4), may_alias));
-#endif
-static inline F_ B_(load)(const float *a) { return *(const B_(any) *)(const void *)a; }
-static inline void B_(store)(float *a, F_ v) { *(B_(any) *)(void *)a = v; }
-static inline F_ B_(set)(float x) {
-    float a[BENCH_W];
-    int i;
-    for (i = 0; i < BENCH_W; i++) a[i] = x;
-    return B_(load)(a);
-}
-
 #define FORM_ARGS_0
 #define FORM_ARGS_1 a,
 #define FORM_ARGS_2 a, b,
@@ -41,8 +26,8 @@ static inline F_ B_(set)(float x) {
 
 #define FORM(row, prepare, type, call, keep)                                                                       \
     static void B_(row)(const float *p, size_t n, const float *u1, const float *u2, float *const out[BENCH_OUT]) { \
-        const F_ a = B_(set)(p[0]), b = B_(set)(p[1]);                                                             \
-        const M_(vec3) wo = {B_(set)(p[3]), B_(set)(p[4]), B_(set)(p[5])};                                         \
+        const F_ a = M_(set)(p[0]), b = M_(set)(p[1]);                                                             \
+        const M_(vec3) wo = {M_(set)(p[3]), M_(set)(p[4]), M_(set)(p[5])};                                         \
         float *const x = out[0], *const y = out[1], *const z = out[2], *const pdf = out[3];                        \
         size_t i;                                                                                                  \
         prepare;                                                                                                   \
@@ -50,15 +35,15 @@ static inline F_ B_(set)(float x) {
         for (i = 0; i < n; i += BENCH_W) {                                                                         \
             const M_(type) s = call;                                                                               \
             keep;                                                                                                  \
-            B_(store)(pdf + i, s.pdf);                                                                             \
+            M_(store)(pdf + i, s.pdf);                                                                             \
         }                                                                                                          \
     }
-#define FORM_U B_(load)(u1 + i), B_(load)(u2 + i)
-#define FORM_XYZ(v) B_(store)(x + i, v.x), B_(store)(y + i, v.y), B_(store)(z + i, v.z)
+#define FORM_U M_(load)(u1 + i), M_(load)(u2 + i)
+#define FORM_XYZ(v) M_(store)(x + i, v.x), M_(store)(y + i, v.y), M_(store)(z + i, v.z)
 #define FORM_LINE(row, fn, args) \
-    FORM(row, (void)0, sample1, M_(fn##_sample)(FORM_ARGS_##args B_(load)(u1 + i)), B_(store)(x + i, s.x))
+    FORM(row, (void)0, sample1, M_(fn##_sample)(FORM_ARGS_##args M_(load)(u1 + i)), M_(store)(x + i, s.x))
 #define FORM_PLANE(row, fn, args) \
-    FORM(row, (void)0, sample2, M_(fn##_sample)(FORM_ARGS_##args FORM_U), (B_(store)(x + i, s.x), B_(store)(y + i, s.y)))
+    FORM(row, (void)0, sample2, M_(fn##_sample)(FORM_ARGS_##args FORM_U), (M_(store)(x + i, s.x), M_(store)(y + i, s.y)))
 #define FORM_DIR(row, fn, args) FORM(row, (void)0, dir, M_(fn##_sample)(FORM_ARGS_##args FORM_U), FORM_XYZ(s.w))
 #define FORM_LOBE(row, fn, mat) FORM(row, FORM_MAKE_##mat, dir, M_(fn##_sample)(&m, FORM_U), FORM_XYZ(s.w))
 #define FORM_VLOBE(row, fn, mat) FORM(row, FORM_MAKE_##mat, dir, M_(fn##_sample)(&m, wo, FORM_U), FORM_XYZ(s.w))

@@ -33,12 +33,12 @@ typedef void block_fn(const float *in, float *y_out, float *z_out);
     static void map##_##W(const float *in, float *y_out, float *z_out) { \
         int i;                                                           \
         for (i = 0; i < BLOCK; i += W) {                                 \
-            const P##W(f) a = I##W(set)(arg[0]), b = I##W(set)(arg[1]);  \
-            const P##W(f) x = I##W(load)(in + i);                        \
+            const P##W(f) a = P##W(set)(arg[0]), b = P##W(set)(arg[1]);  \
+            const P##W(f) x = P##W(load)(in + i);                        \
             P##W(f) y = x, z = x;                                        \
             (void)a, (void)b;                                            \
             DO_##map(I##W, P##W);                                        \
-            I##W(store)(y_out + i, y), I##W(store)(z_out + i, z);        \
+            P##W(store)(y_out + i, y), P##W(store)(z_out + i, z);        \
         }                                                                \
     }
 #ifdef MCS_NO_WIDE
@@ -58,8 +58,8 @@ typedef void block_fn(const float *in, float *y_out, float *z_out);
     P(i) behind;                                 \
     I(sincos_behind)(x, &sine, &z, &behind, &y); \
     (void)behind
-#define DO_atan_y(I, P) y = z = I(atan2_turns)(x, I(set)(1.0f))
-#define DO_atan_x(I, P) y = I(atan2_turns)(I(set)(1.0f), x), z = I(atan2_turns)(I(set)(-1.0f), x)
+#define DO_atan_y(I, P) y = z = I(atan2_turns)(x, P(set)(1.0f))
+#define DO_atan_x(I, P) y = I(atan2_turns)(P(set)(1.0f), x), z = I(atan2_turns)(P(set)(-1.0f), x)
 #define DO_log(I, P) y = I(log)(x)
 #define DO_log1p(I, P) y = I(log1p)(x)
 #define DO_exp_neg(I, P) y = I(exp_neg)(x)
@@ -125,12 +125,12 @@ MAP(evenpower_back)
 
 /* The radial profile of a map of two numbers: u1 (u2 for the visible normals' caps) to sin(theta) at azimuth 0, and the density. */
 #define RADIAL(I, P, name, lead)                             \
-    const P(dir) d = P(name##_sample)(lead x, I(set)(0.0f)); \
+    const P(dir) d = P(name##_sample)(lead x, P(set)(0.0f)); \
     y = d.w.x, z = d.pdf
 #define NO_ARGS
 #define MATERIAL &m,
 #define DO_disk(I, P)                                        \
-    const P(sample2) d = P(disk_sample)(a, x, I(set)(0.0f)); \
+    const P(sample2) d = P(disk_sample)(a, x, P(set)(0.0f)); \
     y = d.x, z = d.pdf
 #define DO_sphere(I, P) RADIAL(I, P, sphere, NO_ARGS)
 #define DO_hemisphere(I, P) RADIAL(I, P, hemisphere, NO_ARGS)
@@ -617,8 +617,10 @@ static const struct radius {
     {"hemisphere", hemisphere_at, 0, 0, ULP, 1, 1, 0.15},
     {"cosine", cosine_at, 0, 0, ULP, 1, 1, 0.15},
     {"cone", cone_at, 0.5f, 0, ULP, 1, 1, 0.15},
+    {"cone", cone_at, 1.9997f, 0, ULP, 1, 1, 0.15},
     {"cone", cone_at, 1e-20f, 0, RELATIVE, 10, 0, 0.15},
     {"phong_lobe", phong_lobe_at, 0, 0, RELATIVE, 10, 0, 0.7},
+    {"phong_lobe", phong_lobe_at, 1e-3f, 0, RELATIVE, 10, 0, 2.6},
     {"phong_lobe", phong_lobe_at, 10, 0, RELATIVE, 10, 0, 0.4},
     {"phong_lobe", phong_lobe_at, 1e9f, 0, RELATIVE, 10, 0, 0.4},
     {"ward_h", ward_h_at, 0.5f, 0.5f, RELATIVE, 10, 0, 0.7},
@@ -627,6 +629,7 @@ static const struct radius {
     {"ggx_h", ggx_h_at, 0.5f, 0.5f, RELATIVE, 10, 0, 0.7},
     {"ggx_h", ggx_h_at, 1e-6f, 1e-6f, RELATIVE, 10, 0, 0.7},
     {"ggx_h", ggx_h_at, 10, 0.1f, RELATIVE, 10, 0, 0.7},
+    {"ashikhmin_h", ashikhmin_h_at, 1e-3f, 1e-3f, RELATIVE, 10, 0, 2.6},
     {"ashikhmin_h", ashikhmin_h_at, 10, 10, RELATIVE, 10, 0, 0.3},
     {"ashikhmin_h", ashikhmin_h_at, 100, 10, RELATIVE, 10, 0, 0.3},
     {"ashikhmin_h", ashikhmin_h_at, 1e9f, 1e9f, RELATIVE, 10, 0, 0.3},
@@ -696,11 +699,11 @@ int main(int argc, char **argv) {
     mcst_group("u to radius");
     for (i = 0; i < MCST_COUNT(radii); i++) {
         const struct radius *r = &radii[i];
+        const int past_equator = !strcmp(r->name, "sphere") || (!strcmp(r->name, "cone") && r->a > 1); /* sin falls again */
         row = mcst_find(r->name);
         arg[0] = r->a, arg[1] = r->b;
         if (!mcst_case("%s %g %g", row->name, (double)arg[0], (double)arg[1])) continue;
-        set_result(&of[0], "x", r->unit, r->limit, r->scale, strcmp(row->name, "sphere") ? 1 : 0, 0,
-                   strcmp(row->name, "disk") ? 1 : (double)r->a);
+        set_result(&of[0], "x", r->unit, r->limit, r->scale, !past_equator, 0, strcmp(row->name, "disk") ? 1 : (double)r->a);
         set_result(&of[1], "pdf", DENSITY, r->pdf_limit, peak_of(row_n), 0, 0, (double)FLT_MAX);
         sweep(&grid, r->at, row_n, of);
     }
