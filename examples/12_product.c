@@ -16,7 +16,8 @@ int main(void) {
     mcs_env *env = (mcs_env *)malloc(bytes);
     mcs_tiles *tiles = NULL;
     mcs_product *point = (mcs_product *)malloc(point_bytes);
-    mcs_reflection matte = {mcs_frame_make((mcs_vec3){0, 0, 1}), {0, 0, 1}, 1, 1, 1, MCS_PROFILE_GGX};
+    const mcs_vec3 up = {0, 0, 1};
+    const mcs_reflection matte = {mcs_frame_make(up), up, 1, 1, 1, MCS_PROFILE_GGX};
     mcs_pcg32 rng = mcs_pcg32_make(12, 1);
     mcs_stat plain = {0, 0, 0}, prepared = {0, 0, 0}, oneshot = {0, 0, 0};
     double exact = 0;

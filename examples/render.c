@@ -192,6 +192,7 @@ static int map_read(environment *e, const char *name) {
     return ok;
 }
 
+/* In the map's own axes. */
 static vec3 texel_direction(const environment *e, uint32_t x, uint32_t y) {
     float theta = PI * ((float)y + 0.5f) / (float)e->h, phi = 2 * PI * ((float)x + 0.5f) / (float)e->w;
     return vec(sinf(theta) * cosf(phi), sinf(theta) * sinf(phi), cosf(theta));
@@ -229,7 +230,7 @@ static void map_survey(environment *e) {
     for (y = 0; y < e->h / 2; y++) {
         float area = 2 * PI / (float)e->w * (cosf(PI * (float)y / (float)e->h) - cosf(PI * (float)(y + 1) / (float)e->h));
         for (x = 0; x < e->w; x++) {
-            vec3 d = texel_direction(e, x, y);
+            vec3 d = mcs_to_world(&e->table->frame, texel_direction(e, x, y));
             double l = luminance(radiance_at(e, x, y));
             lx += l * l * area * d.x, ly += l * l * area * d.y;
             irradiance += l * area * d.z;
@@ -245,7 +246,6 @@ static int environment_make(environment *e, const char *map) {
     mcs_image image;
     int status;
     if (!(map ? map_read(e, name) : map_sky(e, name))) return 0;
-    map_survey(e);
     bytes = mcs_env_bytes(e->w, e->h);
     e->table = malloc(bytes);
     pixel = malloc((size_t)e->w * e->h * sizeof *pixel);
@@ -256,6 +256,8 @@ static int environment_make(environment *e, const char *map) {
     free(pixel);
     if (status == MCS_UNIFORM) return complain(name, "the map is black: there is nothing to light the scene with");
     if (status != MCS_OK) return complain(name, "no sampling table (status %d)", status);
+    if (map) e->table->frame.t = vec(0, -1, 0); /* columns of a panorama run clockwise seen from above, azimuth the other way */
+    map_survey(e);
     bytes = mcs_tiles_bytes(e->table, TILES);
     e->tiles = malloc(bytes);
     if (!e->tiles) return complain(name, "not enough memory for the tiles");
@@ -855,7 +857,7 @@ static int usage(void) {
     return fputs("usage: render [options] [map.hdr]\n"
                  "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
                  "  --strategy LIST    uniform, cosine, brdf, env, mis, product, several with commas, or all (mis)\n"
-                 "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384)\n"
+                 "  --spp N            samples per pixel, 2 or more (64; with --error or --seconds: at most N, 16384)\n"
                  "  --lights N         estimates of the light at each point that a sample sees (1)\n"
                  "  --seconds T        stop each strategy after T seconds of processor time: pictures of equal cost\n"
                  "  --error E          stop when the standard error of the mean of the picture is E times the mean\n"
@@ -865,7 +867,7 @@ static int usage(void) {
                  "  --stack FILE       write all pictures into one PNG too, one below the other\n"
                  "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on it\n"
                  "  --seed N           another set of random numbers (1)\n"
-                 "  --help             this text\n"
+                 "  -h, --help         this text\n"
                  "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
                  "EXPOSURE lines of a map are ignored. The camera has the main light of the map behind it at the left.\n"
                  "examples/product.png: render --strategy mis,product --lights 16 --seconds 2 --size 480x160 --threads 1\n"
@@ -925,7 +927,7 @@ static int parse_arguments(int argc, char **argv, options *o) {
     memset(o, 0, sizeof *o);
     o->w = 960, o->h = 320, o->seed = 1, o->lights = 1, o->wanted[MIS] = 1, o->out = "render";
     for (i = 1; i < argc; i++) {
-        if (!strcmp(argv[i], "--help")) return o->help = 1;
+        if (!strcmp(argv[i], "-h") || !strcmp(argv[i], "--help")) return o->help = 1;
         if (argv[i][0] != '-') {
             if (o->map) return complain(argv[i], "only one map can be given");
             o->map = argv[i];
