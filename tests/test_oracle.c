@@ -173,11 +173,12 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
     /* _pdf belongs to the float point */
     pdf_x = row->truth.pdf(p, x);
     row->fn[0].pdf(p, x, &pdf);
-    if (pdf_x == 0 &&
-        (row->shape == MCST_IS_PLANE || row->shape == MCST_IS_VLOBE)) { /* rounded over the rim: 0 or what is inside */
+    if (pdf_x == 0 && (row->shape == MCST_IS_PLANE || row->shape == MCST_IS_DIR || row->shape == MCST_IS_VLOBE)) {
+        /* rounded over the rim: 0 or what is inside */
         float inside[3];
         for (i = 0; i < 3; i++)
             inside[i] = x[i] * (1 - 8 * (float)EPS) + (row->shape == MCST_IS_VLOBE ? 8 * (float)EPS * p[3 + i] : 0);
+        if (row->shape == MCST_IS_DIR) inside[2] = x[2]; /* towards the axis of a cone */
         pdf_x = row->truth.pdf(p, inside);
         CHECK(pdf >= 0 && (ld)pdf <= pdf_x * 1.001L, "u %a %a: pdf(x) %.9g on the rim, %.9Lg inside", (double)u[0], (double)u[1],
               (double)pdf, pdf_x);
