@@ -106,6 +106,19 @@
  *              mcs_product_pdf mcs_product_sample_n mcs_oneshot_sample mcs_oneshot_pdf
  * [estimator]  mcs_stat mcs_stat_add mcs_stat_merge mcs_stat_variance mcs_stat_error mcs_stat_ci
  * END OF INDEX */
+/* SIGNATURES: what is marked w is written once for all widths, as MCS_(x), and takes these arguments (p: the parameters of the
+ * block; m: a material from mcs_x_make); everything else has its prototype in its block.
+ *
+ * [1d]         mcs_x_sample(p, u) -> mcs_sample1 {x, pdf}           _pdf(p, x) -> pdf      _invert(p, x) -> u
+ * [disk]       mcs_x_sample(R, u1, u2) -> mcs_sample2 {x, y, pdf}   _pdf(R, x, y) -> pdf   _invert(R, x, y) -> {u1, u2}
+ * [sphere]     mcs_x_sample(u1, u2) -> mcs_dir {w, pdf}             _pdf(w) -> pdf         _invert(w) -> {u1, u2}; a cone's k first
+ * _lobe, _h    mcs_x_sample(&m, u1, u2) -> mcs_dir {w, pdf}         _pdf(&m, h) -> pdf     _invert(&m, h) -> {u1, u2}
+ *              of visible normals: mcs_x_sample(&m, wo, u1, u2)     _pdf(&m, wo, h)        _invert(&m, wo, h)
+ * BRDFs        mcs_x_sample(&m, wo, u1, u2) -> mcs_brdf {wi, pdf, weight}
+ *              _pdf(&m, wo, wi) -> pdf   _eval(&m, wo, wi) -> f   _weight(&m, wo, wi) -> f cos/pdf
+ * arrays       the same up to n, arrays in, arrays out: mcs_disk_sample_n(R, n, u1, u2, x, y, pdf),
+ *              mcs_ggx_h_sample_n(&m, n, u1, u2, x, y, z, pdf), mcs_ggx_pdf_n(&m, wo, n, x, y, z, pdf),
+ *              mcs_ggx_sample_n(&m, wo, n, u1, u2, x, y, z, pdf, weight) */
 
 #ifndef MCSAMPLE_H
 #define MCSAMPLE_H

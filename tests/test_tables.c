@@ -666,7 +666,7 @@ static void test_long_alias(uint32_t n) {
     float *const w = malloc(n * sizeof *w);
     mcs_alias *const t = malloc(bytes);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 151);
-    double sum = 0;
+    double total = 0;
     uint32_t i;
     int wrong = 0;
     if (!w || !t) exit(puts("no memory"));
@@ -675,11 +675,11 @@ static void test_long_alias(uint32_t n) {
     for (i = 0; i < DRAWS; i++) {
         const uint32_t b1 = mcs_pcg32_next(&rng), b2 = mcs_pcg32_next(&rng);
         const mcs_pick c = mcs_alias_sample_bits(t, b1, b2);
-        sum += 1 / ((double)n * (double)c.pmf);
+        total += 1 / ((double)n * (double)c.pmf);
         wrong += !(c.i < n && c.u >= 0 && c.u < 1 && c.pmf == mcs_alias_pmf(t, c.i));
     }
     CHECK(wrong == 0, "%d wrong picks", wrong);
-    CHECK(fabs(sum / DRAWS - 1) <= 4 * sqrt(49.3 / DRAWS), "n = %u: mean of 1/(n pmf) is %g", n, sum / DRAWS);
+    CHECK(fabs(total / DRAWS - 1) <= 4 * sqrt(49.3 / DRAWS), "n = %u: mean of 1/(n pmf) is %g", n, total / DRAWS);
     CHECK(mcs_alias_sample_bits(t, 0xffffffffu, 0xffffffffu).i < n, "the last column");
     free(w), free(t);
 }
@@ -689,13 +689,13 @@ static void test_huge_alias(void) {
     const size_t bytes = mcs_alias_bytes(n);
     float *const w = malloc(n * sizeof *w);
     mcs_alias *const t = malloc(bytes);
-    double sum = 0;
+    double total = 0;
     uint32_t i;
     if (!w || !t) exit(puts("no memory"));
     for (i = 0; i < n; i++) w[i] = i ? 1e-30f : 1e30f;
     CHECK(mcs_alias_build(t, bytes, w, n) == MCS_OK, "build");
-    for (i = 0; i < n; i++) sum += (double)mcs_alias_pmf(t, i);
-    CHECK(fabs(sum - 1) <= 0x1p-20, "probabilities add up to %g", sum);
+    for (i = 0; i < n; i++) total += (double)mcs_alias_pmf(t, i);
+    CHECK(fabs(total - 1) <= 0x1p-20, "probabilities add up to %g", total);
     free(w), free(t);
 }
 
