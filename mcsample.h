@@ -106,15 +106,15 @@
  *              mcs_product_pdf mcs_product_sample_n mcs_oneshot_sample mcs_oneshot_pdf
  * [estimator]  mcs_stat mcs_stat_add mcs_stat_merge mcs_stat_variance mcs_stat_error mcs_stat_ci
  * END OF INDEX */
-/* SIGNATURES: what is marked w is written once for all widths, as MCS_(x), and takes these arguments (p: the parameters of the
- * block; m: a material from mcs_x_make); everything else has its prototype in its block.
+/* SIGNATURES: what is marked w is written once for all widths, as MCS_(x), and takes these arguments (after mcs_ and the name; p: the
+ * parameters of the block; m: a material from its _make); everything else has its prototype in its block.
  *
- * [1d]         mcs_x_sample(p, u) -> mcs_sample1 {x, pdf}           _pdf(p, x) -> pdf      _invert(p, x) -> u
- * [disk]       mcs_x_sample(R, u1, u2) -> mcs_sample2 {x, y, pdf}   _pdf(R, x, y) -> pdf   _invert(R, x, y) -> {u1, u2}
- * [sphere]     mcs_x_sample(u1, u2) -> mcs_dir {w, pdf}             _pdf(w) -> pdf         _invert(w) -> {u1, u2}; a cone's k first
- * _lobe, _h    mcs_x_sample(&m, u1, u2) -> mcs_dir {w, pdf}         _pdf(&m, h) -> pdf     _invert(&m, h) -> {u1, u2}
- *              of visible normals: mcs_x_sample(&m, wo, u1, u2)     _pdf(&m, wo, h)        _invert(&m, wo, h)
- * BRDFs        mcs_x_sample(&m, wo, u1, u2) -> mcs_brdf {wi, pdf, weight}
+ * [1d]         _sample(p, u) -> mcs_sample1 {x, pdf}             _pdf(p, x) -> pdf      _invert(p, x) -> u
+ * [disk]       _sample(R, u1, u2) -> mcs_sample2 {x, y, pdf}     _pdf(R, x, y) -> pdf   _invert(R, x, y) -> {u1, u2}
+ * [sphere]     _sample(u1, u2) -> mcs_dir {w, pdf}               _pdf(w) -> pdf         _invert(w) -> {u1, u2}; a cone's k first
+ * _lobe, _h    _sample(&m, u1, u2) -> mcs_dir {w, pdf}           _pdf(&m, h) -> pdf     _invert(&m, h) -> {u1, u2}
+ *              of visible normals: _sample(&m, wo, u1, u2)       _pdf(&m, wo, h)        _invert(&m, wo, h)
+ * BRDFs        _sample(&m, wo, u1, u2) -> mcs_brdf {wi, pdf, weight}
  *              _pdf(&m, wo, wi) -> pdf   _eval(&m, wo, wi) -> f   _weight(&m, wo, wi) -> f cos/pdf
  * arrays       the same up to n, arrays in, arrays out: mcs_disk_sample_n(R, n, u1, u2, x, y, pdf),
  *              mcs_ggx_h_sample_n(&m, n, u1, u2, x, y, z, pdf), mcs_ggx_pdf_n(&m, wo, n, x, y, z, pdf),
@@ -3775,12 +3775,12 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * (build returns MCS_UNIFORM); a black map counts as even light, as in [env].
  * Narrow lobes (4 pi alpha_x alpha_y cos(theta_o) below 8 mean tiles): in the prepared form the tiles that by their mean
  * direction or a corner weigh more than a 256th of all, the 32 heaviest at most, have the reflection on a grid of 8 x 8 places
- * among their light, are bilinear in its 7 x 7 cells and weigh what that says. A lobe narrower than the cells gets a share
- * (p->brdf_share) of the samples for itself, (1 - matte) m/(1 + m), at most 0.95, where m + 0.03 is a fourteenth of the mean
- * solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), that of the lobe (one-shot: m + 0.3 is the whole of it; both
- * three times as much for _GAUSS and _PHONG, which have no tails): directions by mcs_ggx_vndf, mcs_ward or mcs_phong; the density
- * is that of the mixture, and what the lobe sends below the surface is lost. To join samplers of one's own by MIS, set
- * p->brdf_share to 0.
+ * among their light, are bilinear in its 7 x 7 cells and weigh what that says; the others weigh less where the corners are darker
+ * than the mean direction. A lobe narrower than the cells gets a share (p->brdf_share) of the samples for itself,
+ * (1 - matte) m/(1 + m), at most 0.95, where m + 0.03 is a fourteenth of the mean solid angle of a tile over
+ * 4 pi alpha_x alpha_y cos(theta_o), that of the lobe (one-shot: m + 0.3 is the whole of it; both three times as much for _GAUSS
+ * and _PHONG, which have no tails): directions by mcs_ggx_vndf, mcs_ward or mcs_phong; the density is that of the mixture, and what
+ * the lobe sends below the surface is lost. To join samplers of one's own by MIS, set p->brdf_share to 0.
  * For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified, which gains little below several thousand
  * samples, as every tile has a residue of its own.
  * Tile weights: light E times reflection towards its mean direction; matte (c + r)^2/(4 pi r), or c/pi where c >= r, c the cosine
@@ -3919,18 +3919,27 @@ MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *light, co
         MCSI_(store_int)(cum + cols * rows + i, at), MCS_(store)(row + i, sum);
     }
 }
-/* What tiles weigh at most, by their mean direction or a corner, and the sums of rows. */
-MCSI_CORE void MCSI_(grid_bounds)(size_t rows, size_t cols, const float *light, const float *value, const float *corner,
-                                  float *weight, float *row) {
+/* What tiles weigh at most, by their mean direction or a corner, and the sums of rows. Then values that the mean of their warp is
+ * below come three quarters of the way down to it: beside the peak of a narrow lobe the spread of the light says too much. */
+MCSI_CORE void MCSI_(grid_bounds)(size_t rows, size_t cols, const float *light, const float *pull, const float *corner,
+                                  float *value, float *weight, float *row) {
     size_t i, j;
     for (i = 0; i < rows; i += MCSI_W) {
-        MCSI_F sum = MCS_(set)(0.0f), left = MCSI_(max)(MCS_(load)(corner + i), MCS_(load)(corner + i + 1)), first = left;
+        MCSI_F sum = MCS_(set)(0.0f), a = MCS_(load)(corner + i), b = MCS_(load)(corner + i + 1);
+        MCSI_F most = MCSI_(max)(a, b), both = a + b, first_most = most, first_both = both;
         for (j = 0; j < cols; j++) {
             const float *next = corner + (j + 1) * (rows + 1) + i;
-            MCSI_F right = j + 1 < cols ? MCSI_(max)(MCS_(load)(next), MCS_(load)(next + 1)) : first;
-            MCSI_F v = MCS_(load)(value + j * rows + i), most = MCSI_(max)(v, MCSI_(max)(left, right));
-            v = MCS_(load)(light + j * rows + i) * MCSI_(keep)(v > 0.0f, most);
-            MCS_(store)(weight + j * rows + i, v), sum = sum + v, left = right;
+            MCSI_F next_most = first_most, next_both = first_both, v = MCS_(load)(value + j * rows + i), bound, mean;
+            if (j + 1 < cols) {
+                a = MCS_(load)(next), b = MCS_(load)(next + 1);
+                next_most = MCSI_(max)(a, b), next_both = a + b;
+            }
+            bound = MCSI_(keep)(v > 0.0f, MCSI_(max)(v, MCSI_(max)(most, next_most)));
+            bound = MCS_(load)(light + j * rows + i) * bound, sum = sum + bound;
+            mean = v + MCS_(load)(pull + j * rows + i) * (0.25f * (both + next_both) - v);
+            MCS_(store)(weight + j * rows + i, bound);
+            MCS_(store)(value + j * rows + i, MCSI_(sel)(mean < v, 0.25f * v + 0.75f * mean, v));
+            most = next_most, both = next_both;
         }
         MCS_(store)(row + i, sum);
     }
@@ -3974,9 +3983,10 @@ MCSI_BATCH_AS(mcsi_grid_rows_n, grid_rows_n,
               (size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row),
               (rows, cols, light, value, cum, row), { MCSI_(grid_rows)(rows, cols, light, value, cum, row); })
 MCSI_BATCH_AS(mcsi_grid_bounds_n, grid_bounds_n,
-              (size_t rows, size_t cols, const float *light, const float *value, const float *corner, float *weight, float *row),
-              (rows, cols, light, value, corner, weight, row), {
-                  MCSI_(grid_bounds)(rows, cols, light, value, corner, weight, row);
+              (size_t rows, size_t cols, const float *light, const float *pull, const float *corner, float *value, float *weight,
+               float *row),
+              (rows, cols, light, pull, corner, value, weight, row), {
+                  MCSI_(grid_bounds)(rows, cols, light, pull, corner, value, weight, row);
               })
 /* clang-format on */
 #endif
@@ -4291,21 +4301,21 @@ MCSI_CORE void mcsi_corners_value(const mcsi_facing *s, size_t n, const float *c
 }
 /* The tiles that may weigh most: their numbers, at most MCSI_FINE of them, each more than a 256th of all. The weights lie where the
  * integers of the columns will. */
-MCS_FN uint32_t mcsi_product_heaviest(const mcs_product *p, uint32_t *tile) {
-    const float *sum = mcsi_product_sums(p), *weight = (const float *)(const void *)mcsi_product_cum(p);
-    uint32_t rows = p->t->rows, count = 0, i, k, c;
-    float least = 0.0f;
+MCS_FN uint32_t mcsi_product_heaviest(mcs_product *p, uint32_t *tile) {
+    const float *fields = mcsi_tiles_fields(p->t), *corners = mcsi_product_corners(p);
+    float *sum = mcsi_product_sums(p), *weight = (float *)(void *)mcsi_product_cum(p), *values = mcsi_product_values(p),
+          least = 0.0f;
+    uint32_t rows = p->t->rows, cols = p->t->cols, count = 0, i, k, c;
+    const float *pull = fields + MCSI_TILE_PULL * (size_t)rows * cols;
 #ifndef MCS_NO_BATCH
-    mcsi_grid_bounds_n(rows, p->t->cols, mcsi_tiles_fields(p->t), mcsi_product_values(p), mcsi_product_corners(p),
-                       (float *)(void *)mcsi_product_cum(p), mcsi_product_sums(p));
+    mcsi_grid_bounds_n(rows, cols, fields, pull, corners, values, weight, sum);
 #else
-    mcsi_grid_bounds(rows, p->t->cols, mcsi_tiles_fields(p->t), mcsi_product_values(p), mcsi_product_corners(p),
-                     (float *)(void *)mcsi_product_cum(p), mcsi_product_sums(p));
+    mcsi_grid_bounds(rows, cols, fields, pull, corners, values, weight, sum);
 #endif
     for (i = 0; i < rows; i++) least += sum[i] * 0.00390625f;
     for (i = 0; i < rows; i++) {
         if (!(sum[i] > least)) continue;
-        for (k = i; k < rows * p->t->cols; k += rows) {
+        for (k = i; k < rows * cols; k += rows) {
             uint32_t at = 0;
             if (!(weight[k] > least)) continue;
             if (count < MCSI_FINE) {
