@@ -106,8 +106,8 @@
  *              mcs_product_pdf mcs_product_sample_n mcs_oneshot_sample mcs_oneshot_pdf
  * [estimator]  mcs_stat mcs_stat_add mcs_stat_merge mcs_stat_variance mcs_stat_error mcs_stat_ci
  * END OF INDEX */
-/* SIGNATURES: what is marked w is written once for all widths, as MCS_(x), and takes these arguments (after mcs_ and the name; p: the
- * parameters of the block; m: a material from its _make); everything else has its prototype in its block.
+/* SIGNATURES: what is marked w is written once for all widths, as MCS_(x), and takes these arguments (after mcs_ and the name; p:
+ * the parameters of the block; m: a material from its _make); everything else has its prototype in its block.
  *
  * [1d]         _sample(p, u) -> mcs_sample1 {x, pdf}             _pdf(p, x) -> pdf      _invert(p, x) -> u
  * [disk]       _sample(R, u1, u2) -> mcs_sample2 {x, y, pdf}     _pdf(R, x, y) -> pdf   _invert(R, x, y) -> {u1, u2}
