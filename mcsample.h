@@ -3425,7 +3425,8 @@ MCSI_CORE double mcsi_env_within(const mcsi_env_line *line, double U) {
     if (line->mass == MCSI_ONE && line->begin == 0) return U;
     U *= line->mass * (1.0 / MCSI_ONE); /* and the sum must not round up to the end */
     U = line->begin + (U < line->mass - 4.76837158203125e-07 ? U : line->mass - 4.76837158203125e-07);
-    return U < MCSI_ONE ? U : U - MCSI_ONE;
+    U -= U > MCSI_ONE - 2.384185791015625e-07 ? (double)MCSI_ONE : 0.0; /* the next double is 2^31: one of x87 may lie between */
+    return U > 0.0 ? U : 0.0;
 }
 /* Row of the view. */
 MCSI_CORE uint32_t mcsi_env_draw_row(const mcsi_env_view *v, double U2, mcsi_env_point *p) {
@@ -3787,7 +3788,7 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * and r 1.5 times the spread s of the light about that direction; lobe: with alpha^2 + s^2/4. Tile probabilities are integers.
  * Within a tile the density is that of the light times a bilinear function of the place among the light (the parts of the tile's
  * light above, and to the left within the row) that follows the reflection towards the corners, as far as the light reaches them:
- * so it is continuous within a tile, and varies within a texel. _pdf of a sample is its own to the rounding of that place, 2^-22 of
+ * so it is continuous within a tile, and varies within a texel. _pdf of a sample is its own to the rounding of that place, 2^-21 of
  * the map's texels. Cost of a sample: that of the environment's, two short searches, 2 sqrt, 5 div. Sources: Clarberg and
  * Akenine-Moeller 2008, "Practical product importance sampling for direct illumination"; Cline et al. 2006, "Two stage importance
  * sampling"; bilinear warping: Pharr, Jakob, Humphreys 2023, A.5. */

@@ -814,6 +814,23 @@ static void test_size(void) {
     }
 }
 
+/* Where sums keep more digits than a double has, that of a window's begin and a place in it can lie between the largest double
+ * below 2^31 and 2^31 itself: it is a place in the first column, which is bright; the last one has a few of 2^31. */
+static void test_seam(void) {
+    const float light[8] = {1, 1e-15f, 1, 1e-15f, 1, 1e-15f, 1, 1e-15f};
+    const mcs_image image = mcs_image_make(light, 2, 4, 1);
+    arena a = arena_make(mcs_env_bytes(2, 4)), b = arena_make(mcs_env_window_bytes(4));
+    mcs_env_window *const m = (mcs_env_window *)(void *)b.at;
+    int i;
+    CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK, "map");
+    CHECK(mcs_env_window_build(m, b.bytes, env_in(&a), 0, 4, 1, 2) == MCS_OK, "window");
+    for (i = -36; i < -24; i++) {
+        const mcs_texel t = mcs_env_window_sample(m, env_in(&a), (float)ldexp(0x0.ffffffp0, i), 0.853553414f);
+        CHECK(t.col < 2 && t.pdf > 0, "u below 2^%d: column %u, pdf %g", i, t.col, (double)t.pdf);
+    }
+    arena_free(&a), arena_free(&b);
+}
+
 int main(int argc, char **argv) {
     int i;
     mcst_start(argc, argv);
@@ -840,6 +857,7 @@ int main(int argc, char **argv) {
     if (mcst_case("black")) test_black();
     if (mcst_case("refused builds")) test_refused();
     if (mcst_case("bad u and directions")) test_bad_sampler_input();
+    if (mcst_case("a window over the seam")) test_seam();
     if (mcst_case("axes")) test_axes();
     if (mcst_case("turned")) test_frame();
     mcst_group("env memory and batches");
