@@ -61,10 +61,10 @@ cross: ## the same bits on other machines: cross compilers and qemu-user where i
 analyze: ## valgrind, memory sanitizer, -fanalyzer, clang-tidy, cppcheck, where installed; ONLY=name picks one
 	@BUILD='$(BUILD)' sh tests/analyze.sh $(ONLY)
 
-examples: ## build the renderer, build and run every numbered example
+examples: ## build and run every numbered example, build the renderer and check its means and what it refuses
 	@echo '$(CC): $(FLAGS)'
 	+@$(SUBMAKE) example-binaries $(RENDER)
-	@passed=0; failed=0; for e in $(EXAMPLE_BINS); do \
+	@passed=0; failed=0; for e in $(EXAMPLE_BINS) 'sh tests/render.sh $(RENDER) $(BUILD)/render'; do \
 		echo "$$e"; \
 		if $$e; then passed=$$((passed + 1)); else failed=$$((failed + 1)); echo "FAIL $$e: exit status not 0"; fi; \
 	done; \
