@@ -1,4 +1,4 @@
-/* Frame, microfacet helpers, multiple importance sampling, estimator statistics. */
+/* Frame, the rim of the cone, microfacet helpers, multiple importance sampling, estimator statistics. */
 #include <float.h>
 #include <math.h>
 #include "mcs_test.h"
@@ -113,6 +113,52 @@ static void test_frame(void) {
         }
 }
 
+/* Components up to 1e37 count, larger ones and NaN are as 0. Vectors along an axis scale exactly: one product, and zeros added. */
+static void same_moved(const mcs_frame *f, mcs_vec3 v, mcs_vec3 instead, float scale) {
+    const mcs_vec3 w = mcs_to_world(f, v), x = mcs_to_world(f, instead), l = mcs_to_local(f, v), m = mcs_to_local(f, instead);
+    CHECK(w.x == x.x * scale && w.y == x.y * scale && w.z == x.z * scale, "(%g, %g, %g): to_world", (double)v.x, (double)v.y,
+          (double)v.z);
+    CHECK(l.x == m.x * scale && l.y == m.y * scale && l.z == m.z * scale, "(%g, %g, %g): to_local", (double)v.x, (double)v.y,
+          (double)v.z);
+}
+
+static void test_huge_vectors(void) {
+    static const float beyond[] = {1.01e37f, 2e37f, -2e37f, FLT_MAX, INFINITY, -INFINITY, NAN};
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 149);
+    int i, j, k;
+    for (i = 0; i < 100; i++) {
+        const mcs_frame f = mcs_frame_make(random_unit(&r));
+        for (k = 0; k < 3; k++) {
+            const mcs_vec3 axis = {k == 0, k == 1, k == 2}, far = {1e37f * axis.x, 1e37f * axis.y, 1e37f * axis.z};
+            const mcs_vec3 rest = {k == 0 ? 0 : 0.5f, k == 1 ? 0 : -0.25f, k == 2 ? 0 : 0.75f};
+            same_moved(&f, far, axis, 1e37f);
+            for (j = 0; j < (int)(sizeof beyond / sizeof *beyond); j++) {
+                const mcs_vec3 v = {k == 0 ? beyond[j] : rest.x, k == 1 ? beyond[j] : rest.y, k == 2 ? beyond[j] : rest.z};
+                same_moved(&f, v, rest, 1);
+            }
+        }
+    }
+}
+
+/* ---- cone ---- */
+
+/* Draws at its rim: k u1, its cosine, the sine and their products are each rounded, so 1 - cos of the vector lies past k at times.
+ * They are all inside, yet 4e-6 of k past it is out: the header allows 5e-7, and x of the vector built here, its square, 1 + cos
+ * and the quotient round by 6 eps = 4e-7. */
+static void test_cone_rim(float k) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 151);
+    const double t = k * (1 + 4e-6);
+    mcs_vec3 past = {0, 0, 0};
+    int i, lost = 0;
+    for (i = 0; i < 1 << 18; i++) {
+        const float u1 = i & 1 ? (float)(1 - (1 + (i >> 1) % 4) * eps) : mcs_pcg32_float(&r), u2 = mcs_pcg32_float(&r);
+        lost += !(mcs_cone_pdf(k, mcs_cone_sample(k, u1, u2).w) > 0);
+    }
+    CHECK(lost == 0, "%d of 2^18 draws lie outside", lost);
+    past.x = (float)sqrt(t * (2 - t)), past.z = (float)(1 - t);
+    CHECK(mcs_cone_pdf(k, past) == 0, "density %g past the rim", (double)mcs_cone_pdf(k, past));
+}
+
 /* ---- microfacet helpers ---- */
 
 static double far_from(mcs_vec3 a, o_vec3 b) {
@@ -148,7 +194,7 @@ static void test_microfacet(void) {
             if (want == 0) continue; /* exactly opposed */
             CHECK(far_from(h, o_half(o, in)) <= 6 * eps, "half is off by %g", far_from(h, o_half(o, in)));
         }
-    if (mcst_case("half of opposed and bad directions is finite")) {
+    if (mcst_case("half of opposed and bad directions is finite, cos_d of bad ones 0")) {
         const mcs_vec3 dirs[] = {{0, 0, 1},
                                  {0, 0, -1},
                                  {0.6f, 0, -0.8f},
@@ -160,7 +206,9 @@ static void test_microfacet(void) {
                                  {0, INFINITY, 0},
                                  {0, -INFINITY, 0},
                                  {FLT_MAX, FLT_MAX, FLT_MAX},
-                                 {-FLT_MAX, FLT_MAX, 0}};
+                                 {-FLT_MAX, FLT_MAX, 0},
+                                 {0, 0, 2.5f},
+                                 {0, 0, 0.4f}};
         const int n = (int)(sizeof dirs / sizeof *dirs);
         for (i = 0; i < n * n; i++) {
             const mcs_vec3 wo = dirs[i / n], wi = dirs[i % n], h = mcs_half(wo, wi), w = mcs_reflect(wo, wi);
@@ -168,6 +216,8 @@ static void test_microfacet(void) {
             CHECK(finite3(h) && finite3(w) && isfinite(c),
                   "directions %d and %d: half (%g, %g, %g), reflect (%g, %g, %g), cos_d %g", i / n, i % n, (double)h.x, (double)h.y,
                   (double)h.z, (double)w.x, (double)w.y, (double)w.z, (double)c);
+            CHECK(c == 0 || (fabs(dot(wo, wo) - 1) < 0.1 && fabs(dot(wi, wi) - 1) < 0.1), "bad directions %d and %d: cos_d %g",
+                  i / n, i % n, (double)c);
         }
     }
     /* A mirror pair at grazing incidence: |H|^2 = 4 z^2 and L = ax/(2 sqrt(pi) z), so the weight is G2 = sqrt(pi) z/ax. z L takes
@@ -269,13 +319,12 @@ static void check_heuristics(float f, float g) {
     CHECK(b >= 0 && b <= 1 && p >= 0 && p <= 1, "f = %g, g = %g: balance %g, power %g", (double)f, (double)g, b, p);
     if (f == 0) CHECK(b == 0 && p == 0, "f = 0, g = %g: balance %g, power %g", (double)g, b, p);
     if (!(f >= 0 && g >= 0) || (f == 0 && g == 0)) return;
-    CHECK(fabs((double)(b + (ld)mcs_mis_balance(g, f) - 1)) <= 6 * eps || isinf(f + g), "f = %g, g = %g: balance sums to %g",
-          (double)f, (double)g, b + mcs_mis_balance(g, f));
-    CHECK(fabs((double)(p + (ld)mcs_mis_power(g, f) - 1)) <= 10 * eps || isinf(f + g), "f = %g, g = %g: power sums to %g",
-          (double)f, (double)g, p + mcs_mis_power(g, f));
-    if (isinf(f) && isinf(g)) return;
+    CHECK(fabs((double)(b + (ld)mcs_mis_balance(g, f) - 1)) <= 6 * eps, "f = %g, g = %g: balance sums to %g", (double)f, (double)g,
+          b + mcs_mis_balance(g, f));
+    CHECK(fabs((double)(p + (ld)mcs_mis_power(g, f) - 1)) <= 10 * eps, "f = %g, g = %g: power sums to %g", (double)f, (double)g,
+          p + mcs_mis_power(g, f));
     if (isinf(f) || isinf(g)) {
-        CHECK(b == (isinf(f) ? 1 : 0) && p == b, "f = %g, g = %g: balance %g, power %g", (double)f, (double)g, b, p);
+        CHECK(b == (f == g ? 0.5 : isinf(f) ? 1 : 0) && p == b, "f = %g, g = %g: balance %g, power %g", (double)f, (double)g, b, p);
     } else {
         const double wb = (double)(lf / (lf + lg)), wp = (double)(lf * lf / (lf * lf + lg * lg));
         CHECK(fabs(b - wb) <= 3 * eps * wb + FLT_MIN, "f = %g, g = %g: balance %g, not %g", (double)f, (double)g, b, wb);
@@ -294,16 +343,16 @@ static void test_heuristics(void) {
             check_heuristics((float)f, (float)pow(10, 76.0 * mcs_pcg32_float(&r) - 38));
             check_heuristics((float)(f * 1e-2), (float)(f * 1e-2 * pow(10, 4.0 * mcs_pcg32_float(&r) - 2)));
         }
-    /* 1 - c, two products and the sum: 3 eps of a sum of positive terms */
+    /* 1 - c, two products and the sum: 3 eps of a sum of positive terms. Negative densities and NaN count as 0. */
     if (mcst_case("mix_pdf")) {
         const float c[] = {0.0f, 0x1p-24f, 0.25f, 0.3f, 0.5f, 0.999f, 1.0f};
         int j;
         for (j = 0; j < 7; j++)
             for (i = 0; i < DENSITIES * DENSITIES; i++) {
                 const float f = densities[i / DENSITIES], g = densities[i % DENSITIES], p = mcs_mix_pdf(c[j], f, g);
-                const double want = (double)((ld)c[j] * f + (1 - (ld)c[j]) * g);
+                const double want = (double)((ld)c[j] * (f > 0 ? f : 0) + (1 - (ld)c[j]) * (g > 0 ? g : 0));
                 CHECK(isfinite(p), "c = %g, f = %g, g = %g: %g", (double)c[j], (double)f, (double)g, (double)p);
-                if (f >= 0 && g >= 0 && want <= FLT_MAX)
+                if (want <= FLT_MAX)
                     CHECK(fabs(p - want) <= 3 * eps * want + FLT_MIN, "c = %g, f = %g, g = %g: %g, not %g", (double)c[j], (double)f,
                           (double)g, (double)p, want);
             }
@@ -616,9 +665,15 @@ static void test_widths(void) {
 #endif
 
 int main(int argc, char **argv) {
+    static const float cones[] = {0.5f, 0.01f, 1e-5f, 1e-8f};
+    int i;
     mcst_start(argc, argv);
     mcst_group("frame");
     test_frame();
+    if (mcst_case("vectors of 1e37, and beyond")) test_huge_vectors();
+    mcst_group("cone");
+    for (i = 0; i < 4; i++)
+        if (mcst_case("rim of k = %g", (double)cones[i])) test_cone_rim(cones[i]);
     mcst_group("microfacet");
     test_microfacet();
     mcst_group("one dimension");

@@ -27,6 +27,40 @@ static int broken_shapes(uint32_t first, uint32_t a, uint32_t b, int t, uint32_t
     return broken;
 }
 
+/* Owen's scrambling flips a bit by those above it: two numbers, scrambled, differ first where they did before. Sobol's numbers of
+ * two indices differ by the sum of the columns of the bits in which the indices differ. Columns by the recurrence of the primitive
+ * polynomial: degree s, inner coefficients a and first numbers m of new-joe-kuo-6 (Joe and Kuo 2008). */
+static void columns(void) {
+    static const struct { uint32_t s, a, m[3]; } poly[3] = {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}};
+    uint32_t d, k, j, lead, draw;
+    if (!mcst_case("dimensions 0 to 3 are Sobol's: every column")) return;
+    for (d = 0; d < 4; d++) {
+        uint32_t column[32], bad;
+        for (k = 0; k < 32; k++) {
+            uint32_t m = 1;
+            if (d) {
+                const uint32_t s = poly[d - 1].s;
+                if (k < s) m = poly[d - 1].m[k];
+                else {
+                    m = column[k - s] >> (31 - (k - s));
+                    m ^= m << s;
+                    for (j = 1; j < s; j++) m ^= (poly[d - 1].a >> (s - 1 - j) & 1) * (column[k - j] >> (31 - (k - j)) << j);
+                }
+            }
+            column[k] = m << (31 - k);
+        }
+        for (bad = 0, lead = 0; lead < 32; lead++) /* sums of columns that cancel above bit `lead` show every bit of theirs */
+            for (draw = 0; draw < 128; draw++) {
+                const uint32_t i = mcs_hash(draw, 100 + lead), sum = (mcs_hash(draw, 200 + lead) | 1u << 31) >> lead;
+                uint32_t mask = 0, rest = sum;
+                for (k = 32; k-- > 0;)
+                    if (rest >> (31 - k) & 1) mask |= 1u << k, rest ^= column[k];
+                bad += (mcs_sobol_bits(i, d, draw) ^ mcs_sobol_bits(i ^ mask, d, draw)) >> (31 - lead) != 1;
+            }
+        CHECK(bad == 0, "dimension %u: %u sums of columns", d, bad);
+    }
+}
+
 static void nets(void) {
     uint32_t seed, d;
     if (mcst_case("dimensions 0 and 1 are a (0,2)-sequence"))
@@ -56,12 +90,12 @@ static void nets(void) {
             }
 }
 
-/* chi-square over `bins` equal bins; the level is Sidak's for the 20 tests of this file at 0.01. */
+/* chi-square over `bins` equal bins; the level is Sidak's for the 22 tests of this file at 0.01. */
 static void uniform(const double *count, int bins, double total, const char *what) {
     double expected[4096];
     int i;
     for (i = 0; i < bins; i++) expected[i] = total / bins;
-    CHECK(chi2_test(count, expected, (size_t)bins, NULL, NULL) >= sidak(0.01, 20), "%s is not uniform", what);
+    CHECK(chi2_test(count, expected, (size_t)bins, NULL, NULL) >= sidak(0.01, 22), "%s is not uniform", what);
 }
 
 static void randomisation(void) {
@@ -95,6 +129,21 @@ static void randomisation(void) {
         memset(count, 0, sizeof count);
         for (i = 0; i < DRAWS; i++) count[(mcs_hash(i, 0) & 31) * 32 + (mcs_hash(i, 1) & 31)]++;
         uniform(count, BINS, DRAWS, "hashes of neighbouring keys");
+    }
+    /* Indices that differ in bit 3 alone: shuffled, bit 0, 1, 2 or 3 is the lowest in which they differ, with probabilities of 1/2,
+     * 1/4, 1/8, 1/8, and as far from the top the scrambled numbers of a group's first dimension differ first. */
+    if (mcst_case("groups: shuffled by the seed, and each by itself")) {
+        double seen[16] = {0}, expected[16];
+        for (i = 0; i < 16; i++) expected[i] = (1 << 16) / (double)((2u << (i % 4 - i % 4 / 3)) * (2u << (i / 4 - i / 12)));
+        for (s = 0; s < 1 << 16; s++) {
+            uint32_t at[2];
+            for (d = 0; d < 2; d++) {
+                const uint32_t x = mcs_sobol_bits(77, 4 + 4 * d, s) ^ mcs_sobol_bits(77 ^ 8, 4 + 4 * d, s);
+                for (at[d] = 0; at[d] < 3 && !(x >> (31 - at[d])); at[d]++) {}
+            }
+            seen[at[0] * 4 + at[1]]++;
+        }
+        CHECK(chi2_test(seen, expected, 16, NULL, NULL) >= sidak(0.01, 22), "the shuffles of groups 1 and 2");
     }
 }
 
@@ -154,6 +203,24 @@ static void strata(void) {
             pair[a * LEFT + b - (b > a)]++; /* b: of the slabs that a leaves */
         }
         uniform(pair, LARGEST * LEFT, DRAWS, "the pair of slabs of two points");
+    }
+    if (mcst_case("the place within a cell is uniform, and independent in x and y")) {
+        enum { BINS = 16, SEED_COUNT = 1 << 14 };
+        static double count[BINS * BINS];
+        for (k = 0; k < 3; k++) { /* 2: Latin hypercube */
+            const uint32_t nx = k ? 3 : 4, ny = k == 1 ? 5 : nx + k / 2;
+            uint32_t s;
+            memset(count, 0, sizeof count);
+            for (s = 0; s < SEED_COUNT; s++)
+                for (i = 0; i < nx * ny; i++) {
+                    const mcs_vec2 p = mcs_stratified(i, nx, ny, s);
+                    double x = (double)p.x * nx, y = (double)p.y * ny;
+                    if (k == 2)
+                        x = (double)mcs_latin(i, nx * ny, 0, s) * (nx * ny), y = (double)mcs_latin(i, nx * ny, 1, s) * (nx * ny);
+                    count[(int)((x - floor(x)) * BINS) * BINS + (int)((y - floor(y)) * BINS)]++;
+                }
+            uniform(count, BINS * BINS, (double)SEED_COUNT * nx * ny, "the place within a cell");
+        }
     }
     if (mcst_case("counts out of range")) {
         const uint32_t odd[] = {0, 1u << 21, 0xffffffffu};
@@ -316,6 +383,7 @@ int main(int argc, char **argv) {
     mcst_start(argc, argv);
     mcst_group("points, nets");
     nets();
+    columns();
     mcst_group("points, randomisation");
     randomisation();
     mcst_group("points, strata");

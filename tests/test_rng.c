@@ -274,12 +274,13 @@ static void test_fills(void) {
             }
     }
     if (mcst_case("fills accept NULL")) {
-        mcs_pcg32 a = mcs_pcg32_make(1, 1);
+        mcs_pcg32 a = mcs_pcg32_make(1, 1), b = a;
         mcs_pcg32_fill_n(&a, 0, NULL);
         mcs_pcg32_fill_n(&a, 5, NULL);
+        mcs_pcg32_advance(&b, 5);
+        CHECK(a.state == b.state && a.inc == b.inc, "the state is not 5 draws on");
         mcs_philox_fill_n(1, 2, 0, NULL);
         mcs_philox_fill_n(1, 2, 5, NULL);
-        CHECK(1, "returned");
     }
 }
 

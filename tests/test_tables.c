@@ -350,6 +350,16 @@ static void sweep_pwl(const mcs_pwl *t, uint32_t n) {
     }
 }
 
+/* The sum of two vertices exceeds FLT_MAX: 2/3 of the mass lies in the first of two cells, evenly. */
+static void test_pwl_overflow(void) {
+    const float f[3] = {2e38f, 2e38f, 1};
+    arena a = arena_make(mcs_pwl_bytes(2));
+    mcs_pwl *t = (mcs_pwl *)a.at;
+    CHECK(mcs_pwl_build(t, a.bytes, f, 2) == MCS_OK, "build");
+    CHECK(fabs(mcs_pwl_pdf(t, 0.2f) * 0.75 - 1) <= 1e-6, "density %.9g, not 4/3", (double)mcs_pwl_pdf(t, 0.2f));
+    arena_free(&a);
+}
+
 static void test_pwl(void) {
     static const float triangle[3][2] = {{0, 1}, {1, 0}, {1, 0x1.000002p0f}};
     int s;
@@ -365,6 +375,7 @@ static void test_pwl(void) {
         else chi_square(&kinds[PWL], a.at, sets[s].n);
         arena_free(&a);
     }
+    if (mcst_case("vertices whose sum overflows")) test_pwl_overflow();
     if (mcst_case("one cell is the linear density")) {
         for (s = 0; s < 3; s++) {
             arena a = arena_make(mcs_pwl_bytes(1));
@@ -549,6 +560,26 @@ static void test_build_fn(void) {
     }
 }
 
+/* Four points are exact up to degree 7. In float 8 x^7 is off by 7 eps from x and 6 from products, 1 more from the sum and one from
+ * the mean: 15 eps = 9e-7 of a mean. A probability takes the share of the other cell, 1/4 or 3/4, of both errors; where that is
+ * 3/4, 8 x^7 is below 1/16 and its own error 3 eps. */
+static float f_seven(float x, void *ctx) { return (void)ctx, 1.0f + 8.0f * (x * x * x) * (x * x * x) * x; }
+static double exact_seven(double x) { return x + pow(x, 8); }
+static void test_degree_seven(void) {
+    uint32_t n, i;
+    for (n = 1; n <= 2; n++) {
+        arena a = arena_make(mcs_pwc_bytes(n));
+        mcs_pwc *t = (mcs_pwc *)a.at;
+        CHECK(mcs_pwc_build_fn(t, a.bytes, f_seven, NULL, n) == MCS_OK, "build");
+        CHECK(fabs(t->total / n / 2 - 1) <= 1e-6, "%u cells: integral %.9g, not 2", n, t->total / n);
+        for (i = 0; i < n; i++) {
+            const double p = (exact_seven((i + 1.0) / n) - exact_seven((double)i / n)) / 2, got = mcs_discrete_pmf(t, i);
+            CHECK(fabs(got - p) <= 1e-6 * p, "%u cells, cell %u: %.9g, not %.9g", n, i, got, p);
+        }
+        arena_free(&a);
+    }
+}
+
 /* ---- bad input, memory, relocation ---- */
 
 static void test_errors(const kind *k) {
@@ -658,6 +689,38 @@ static void test_relocation(const kind *k) {
     arena_free(&b);
 }
 
+/* The product of 64 random bits and n, schoolbook in base 2^16: above bit 64 the column, the 32 bits below it the place in it. Half
+ * the pairs lie at a border of columns, where the last of b2 decides. The rest is one quotient, rounded to float: eps of it. */
+static void test_alias_bits(uint32_t n) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 157);
+    arena a = arena_make(mcs_alias_bytes(n));
+    const mcs_alias *t = (const mcs_alias *)a.at;
+    uint32_t i;
+    for (i = 0; i < n; i++) weight[i] = 0.1f + hash01(i);
+    CHECK(mcs_alias_build((mcs_alias *)a.at, a.bytes, weight, n) == MCS_OK, "build");
+    for (i = 0; i < 8000; i++) {
+        const uint32_t r1 = mcs_pcg32_next(&r), r2 = mcs_pcg32_next(&r);
+        const uint64_t b = i & 1 ? UINT64_MAX / n * (r1 % (n + 1)) + r2 % (2 * n) : (uint64_t)r1 << 32 | r2;
+        const mcs_pick c = mcs_alias_sample_bits(t, (uint32_t)(b >> 32), (uint32_t)b);
+        const mcsi_column *k;
+        uint64_t carry = 0, digits = 0;
+        double place, kept, rest;
+        int d;
+        for (d = 0; d < 4; d++) {
+            carry += (b >> 16 * d & 0xffff) * n;
+            digits = digits >> 16 | (carry & 0xffff) << 48;
+            carry >>= 16;
+        }
+        k = mcsi_columns(t) + carry, place = (double)(digits >> 32) / 2, kept = k->cut;
+        rest = place < kept ? place / kept : (place - kept) / (0x1p31 - kept);
+        CHECK(c.i == (place < kept ? carry : k->alias), "n = %u, bits %016llx: entry %u, column %llu", n, (unsigned long long)b,
+              c.i, (unsigned long long)carry);
+        CHECK(fabs(c.u - rest) <= 1.0001 * eps * rest, "n = %u, bits %016llx: rest %a, not %a", n, (unsigned long long)b,
+              (double)c.u, rest);
+    }
+    arena_free(&a);
+}
+
 /* Tables of more entries than a float u can tell apart: the mean of 1/(n pmf) over draws is 1 when frequencies are the pmf. Half
  * the weights are 0.01, half 1.99: the variance of one draw is 0.5/0.01 + 0.5/1.99 - 1 = 49.3. Four standard errors. */
 static void test_long_alias(uint32_t n) {
@@ -711,6 +774,8 @@ int main(int argc, char **argv) {
     mcst_group("alias");
     test_alias();
     if (mcst_case("rest of u")) test_rest(&kinds[ALIAS]);
+    if (mcst_case("3 entries by 64 bits, exactly")) test_alias_bits(3);
+    if (mcst_case("1000 entries by 64 bits, exactly")) test_alias_bits(1000);
     if (mcst_case("2^18 entries by 64 bits")) test_long_alias(1u << 18);
     if (mcst_case("1000001 entries by 64 bits")) test_long_alias(1000001);
     if (mcst_case("8388610 entries")) test_huge_alias();
@@ -719,6 +784,7 @@ int main(int argc, char **argv) {
     if (mcst_case("n = 0..67, 1000, 4099, shifted, in place, NULL outputs")) test_batch();
     mcst_group("pwc from a function");
     if (mcst_case("against exact integrals; bad values; errors")) test_build_fn();
+    if (mcst_case("exact for degree 7")) test_degree_seven();
     mcst_group("table memory and bad input");
     for (k = 0; k < 4; k++) {
         if (k != DISCRETE && mcst_case("%s: refused builds", kinds[k].name)) test_errors(&kinds[k]);
