@@ -1130,16 +1130,15 @@ MCSI_CORE MCS_(sample1) MCSI_(sample1)(MCSI_I ok, MCSI_F x, MCSI_F pdf) {
     return s;
 }
 
-/* linear: weights a, b >= 0 times powers of two that bring the larger one to 2^60, or to 2^42 at least: then neither square
- * overflows, and the smaller one underflows only where it is below 2^-105 of the larger. */
+/* linear: weights a, b >= 0 times a power of two, in two halves, that brings the larger one to 2^60, or a subnormal one to 2^38 at
+ * least: then no square overflows, and that of the smaller one underflows only where it is below 2^-101 of the larger. */
 MCSI_CORE MCSI_I MCSI_(linear_ends)(MCSI_F *a, MCSI_F *b) {
-    MCSI_F top = MCSI_(max)(*a, *b), least = MCS_(set)(6.77626358e-21f), scale;
+    MCSI_F top = MCSI_(max)(*a, *b), one, other;
     MCSI_I ok = (*a >= 0.0f) & (*b >= 0.0f) & (top > 0.0f) & (top <= FLT_MAX);
+    MCSI_I power = 0x5d800000 - (MCSI_(bits)(top) & 0x7f800000), half = (power >> 1) & -0x800000;
     MCSI_REQUIRE(ok);
-    scale = MCSI_(sel)(top < least, MCS_(set)(1.84467441e+19f), MCS_(set)(1.0f));
-    *a = *a * scale, *b = *b * scale, top = MCSI_(max)(top * scale, least);
-    scale = MCSI_(from_bits)((MCSI_I)(0x9d000000u - ((MCSI_U)MCSI_(bits)(top) & 0x7f800000u)));
-    *a = *a * scale, *b = *b * scale;
+    one = MCSI_(from_bits)(half + 0x3f800000), other = MCSI_(from_bits)(power - half + 0x3f800000);
+    *a = *a * one * other, *b = *b * one * other;
     return ok;
 }
 MCSI_CORE MCS_(sample1) MCS_(linear_sample)(MCSI_F a, MCSI_F b, MCSI_F u) {
