@@ -2992,7 +2992,7 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  *
  * Tables are exact as in [tables]: texel probabilities are integers over 2^31 by row and by column; a texel that is not black can
  * be drawn, black ones never are, and texel and pdf of the returned float direction are those of the sample, as samples keep a
- * rounding error off the borders of their texel (with the axes as frame: the rounding of another one's takes up to 2 % of the
+ * rounding error off the borders of their texel (with the axes as frame; the rounding of another frame takes up to 2 % of the
  * samples near the poles of a map of 4096 columns to the next texel). Bad texels count as black (e->bad). e->total is the luminance
  * integrated over the sphere. Maps are monotone: stratified u stay stratified.
  * Bilinear: weights are the texels filtered by (1 2 1)/4 along rows and columns, at least a quarter of what a filtered look-up

@@ -995,6 +995,7 @@ static void test_mean(void) {
 /* Blocks of tiles weigh by the spread of their texels too. A constant map of fewer texels than tiles reflects as much as it shines;
  * a bright texel, as large as a tile or larger, whose middle is below the horizon costs the one-shot form at most twice the
  * variance of the prepared one, as two levels of weights are less exact than one. Without that spread: 0.67 of the light, 11 times.
+ * Beside texels that are smaller than a tile the levels differ more, by 2.1 to 2.3 with that spread or without; at most 4.
  */
 static void test_blocks(void) {
     static const struct { uint32_t w, h; } sizes[] = {{1, 1}, {3, 1}, {2, 3}, {5, 2}, {16, 8}};
@@ -1017,7 +1018,7 @@ static void test_blocks(void) {
         }
         scene_free(&m);
     }
-    for (i = 16; i <= 32; i *= 2) {
+    for (i = 16; i <= 128; i *= 2) {
         double variance[2] = {0, 0};
         scene m;
         if (!mcst_case("a bright texel at the horizon, %d x %d", i, i / 2)) continue;
@@ -1032,7 +1033,8 @@ static void test_blocks(void) {
             variance[k] = e.error * e.error / (e.mean * e.mean) * (1 << 17);
             sampler_free(&d);
         }
-        CHECK(variance[0] <= 2 * variance[1], "variance of one sample %g one-shot, %g prepared", variance[0], variance[1]);
+        CHECK(variance[0] <= (i <= 32 ? 2 : 4) * variance[1], "variance of one sample %g one-shot, %g prepared", variance[0],
+              variance[1]);
         scene_free(&m);
     }
 }
@@ -1990,14 +1992,14 @@ static void test_variance(void) {
          * lose a factor. */
         CHECK(sum[0].env >= 293 && sum[0].env_one >= 78, "matte: environment / product %g, %g", sum[0].env, sum[0].env_one);
         for (k = 0; k < VARIED; k++) {
-            static const double half[VARIED] = {144, 155, 149, 106, 60, 59, 9.6, 0.94},
+            static const double half[VARIED] = {144, 155, 149, 106, 60, 70, 15.9, 1.46},
                                 half_one[VARIED] = {38, 36, 32, 13.9, 6.4, 1.8, 0.71, 0.55};
             CHECK(sum[k].mis >= half[k] && sum[k].mis_one >= half_one[k], "row %d: MIS / product %g, %g", k, sum[k].mis,
                   sum[k].mis_one);
         }
     }
     for (lobe_kind = 0; lobe_kind < 2; lobe_kind++) {
-        static const double half[2][SHAPED] = {{81, 11.6, 1.84}, {8.2, 21.2, 4.7}},
+        static const double half[2][SHAPED] = {{81, 12, 1.87}, {8.2, 21.9, 4.9}},
                             half_one[2][SHAPED] = {{3.9, 0.73, 0.27}, {5.1, 2.2, 0.69}};
         if (!mcst_case("own maps, %s", lobe_kind ? "Phong" : "Gauss")) continue;
         add_own_maps(lobe_kind ? "Phong, own maps, 16 x 32 tiles" : "Gauss, own maps, 16 x 32 tiles",
