@@ -190,7 +190,12 @@ typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #include <math.h>
 #endif
 
-/* MCSI_APART: a function with a body of its own. */
+/* MCSI_APART: a function with a body of its own. MCSI_UNROLL: before a loop of at most 16 rounds, as gcc -O2 keeps those. */
+#if defined(__GNUC__) && __GNUC__ >= 8 && !defined(__clang__) && !defined(__CUDACC__)
+#define MCSI_UNROLL _Pragma("GCC unroll 16")
+#else
+#define MCSI_UNROLL
+#endif
 #if defined(__GNUC__) && !defined(__CUDACC__)
 #define MCSI_PREFETCH(p) __builtin_prefetch(p)
 #define MCSI_APART __attribute__((noinline, unused)) static
@@ -3109,35 +3114,38 @@ typedef struct {
 } mcs_env;
 typedef struct {
     uint32_t row, rows, col, cols, shift, uniform;
-} mcs_env_window; /* then line[rows], cdf[rows + 1], guide[] */
+} mcs_env_window; /* then span[rows], cdf[rows + 1], guide[] */
 typedef struct {
     mcs_vec3 w;
     float pdf;
     uint32_t col, row;
 } mcs_texel;
 
-/* What a draw needs of a row: the density of a texel per unit of its own 2^31, its border and height (mcsi_env_point), the part of
- * its 2^31 that may be drawn. */
+/* What a draw needs of a row: the density of a texel with one part in 2^62 of all draws, border and height (mcsi_env_point). */
 typedef struct {
-    double scale;
+    double unit;
     float edge, height;
-    uint32_t begin, mass;
 } mcsi_env_line;
+/* The part of a row's 2^31 that a window has. */
+typedef struct {
+    uint32_t begin, mass;
+} mcsi_env_span;
 /* What build_rows leaves to finish: the weight of the row; the weight of its texels if they are all alike, else -1. */
 typedef struct {
     double power;
     float level;
     uint32_t bad, col0, col1;
 } mcsi_env_info;
-/* Rows and columns to draw from: the whole map or a window. */
+/* Rows and columns to draw from: the whole map, whose span is NULL, or a window. */
 typedef struct {
     const uint32_t *rows;
     const uint16_t *guide;
     const mcsi_env_line *line;
+    const mcsi_env_span *span;
     uint32_t row, count, col, cols, shift, uniform;
 } mcsi_env_view;
 
-enum { MCSI_ENV_MAX = 1 << 16, MCSI_ENV_VERSION = 2, MCSI_ENV_CELLS = 8, MCSI_ENV_CHUNK = 64 };
+enum { MCSI_ENV_MAX = 1 << 16, MCSI_ENV_VERSION = 3, MCSI_ENV_CELLS = 8, MCSI_ENV_CHUNK = 64 };
 #define MCSI_ENV_MAGIC 0x4553434du /* "MCSE" in a little-endian file */
 
 MCS_FN uint64_t mcsi_up8(uint64_t bytes) { return (bytes + 7) / 8 * 8; }
@@ -3164,7 +3172,7 @@ MCSI_CORE mcsi_env_view mcsi_env_whole(const mcs_env *e) {
     mcsi_env_view v;
     v.rows = (const uint32_t *)(const void *)((const char *)e + e->at.rows);
     v.guide = (const uint16_t *)(const void *)((const char *)e + e->at.row_guide);
-    v.line = (const mcsi_env_line *)(const void *)((const char *)e + e->at.line);
+    v.line = (const mcsi_env_line *)(const void *)((const char *)e + e->at.line), v.span = NULL;
     v.row = 0, v.count = e->h, v.col = 0, v.cols = e->w, v.shift = e->at.row_shift, v.uniform = e->uniform;
     return v;
 }
@@ -3184,16 +3192,18 @@ MCS_FN double mcsi_env_height(uint32_t row, uint32_t h) {
     uint32_t m = mcsi_env_from_pole(row, h);
     return mcsi_one_minus_cos_pi((m + 1.0) / h) - mcsi_one_minus_cos_pi((double)m / h);
 }
-/* `share` of all draws fall on the `mass` of a row's 2^31 from `begin` on. */
-MCS_FN void mcsi_env_set_line(mcsi_env_line *line, double share, uint32_t begin, uint32_t mass, uint32_t row, uint32_t w,
-                              uint32_t h) {
+MCS_FN void mcsi_env_set_line(mcsi_env_line *line, uint32_t row, uint32_t w, uint32_t h) {
     double height = mcsi_env_height(row, h), margin = MCSI_ENV_MARGIN * h;
     uint32_t m = mcsi_env_from_pole(row, h);
-    line->begin = begin, line->mass = mass;
-    line->scale = mass ? share / mass * w / (6.2831853071795865 * height) : 0.0;
+    line->unit = w / (6.2831853071795865 * height) * (1.0 / MCSI_ONE / MCSI_ONE);
     height = m == row ? height : -height;
     line->edge = (float)(mcsi_one_minus_cos_pi((m + (m != row)) / (double)h) + margin * height);
     line->height = (float)((1.0 - 2.0 * margin) * height);
+}
+/* Density of a texel per unit of the 2^31 of row i of the view, which has light. */
+MCSI_CORE double mcsi_env_scale(const mcsi_env_view *v, uint32_t i) {
+    double unit = (v->rows[i + 1] - v->rows[i]) * v->line[i].unit;
+    return v->span ? unit * ((double)MCSI_ONE / v->span[i].mass) : unit;
 }
 MCSI_CORE void mcsi_env_set_turn(mcs_env *e) {
     e->turn = (float)(1.0 / e->w), e->inner = (float)(1.0 / e->w - 2 * MCSI_ENV_MARGIN);
@@ -3345,7 +3355,7 @@ MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) 
     }
     mcsi_cdf_build(rows, e->h);
     MCSI_GUIDE_BUILD(guide, uint16_t, e->at.row_shift, rows, e->h);
-    for (y = 0; y < e->h; y++) mcsi_env_set_line(&line[y], (rows[y + 1] - rows[y]) / (double)MCSI_ONE, 0, MCSI_ONE, y, e->w, e->h);
+    for (y = 0; y < e->h; y++) mcsi_env_set_line(&line[y], y, e->w, e->h);
     return top > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 MCS_FN mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im) {
@@ -3399,13 +3409,12 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     for (y = 0; y < e->h; y++) {
         const mcsi_env_line *line = v.line + y;
         mcsi_env_line want;
-        mcsi_env_set_line(&want, (v.rows[y + 1] - v.rows[y]) / (double)MCSI_ONE, 0, MCSI_ONE, y, e->w, e->h);
-        if (line->begin != 0 || line->mass != MCSI_ONE || !mcsi_same(line->scale, want.scale, 1e-12) ||
-            !mcsi_same((double)line->edge, (double)want.edge, 1.2e-7) ||
-            !mcsi_same((double)line->height, (double)want.height, 1.2e-7) ||
-            (want.scale > 0.0 && !mcsi_cdf_ok(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.col_shift)))
+        mcsi_env_set_line(&want, y, e->w, e->h);
+        if (!mcsi_same(line->unit, want.unit, 1e-12) || !mcsi_same((double)line->edge, (double)want.edge, 1.2e-7) ||
+            !mcsi_same((double)line->height, (double)want.height, 1.2e-7))
             return MCS_ERR_FORMAT;
-        if (!(want.scale > 0.0)) continue;
+        if (v.rows[y] == v.rows[y + 1]) continue;
+        if (!mcsi_cdf_ok(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.col_shift)) return MCS_ERR_FORMAT;
         cdf = mcsi_env_cdf(e, y), row0 = y < row0 ? y : row0, row1 = y + 1;
         for (i = 0; cdf[i + 1] == 0; i++) {}
         col0 = i < col0 ? (uint32_t)i : col0;
@@ -3419,11 +3428,12 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
 
 /* A random number times 2^31. */
 MCSI_CORE double mcsi_times_one(float u, int32_t *ok) { return (double)mcsi_unit(u, ok) * MCSI_ONE; }
-/* The place of U in the part of a row that a window has. */
-MCSI_CORE double mcsi_env_within(const mcsi_env_line *line, double U) {
-    if (line->mass == MCSI_ONE && line->begin == 0) return U;
-    U *= line->mass * (1.0 / MCSI_ONE); /* and the sum must not round up to the end */
-    U = line->begin + (U < line->mass - 4.76837158203125e-07 ? U : line->mass - 4.76837158203125e-07);
+/* The place of U in row i of the view. */
+MCSI_CORE double mcsi_env_within(const mcsi_env_view *v, uint32_t i, double U) {
+    const mcsi_env_span *span = v->span + i;
+    if (!v->span) return U;
+    U *= span->mass * (1.0 / MCSI_ONE); /* and the sum must not round up to the end */
+    U = span->begin + (U < span->mass - 4.76837158203125e-07 ? U : span->mass - 4.76837158203125e-07);
     U -= U > MCSI_ONE - 2.384185791015625e-07 ? (double)MCSI_ONE : 0.0; /* the next double is 2^31: one of x87 may lie between */
     return U > 0.0 ? U : 0.0;
 }
@@ -3498,23 +3508,22 @@ MCSI_CORE int mcsi_env_in_view(const mcs_env *e, const mcsi_env_view *v, uint32_
 }
 MCSI_CORE float mcsi_env_density(const mcs_env *e, const mcsi_env_view *v, uint32_t row, uint32_t col) {
     const uint32_t *cdf;
-    double scale;
+    uint32_t i = row - v->row;
     if (!mcsi_env_in_view(e, v, row, col)) return 0.0f;
     if (v->uniform) return mcsi_env_uniform_pdf(e, v);
-    scale = v->line[row - v->row].scale;
-    if (!(scale > 0.0) || col < e->col0 || col >= e->col1) return 0.0f;
+    if (v->rows[i] == v->rows[i + 1] || col < e->col0 || col >= e->col1) return 0.0f;
     cdf = mcsi_env_cdf(e, row) + col;
-    return (float)((cdf[1] - cdf[0]) * scale);
+    return (float)((cdf[1] - cdf[0]) * mcsi_env_scale(v, i));
 }
 /* Of a map that is not constant: the point, its texel, the density when `part` of all draws come here. */
 MCSI_CORE float mcsi_env_draw_point(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, mcsi_env_point *p,
                                     uint32_t *row, uint32_t *col) {
     uint32_t i = mcsi_env_draw_row(v, U2, p), mass, U;
     mcsi_env_cells cells;
-    *row = v->row + i, U1 = mcsi_env_within(&v->line[i], U1), U = (uint32_t)(int32_t)U1;
+    *row = v->row + i, U1 = mcsi_env_within(v, i, U1), U = (uint32_t)(int32_t)U1;
     cells = mcsi_env_cells_of(mcsi_env_guide(e, *row) + (U >> e->at.col_shift), e->w, U, e->at.col_shift);
     *col = mcsi_env_draw_col(mcsi_env_cdf(e, *row), e->w, &cells, U1, p, &mass);
-    return (float)(mass * (part * v->line[i].scale));
+    return (float)(mass * (part * mcsi_env_scale(v, i)));
 }
 MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, int ok) {
     mcsi_env_point p;
@@ -3581,7 +3590,7 @@ MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi
         b->pdf[k] *= (float)(part * (double)mcsi_env_uniform_pdf(e, v));
     } else {
         uint32_t i = mcsi_env_draw_row(v, U2, &p);
-        b->at[k] = mcsi_env_within(&v->line[i], U1), b->scale[k] = part * v->line[i].scale;
+        b->at[k] = mcsi_env_within(v, i, U1), b->scale[k] = part * mcsi_env_scale(v, i);
         b->cdf[k] = mcsi_env_cdf(e, v->row + i),
         b->guide[k] = mcsi_env_guide(e, v->row + i) + ((uint32_t)(int32_t)b->at[k] >> e->at.col_shift);
         MCSI_PREFETCH(b->guide[k]);
@@ -3676,7 +3685,7 @@ MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
         u1 = (at.col + at.across) / e->w, u2 = 0.5 * (a + at.down * (mcsi_env_top(e, at.row + 1) - a));
     } else {
         const uint32_t *cdf = mcsi_env_cdf(e, at.row) + at.col;
-        u1 = v.line[at.row].scale > 0.0 ? (cdf[0] + at.across * (cdf[1] - cdf[0])) / MCSI_ONE : 0.0;
+        u1 = v.rows[at.row] < v.rows[at.row + 1] ? (cdf[0] + at.across * (cdf[1] - cdf[0])) / MCSI_ONE : 0.0;
         u2 = (v.rows[at.row] + at.down * (v.rows[at.row + 1] - v.rows[at.row])) / MCSI_ONE;
     }
     return mcsi_vec2(mcsi_below_one(u1), mcsi_below_one(u2));
@@ -3688,22 +3697,22 @@ MCS_FN float mcs_env_weight(const mcs_env *e, float pdf) {
 
 /* ---- windows ---- */
 
-MCS_FN const mcsi_env_line *mcsi_window_line(const mcs_env_window *m) { return (const mcsi_env_line *)(const void *)(m + 1); }
-MCSI_CORE mcsi_env_view mcsi_env_part(const mcs_env_window *m) {
+MCSI_CORE mcsi_env_view mcsi_env_part(const mcs_env *e, const mcs_env_window *m) {
     mcsi_env_view v;
-    v.line = mcsi_window_line(m), v.rows = (const uint32_t *)(const void *)(v.line + m->rows);
+    v.line = (const mcsi_env_line *)(const void *)((const char *)e + e->at.line) + m->row;
+    v.span = (const mcsi_env_span *)(const void *)(m + 1), v.rows = (const uint32_t *)(const void *)(v.span + m->rows);
     v.guide = (const uint16_t *)(const void *)(v.rows + m->rows + 1);
     v.row = m->row, v.count = m->rows, v.col = m->col, v.cols = m->cols, v.shift = m->shift, v.uniform = m->uniform;
     return v;
 }
 MCS_FN size_t mcs_env_window_bytes(uint32_t rows) {
     if (rows == 0 || rows > MCSI_ENV_MAX) return 0;
-    return (size_t)mcsi_up8(sizeof(mcs_env_window) + rows * (sizeof(mcsi_env_line) + sizeof(uint32_t)) + sizeof(uint32_t) +
+    return (size_t)mcsi_up8(sizeof(mcs_env_window) + rows * (sizeof(mcsi_env_span) + sizeof(uint32_t)) + sizeof(uint32_t) +
                             ((MCSI_ONE >> mcsi_guide_shift(rows, 1)) + 1) * sizeof(uint16_t));
 }
 MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows, uint32_t col,
                                        uint32_t cols) {
-    mcsi_env_line *line;
+    mcsi_env_span *span;
     mcsi_env_view all;
     uint32_t *cdf, i;
     uint16_t *guide;
@@ -3711,37 +3720,35 @@ MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mc
     if (!m || !e || ((uintptr_t)m & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (rows == 0 || cols == 0 || rows > e->h || row > e->h - rows || cols > e->w || col >= e->w) return MCS_ERR_SIZE;
     if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
-    all = mcsi_env_whole(e), line = (mcsi_env_line *)(void *)(m + 1);
-    cdf = (uint32_t *)(void *)(line + rows), guide = (uint16_t *)(void *)(cdf + rows + 1);
+    all = mcsi_env_whole(e), span = (mcsi_env_span *)(void *)(m + 1);
+    cdf = (uint32_t *)(void *)(span + rows), guide = (uint16_t *)(void *)(cdf + rows + 1);
     m->row = row, m->rows = rows, m->col = col, m->cols = cols, m->shift = mcsi_guide_shift(rows, 1);
     for (i = 0; i < rows; i++) {
         uint32_t mass = e->uniform ? 0 : all.rows[row + i + 1] - all.rows[row + i], end = col + cols;
-        line[i].begin = line[i].mass = 0;
+        span[i].begin = span[i].mass = 0;
         if (mass) {
             const uint32_t *c = mcsi_env_cdf(e, row + i);
-            line[i].begin = c[col], line[i].mass = end <= e->w ? c[end] - c[col] : MCSI_ONE - c[col] + c[end - e->w];
+            span[i].begin = c[col], span[i].mass = end <= e->w ? c[end] - c[col] : MCSI_ONE - c[col] + c[end - e->w];
         }
-        mcsi_put_weight(cdf + i, (float)((double)mass * line[i].mass));
+        mcsi_put_weight(cdf + i, (float)((double)mass * span[i].mass));
     }
     total = mcsi_cdf_build(cdf, rows);
     m->uniform = !(total > 0.0);
     MCSI_GUIDE_BUILD(guide, uint16_t, m->shift, cdf, rows);
-    for (i = 0; i < rows; i++)
-        mcsi_env_set_line(&line[i], (cdf[i + 1] - cdf[i]) / (double)MCSI_ONE, line[i].begin, line[i].mass, row + i, e->w, e->h);
     return m->uniform && !(e->uniform && e->total > 0.0) ? MCS_UNIFORM : MCS_OK;
 }
 MCS_FN mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2) {
-    mcsi_env_view v = mcsi_env_part(m);
+    mcsi_env_view v = mcsi_env_part(e, m);
     return mcsi_env_draw_u(e, &v, u1, u2);
 }
 MCS_FN float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_vec3 w) {
-    mcsi_env_view v = mcsi_env_part(m);
+    mcsi_env_view v = mcsi_env_part(e, m);
     return mcsi_env_look_up(e, &v, w).pdf;
 }
 #ifndef MCS_NO_BATCH
 MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1, const float *u2, float *x,
                                     float *y, float *z, float *pdf) {
-    mcsi_env_view v = mcsi_env_part(m);
+    mcsi_env_view v = mcsi_env_part(e, m);
     mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf);
 }
 #endif
@@ -3765,7 +3772,7 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  *     mcs_product_build_weights(p, bytes, t, e, weight)             any reflection: weight[rows * 2 rows], one per tile, to be
  *                                evaluated about mcs_tiles_direction(t, e, k); > 0 wherever the reflection may be
  *     mcs_product_sample(p, u1, u2) -> mcs_texel, mcs_product_pdf(p, w), mcs_product_sample_n
- *   one-shot form, for one sample at a point: no table, two levels of tiles
+ *   one-shot form, for one sample at a point: no table, from 4 x 8 patches down to a tile
  *     mcs_oneshot_sample(t, e, &reflection, u1, u2) -> mcs_texel, mcs_oneshot_pdf(t, e, &reflection, w)
  *
  * Support: every direction above the surface from which light comes can be drawn: tiles that the horizon may cross, judged by the
@@ -3951,6 +3958,15 @@ MCSI_BATCH_AS(mcsi_tile_values_n, tile_values_n, (const mcsi_facing *s, size_t n
                   size_t i;
                   for (i = 0; i < n; i += MCSI_W) MCS_(store)(value + i, MCSI_(tile_value)(&axes, s, tile + i, stride));
               })
+MCSI_BATCH_AS(mcsi_patch_weights_n, patch_weights_n,
+              (const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight), (s, n, patch, value, weight), {
+                  MCS_(frame) axes = MCSI_(spread_frame)(&s->axes);
+                  size_t i;
+                  for (i = 0; i < n; i += MCSI_W) {
+                      MCSI_F v = MCSI_(tile_value)(&axes, s, patch + i, n);
+                      MCS_(store)(value + i, v), MCS_(store)(weight + i, v * MCS_(load)(patch + i));
+                  }
+              })
 MCSI_BATCH_AS(mcsi_corner_values_n, corner_values_n,
               (const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value), (s, n, corner, stride, value), {
                   MCS_(frame) axes = MCSI_(spread_frame)(&s->axes);
@@ -3994,8 +4010,9 @@ MCSI_BATCH_AS(mcsi_grid_bounds_n, grid_bounds_n,
 #if MCSI_W == 1
 typedef struct {
     uint32_t rows, cols, window_bytes, unused;
-} mcs_tiles; /* then field[MCSI_TILE_FIELDS] of tiles, the same of blocks of 4 x 4, for each block those of its tiles,
-                corner[3][cols][rows + 1] (x, y, z), of each tile node[3][MCSI_NODES][MCSI_NODES], windows */
+} mcs_tiles; /* then field[MCSI_TILE_FIELDS] of tiles; the same of 4 x 8 patches of the map, of the 4 x 4 parts of each of them and,
+                where these are not tiles yet, of the tiles in each part; corner[3][cols][rows + 1] (x, y, z); of each tile
+                around[3][2][2], its corners, and node[3][MCSI_NODES][MCSI_NODES]; windows */
 typedef struct {
     mcs_frame frame;
     mcs_vec3 wo;
@@ -4021,25 +4038,28 @@ typedef struct {
 } mcs_product; /* the rest: mcsi_product_units and below */
 
 enum {
-    MCSI_TILE_BLOCK = 4,
-    MCSI_BLOCK_TILES = 16,
+    MCSI_PATCH_ROWS = 4,
+    MCSI_PATCH_COLS = 8,
+    MCSI_PATCHES = 32,
     MCSI_TILES_MAX = 64,
     MCSI_NODES = 8,
     MCSI_GRID = MCSI_NODES * MCSI_NODES,
     MCSI_FINE = 32
 };
 MCSI_CORE const float *mcsi_tiles_fields(const mcs_tiles *t) { return (const float *)(const void *)(t + 1); }
-MCSI_CORE const float *mcsi_tiles_blocks(const mcs_tiles *t) {
+MCSI_CORE const float *mcsi_tiles_patches(const mcs_tiles *t) {
     return mcsi_tiles_fields(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols;
 }
-MCSI_CORE const float *mcsi_tiles_of_blocks(const mcs_tiles *t) {
-    return mcsi_tiles_blocks(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols / MCSI_BLOCK_TILES;
-}
+/* Rows of parts that a patch has, one of `above` rows of patches. */
+MCSI_CORE uint32_t mcsi_patch_side(const mcs_tiles *t, uint32_t above) { return above == MCSI_PATCH_ROWS ? 4 : t->rows / above; }
+/* Patches of all levels, for n tiles. */
+MCSI_CORE size_t mcsi_patches(size_t n) { return n == 16 * MCSI_PATCHES ? MCSI_PATCHES + n : 17 * MCSI_PATCHES + n; }
 MCSI_CORE const float *mcsi_tiles_corners(const mcs_tiles *t) {
-    return mcsi_tiles_of_blocks(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols;
+    return mcsi_tiles_patches(t) + MCSI_TILE_FIELDS * mcsi_patches((size_t)t->rows * t->cols);
 }
 MCSI_CORE size_t mcsi_corners(const mcs_tiles *t) { return (size_t)t->cols * (t->rows + 1); }
-MCSI_CORE const float *mcsi_tiles_nodes(const mcs_tiles *t) { return mcsi_tiles_corners(t) + 3 * mcsi_corners(t); }
+MCSI_CORE const float *mcsi_tiles_around(const mcs_tiles *t) { return mcsi_tiles_corners(t) + 3 * mcsi_corners(t); }
+MCSI_CORE const float *mcsi_tiles_nodes(const mcs_tiles *t) { return mcsi_tiles_around(t) + 12 * (size_t)t->rows * t->cols; }
 MCSI_CORE const mcs_env_window *mcsi_tiles_window(const mcs_tiles *t, uint32_t row, uint32_t col) {
     const char *p = (const char *)(mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * t->rows * t->cols);
     return (const mcs_env_window *)(const void *)(p + ((size_t)col * t->rows + row) * t->window_bytes);
@@ -4049,7 +4069,7 @@ MCS_FN size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows) {
     size_t n = 2 * (size_t)rows * rows;
     if (!e || !mcsi_tiles_ok(rows)) return 0;
     return sizeof(mcs_tiles) +
-           (MCSI_TILE_FIELDS * (2 * n + n / MCSI_BLOCK_TILES) + 3 * (n + 2 * (size_t)rows) + 3 * MCSI_GRID * n) * sizeof(float) +
+           (MCSI_TILE_FIELDS * (n + mcsi_patches(n)) + 3 * (n + 2 * (size_t)rows) + (12 + 3 * MCSI_GRID) * n) * sizeof(float) +
            n * mcs_env_window_bytes(e->h / rows + 1);
 }
 /* First texel row or column of a tile, and the tile of a texel. */
@@ -4137,7 +4157,7 @@ MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mc
         memset(node, 0, 3 * MCSI_GRID * sizeof *node);
         return;
     }
-    memset(&axes, 0, sizeof axes), axes.s.x = axes.t.y = axes.n.z = 1.0f, v = mcsi_env_part(m);
+    memset(&axes, 0, sizeof axes), axes.s.x = axes.t.y = axes.n.z = 1.0f, v = mcsi_env_part(e, m);
     for (k = 0; k < MCSI_GRID; k++) {
         mcsi_env_point at;
         mcs_vec3 w;
@@ -4148,44 +4168,56 @@ MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mc
         node[k] = w.x, node[MCSI_GRID + k] = w.y, node[2 * MCSI_GRID + k] = w.z;
     }
 }
+/* Patch (i, j) of `rows` rows: of tiles itself; else its parts, whose fields lie from `level` on, and the sum of them. */
+MCS_FN void mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, uint32_t i, uint32_t j, float *level, mcsi_patch *p) {
+    uint32_t side, parts, k, y, n = t->rows * t->cols;
+    memset(p, 0, sizeof *p);
+    p->row0 = mcsi_tile_begin(i, rows, e->h), p->row1 = mcsi_tile_begin(i + 1, rows, e->h);
+    p->col0 = mcsi_tile_begin(j, 2 * rows, e->w), p->col1 = mcsi_tile_begin(j + 1, 2 * rows, e->w);
+    if (rows == t->rows) {
+        mcs_env_window *m = (mcs_env_window *)(void *)((char *)(uintptr_t)mcsi_tiles_window(t, i, j));
+        mcsi_env_view all = mcsi_env_whole(e);
+        size_t at = (size_t)j * rows + i;
+        float *around = (float *)(uintptr_t)mcsi_tiles_around(t) + 12 * at;
+        for (y = p->row0; y < p->row1; y++) mcsi_patch_add_row(e, &all, y, p);
+        if (p->e > 0.0) mcs_env_window_build(m, t->window_bytes, e, p->row0, p->row1 - p->row0, p->col0, p->col1 - p->col0);
+        mcsi_patch_store(e, p, (float *)(uintptr_t)mcsi_tiles_fields(t) + at, n);
+        mcsi_patch_nodes(e, m, p, (float *)(uintptr_t)mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * at);
+        for (k = 0; k < 4; k++) {
+            mcs_vec3 w;
+            mcsi_patch_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0, &w);
+            around[k] = w.x, around[4 + k] = w.y, around[8 + k] = w.z;
+        }
+        return;
+    }
+    side = mcsi_patch_side(t, rows), parts = side * side;
+    for (k = 0; k < parts; k++) {
+        mcsi_patch part;
+        mcsi_patch_build(e, t, rows * side, i * side + k % side, j * side + k / side,
+                         level + MCSI_TILE_FIELDS * 2 * (size_t)rows * rows * parts, &part);
+        mcsi_patch_store(e, &part, level + MCSI_TILE_FIELDS * (size_t)(j * rows + i) * parts + k, parts);
+        p->e += part.e, p->x += part.x, p->y += part.y, p->z += part.z, p->within += part.within;
+    }
+}
 MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows) {
-    mcsi_env_view all;
-    mcsi_patch block;
-    uint32_t I, J, k, f, n = 2 * rows * rows;
-    float *field, *of_block, *corner;
+    uint32_t i, j;
+    float *level, *corner;
     if (!t || !e || ((uintptr_t)t & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (!mcsi_tiles_ok(rows)) return MCS_ERR_SIZE;
     if (bytes < mcs_tiles_bytes(e, rows)) return MCS_ERR_MEMORY;
-    all = mcsi_env_whole(e), field = (float *)(void *)(t + 1);
     t->rows = rows, t->cols = 2 * rows, t->window_bytes = (uint32_t)mcs_env_window_bytes(e->h / rows + 1), t->unused = 0;
-    of_block = (float *)(uintptr_t)mcsi_tiles_of_blocks(t);
-    for (J = 0; J < t->cols / MCSI_TILE_BLOCK; J++)
-        for (I = 0; I < rows / MCSI_TILE_BLOCK; I++, of_block += (int)MCSI_TILE_FIELDS * MCSI_BLOCK_TILES) {
-            memset(&block, 0, sizeof block);
-            for (k = 0; k < MCSI_BLOCK_TILES; k++) {
-                uint32_t i = I * MCSI_TILE_BLOCK + k % MCSI_TILE_BLOCK, j = J * MCSI_TILE_BLOCK + k / MCSI_TILE_BLOCK, y;
-                mcs_env_window *m = (mcs_env_window *)(void *)((char *)(uintptr_t)mcsi_tiles_window(t, i, j));
-                mcsi_patch p;
-                memset(&p, 0, sizeof p);
-                p.row0 = mcsi_tile_begin(i, rows, e->h), p.row1 = mcsi_tile_begin(i + 1, rows, e->h);
-                p.col0 = mcsi_tile_begin(j, t->cols, e->w), p.col1 = mcsi_tile_begin(j + 1, t->cols, e->w);
-                for (y = p.row0; y < p.row1; y++) mcsi_patch_add_row(e, &all, y, &p);
-                if (p.e > 0.0) mcs_env_window_build(m, t->window_bytes, e, p.row0, p.row1 - p.row0, p.col0, p.col1 - p.col0);
-                mcsi_patch_store(e, &p, field + (size_t)j * rows + i, n);
-                for (f = 0; f < MCSI_TILE_FIELDS; f++) of_block[f * MCSI_BLOCK_TILES + k] = field[f * (size_t)n + j * rows + i];
-                mcsi_patch_nodes(e, m, &p, (float *)(uintptr_t)mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * (j * rows + i));
-                block.e += p.e, block.x += p.x, block.y += p.y, block.z += p.z, block.within += p.within;
-                if (k == 0) block.row0 = p.row0, block.col0 = p.col0;
-                block.row1 = p.row1, block.col1 = p.col1;
-            }
-            mcsi_patch_store(e, &block, field + MCSI_TILE_FIELDS * (size_t)n + J * (rows / MCSI_TILE_BLOCK) + I,
-                             n / MCSI_BLOCK_TILES);
+    level = (float *)(uintptr_t)mcsi_tiles_patches(t);
+    for (j = 0; j < MCSI_PATCH_COLS; j++)
+        for (i = 0; i < MCSI_PATCH_ROWS; i++) {
+            mcsi_patch p;
+            mcsi_patch_build(e, t, MCSI_PATCH_ROWS, i, j, level + (int)MCSI_TILE_FIELDS * MCSI_PATCHES, &p);
+            mcsi_patch_store(e, &p, level + j * MCSI_PATCH_ROWS + i, MCSI_PATCHES);
         }
     corner = (float *)(uintptr_t)mcsi_tiles_corners(t);
-    for (J = 0; J < t->cols; J++)
-        for (I = 0; I <= rows; I++, corner++) {
+    for (j = 0; j < t->cols; j++)
+        for (i = 0; i <= rows; i++, corner++) {
             mcs_vec3 w;
-            mcsi_patch_corner(e, mcsi_tile_begin(I, rows, e->h), mcsi_tile_begin(J, t->cols, e->w), &w);
+            mcsi_patch_corner(e, mcsi_tile_begin(i, rows, e->h), mcsi_tile_begin(j, t->cols, e->w), &w);
             corner[0] = w.x, corner[mcsi_corners(t)] = w.y, corner[2 * mcsi_corners(t)] = w.z;
         }
     return e->total > 0.0 ? MCS_OK : MCS_UNIFORM;
@@ -4288,6 +4320,15 @@ MCSI_CORE void mcsi_tiles_value(const mcsi_facing *s, size_t n, const float *fie
 #else
     size_t i;
     for (i = 0; i < n; i++) value[i] = mcsi_tile_value(&s->axes, s, fields + i, stride);
+#endif
+}
+/* The same of patches, and that times their light. */
+MCSI_CORE void mcsi_patches_weigh(const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight) {
+#ifndef MCS_NO_BATCH
+    mcsi_patch_weights_n(s, n, patch, value, weight);
+#else
+    size_t i;
+    for (i = 0; i < n; i++) value[i] = mcsi_tile_value(&s->axes, s, patch + i, n), weight[i] = value[i] * patch[i];
 #endif
 }
 MCSI_CORE void mcsi_corners_value(const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value) {
@@ -4492,7 +4533,7 @@ MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, uint32_t i, uint32_t
 /* Where among a tile's light the place of a direction in a row with light lies, for mcsi_warp_density. */
 MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const mcsi_env_place_of *at, float *t1, float *t2) {
     const uint32_t *rows = v->rows + (at->row - v->row), *cdf;
-    const mcsi_env_line *line = v->line + (at->row - v->row);
+    const mcsi_env_span *span = v->span + (at->row - v->row);
     double P;
     if (v->uniform) {
         double a = mcsi_env_top(e, v->row), b = mcsi_env_top(e, v->row + v->count);
@@ -4500,8 +4541,8 @@ MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const 
         *t1 = (float)((at->col + at->across - v->col) / v->cols), *t2 = (float)((P - a) / (b - a));
     } else {
         cdf = mcsi_env_cdf(e, at->row) + at->col;
-        P = cdf[0] + at->across * (cdf[1] - cdf[0]) - line->begin;
-        *t1 = (float)((P < 0.0 ? P + MCSI_ONE : P) / line->mass);
+        P = cdf[0] + at->across * (cdf[1] - cdf[0]) - span->begin;
+        *t1 = (float)((P < 0.0 ? P + MCSI_ONE : P) / span->mass);
         *t2 = (float)((rows[0] + at->down * (rows[1] - rows[0])) / MCSI_ONE);
     }
     *t1 = mcsi_min(mcsi_max(*t1, 0.0f), 1.0f), *t2 = mcsi_min(mcsi_max(*t2, 0.0f), 1.0f);
@@ -4509,18 +4550,18 @@ MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const 
 /* Density of the tiles alone; `part` of all draws fall on tile (i, j), there by a fine grid, a bilinear function or the light. */
 MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, const float *fine, const mcsi_warp *warp,
                                    uint32_t i, uint32_t j, const mcsi_env_place_of *at) {
-    mcsi_env_view v = mcsi_env_part(mcsi_tiles_window(t, i, j));
+    mcsi_env_view v = mcsi_env_part(e, mcsi_tiles_window(t, i, j));
     const uint32_t *cdf;
-    double scale;
-    if (!v.uniform && !(v.line[at->row - v.row].scale > 0.0)) return 0.0f; /* such a row was not written */
+    uint32_t row = at->row - v.row;
+    if (!v.uniform && v.rows[row] == v.rows[row + 1]) return 0.0f; /* such a row was not written */
     if (fine || warp) {
         float t1, t2;
         mcsi_tiled_place(e, &v, at, &t1, &t2);
         part *= (double)(fine ? mcsi_fine_density(fine, t1, t2) : mcsi_warp_density(warp, t1, t2));
     }
     if (v.uniform) return (float)(part * (double)mcsi_env_uniform_pdf(e, &v));
-    scale = part * v.line[at->row - v.row].scale, cdf = mcsi_env_cdf(e, at->row) + at->col;
-    return (float)((cdf[1] - cdf[0]) * scale);
+    part *= mcsi_env_scale(&v, row), cdf = mcsi_env_cdf(e, at->row) + at->col;
+    return (float)((cdf[1] - cdf[0]) * part);
 }
 MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcsi_env_place_of *at) {
     const mcs_tiles *t = p->t;
@@ -4548,6 +4589,12 @@ MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
     return r;
 }
 MCS_FN float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
+/* What a draw reads of a tile's rows near the place U2 of its light. */
+MCSI_CORE void mcsi_tile_prefetch(const mcs_env *e, const mcs_env_window *m, double U2) {
+    mcsi_env_view v = mcsi_env_part(e, m);
+    uint32_t row = (uint32_t)(U2 * v.count * (1.0 / MCSI_ONE));
+    MCSI_PREFETCH(v.guide + row), MCSI_PREFETCH(v.rows + row), MCSI_PREFETCH(v.span + row);
+}
 /* Tile row, then column; U2 and U1 become the place in it. */
 MCSI_CORE uint32_t mcsi_product_row(const mcs_product *p, double *U2) {
     const uint32_t *rows = mcsi_product_rows(p);
@@ -4564,7 +4611,7 @@ MCSI_CORE uint32_t mcsi_product_col(const mcs_product *p, uint32_t i, double *U1
     return j;
 }
 MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, double U1, double U2, double part, int ok) {
-    mcsi_env_view v = mcsi_env_part(m);
+    mcsi_env_view v = mcsi_env_part(e, m);
     return mcsi_env_draw(e, &v, U1, U2, part, ok);
 }
 MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
@@ -4580,6 +4627,7 @@ MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
         uint32_t i, j;
         U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE;
         i = mcsi_product_row(p, &U2), j = mcsi_product_col(p, i, &U1, &part), fine = mcsi_product_fine_of(p, i, j);
+        mcsi_tile_prefetch(p->e, mcsi_tiles_window(p->t, i, j), U2);
         if (fine) {
             mcsi_fine_draw(fine, &U1, &U2, &part);
         } else if (p->warped) {
@@ -4635,19 +4683,16 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
         }
         if (p->warped) mcsi_warps_n(m, &warps);
         for (k = 0; k < m; k++) {
-            mcsi_env_view v = mcsi_env_part(window[k]);
-            uint32_t near_row;
             if (fine[k]) {
                 mcsi_fine_draw(fine[k], &U1[k], &U2[k], &part[k]);
             } else if (p->warped) {
                 part[k] *= (double)warps.density[k];
                 U1[k] = (double)warps.u1[k] * MCSI_ONE, U2[k] = (double)warps.u2[k] * MCSI_ONE;
             }
-            near_row = (uint32_t)(U2[k] * v.count * (1.0 / MCSI_ONE));
-            MCSI_PREFETCH(v.guide + near_row), MCSI_PREFETCH(v.rows + near_row), MCSI_PREFETCH(v.line + near_row);
+            mcsi_tile_prefetch(p->e, window[k], U2[k]);
         }
         for (k = 0; k < m; k++) {
-            mcsi_env_view v = mcsi_env_part(window[k]);
+            mcsi_env_view v = mcsi_env_part(p->e, window[k]);
             mcsi_env_block_aim(p->e, &v, &b, k, U1[k], U2[k], part[k], ok[k]);
         }
         mcsi_env_block_land(p->e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL);
@@ -4655,67 +4700,82 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
 }
 #endif
 
-/* ---- one-shot form: blocks of 4 x 4 tiles, then the tiles of one ---- */
+/* ---- one-shot form: one of 4 x 8 patches, one of its parts, down to a tile ---- */
 
-enum { MCSI_BLOCKS_MAX = MCSI_TILES_MAX * MCSI_TILES_MAX / 8 };
-/* A draw from a list of n (a power of two) weights: entry, place in it, and the entry's part; with U < 0, the part of entry *k. In
- * double, where the part of an entry down to 2^-30 of the whole is that of the sums to 2^-22 of itself. 0: nothing to draw. */
+/* A draw from a list of n (even) weights: entry, place in it, and the entry's part; with U < 0, the part of entry *k. In double,
+ * where the part of an entry down to 2^-30 of the whole is that of the sums to 2^-22 of itself. 0: nothing to draw. */
 MCSI_CORE int mcsi_list_draw(const float *weight, uint32_t n, double *U, uint32_t *k, double *part) {
-    double cum[MCSI_TILES_MAX], total = 0.0;
-    uint32_t i, half;
-    for (i = 0; i < n; i++) cum[i] = total, total += (double)weight[i];
+    double cum[MCSI_PATCH_COLS], total = 0.0;
+    uint32_t i;
+    MCSI_UNROLL
+    for (i = 0; i < n; i += 2) { /* by pairs: half the latency */
+        double a = (double)weight[i], both = a + (double)weight[i + 1];
+        cum[i] = total, cum[i + 1] = total + a, total += both;
+    }
     if (!(total > 0.0)) return 0;
     if (*U >= 0.0) {
         double V = *U * (total * (1.0 / MCSI_ONE)), rest;
-        for (i = 0, half = n / 2; half; half /= 2) i += (uint32_t)(cum[i + half] <= V) * half;
-        rest = (V - cum[i]) * (MCSI_ONE / (double)weight[i]);
-        *k = i, *U = rest < 2147483647.5 ? rest : 2147483647.5;
+        *k = 0;
+        MCSI_UNROLL
+        for (i = 1; i < n; i++) *k += (uint32_t)(cum[i] <= V);
+        rest = (V - cum[*k]) * (MCSI_ONE / (double)weight[*k]), *U = rest < 2147483647.5 ? rest : 2147483647.5;
     }
     if (!(weight[*k] > 0.0f)) return 0;
     *part *= (double)weight[*k] / total;
     return 1;
 }
-/* The same from a grid of tiles; from their light alone when all are below the horizon that the block around them crosses. */
-MCSI_CORE int mcsi_level_draw(const mcsi_facing *s, uint32_t rows, uint32_t cols, const float *fields, int inner, double *U1,
-                              double *U2, uint32_t *i, uint32_t *j, double *part, float *value) {
-    float values[MCSI_BLOCKS_MAX], list[MCSI_TILES_MAX], all = 0.0f;
-    uint32_t n = rows * cols, k, m;
-    mcsi_tiles_value(s, n, fields, n, values);
-    for (;;) {
-        k = 0;
-        do {
-            float sum = 0.0f;
-            for (m = k; m < n; m += rows) sum += fields[m] * values[m];
-            list[k] = sum, all += sum;
-        } while (++k < rows);
-        if (all > 0.0f || !inner) break;
-        for (k = 0; k < n; k++) values[k] = MCSI_TILE_LEAST;
-        inner = 0;
+/* The same from a grid, column by column: the row, then its column. */
+MCSI_CORE int mcsi_grid_draw(const float *weight, uint32_t rows, uint32_t cols, double *U1, double *U2, uint32_t *i, uint32_t *j,
+                             double *part) {
+    float sum[MCSI_PATCHES], list[MCSI_PATCH_COLS], *to = sum;
+    const float *from = weight;
+    uint32_t k, n;
+    MCSI_UNROLL
+    for (n = rows * cols / 2; n >= rows; from = to, to += n, n /= 2) {
+        MCSI_UNROLL
+        for (k = 0; k < n; k++) to[k] = from[k] + from[k + n];
     }
-    if (!mcsi_list_draw(list, rows, U2, i, part)) return 0;
-    for (k = 0; k < cols; k++) list[k] = fields[k * rows + *i] * values[k * rows + *i];
-    if (!mcsi_list_draw(list, cols, U1, j, part)) return 0;
-    *value = values[*j * rows + *i];
-    return 1;
+    if (!mcsi_list_draw(from, rows, U2, i, part)) return 0;
+    MCSI_UNROLL
+    for (k = 0; k < cols; k++) list[k] = weight[k * rows + *i];
+    return mcsi_list_draw(list, cols, U1, j, part);
 }
-/* Down both levels to tile (i, j) and the place in it; with U1, U2 < 0, the part of all draws that tile (i, j) gets. */
-MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcsi_facing *s, double *U1, double *U2, uint32_t *i, uint32_t *j,
-                                double *part, mcsi_warp *warp) {
-    enum { B = MCSI_TILE_BLOCK };
-    float corner[3 * MCSI_BLOCK_TILES] = {0.0f}, v[MCSI_BLOCK_TILES], value; /* whole vectors are computed */
-    const float *tiles, *from = mcsi_tiles_corners(t), *pull = mcsi_tiles_fields(t) + MCSI_TILE_PULL * (size_t)t->rows * t->cols;
-    uint32_t I = *i / B, J = *j / B, k, c;
-    if (!mcsi_level_draw(s, t->rows / B, t->cols / B, mcsi_tiles_blocks(t), 0, U1, U2, &I, &J, part, &value)) return 0;
-    tiles = mcsi_tiles_of_blocks(t) + (J * (t->rows / B) + I) * (size_t)((int)MCSI_TILE_FIELDS * MCSI_BLOCK_TILES);
-    *i %= B, *j %= B;
-    if (!mcsi_level_draw(s, B, B, tiles, 1, U1, U2, i, j, part, &value)) return 0;
-    *i += I * B, *j += J * B;
-    for (k = 0; k < 4; k++) {
-        const float *at = from + (size_t)(*j + k / 2 < t->cols ? *j + k / 2 : 0) * (t->rows + 1) + *i + k % 2;
-        for (c = 0; c < 3; c++) corner[c * MCSI_BLOCK_TILES + k] = at[c * mcsi_corners(t)];
+/* The same from the parts of a patch; by their light alone when all are below the horizon that crosses the patch. */
+MCSI_CORE int mcsi_parts_draw(const float *light, uint32_t side, float *value, float *weight, double *U1, double *U2, uint32_t *i,
+                              uint32_t *j, double *part) {
+    uint32_t k, tried;
+    for (tried = 0; tried < 2; tried++) {
+        if (side == 4 ? mcsi_grid_draw(weight, 4, 4, U1, U2, i, j, part) : mcsi_grid_draw(weight, 2, 2, U1, U2, i, j, part))
+            return 1;
+        for (k = 0; k < side * side; k++)
+            if (weight[k] > 0.0f) return 0;
+        for (k = 0; k < side * side; k++) value[k] = MCSI_TILE_LEAST, weight[k] = light[k] * MCSI_TILE_LEAST;
     }
-    mcsi_corners_value(s, 4, corner, MCSI_BLOCK_TILES, v);
-    *warp = mcsi_warp_make(value, pull[(size_t)*j * t->rows + *i], v[0], v[1], v[2], v[3]);
+    return 0;
+}
+/* Down to tile (i, j) and the place in it; with U1, U2 < 0, the part of all draws that tile (i, j) gets. */
+MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s, double *U1, double *U2, uint32_t *i,
+                                uint32_t *j, double *part, mcsi_warp *warp) {
+    float value[MCSI_PATCHES], weight[MCSI_PATCHES], v[MCSI_PATCHES]; /* whole vectors are computed */
+    const float *level = mcsi_tiles_patches(t);
+    uint32_t rows = MCSI_PATCH_ROWS, below = t->rows / MCSI_PATCH_ROWS, I = *i / below, J = *j / below, k = 0;
+    size_t at;
+    mcsi_patches_weigh(s, MCSI_PATCHES, level, value, weight);
+    if (!mcsi_grid_draw(weight, MCSI_PATCH_ROWS, MCSI_PATCH_COLS, U1, U2, &I, &J, part)) return 0;
+    level += (int)MCSI_TILE_FIELDS * MCSI_PATCHES;
+    do {
+        uint32_t side = mcsi_patch_side(t, rows), parts = side * side, y, x;
+        const float *patch = level + MCSI_TILE_FIELDS * (size_t)(J * rows + I) * parts;
+        below /= side, y = *i / below % side, x = *j / below % side;
+        mcsi_patches_weigh(s, parts, patch, value, weight);
+        if (!mcsi_parts_draw(patch, side, value, weight, U1, U2, &y, &x, part)) return 0;
+        I = I * side + y, J = J * side + x, k = x * side + y, level += MCSI_TILE_FIELDS * 2 * (size_t)rows * rows * parts,
+        rows *= side;
+    } while (below > 1);
+    *i = I, *j = J, at = (size_t)J * rows + I;
+    mcsi_tile_prefetch(e, mcsi_tiles_window(t, I, J), *U2);
+    mcsi_corners_value(s, 4, mcsi_tiles_around(t) + 12 * at, 4, v);
+    *warp = mcsi_warp_make(value[k], mcsi_tiles_fields(t)[MCSI_TILE_PULL * (size_t)t->rows * t->cols + at], v[0], v[1], v[2], v[3]);
     return 1;
 }
 /* Density of the tiles alone. */
@@ -4723,7 +4783,8 @@ MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mc
     double part = 1.0, U1 = -1.0, U2 = -1.0;
     uint32_t i = mcsi_tile_of(at->row, t->rows, e->h), j = mcsi_tile_of(at->col, t->cols, e->w);
     mcsi_warp warp;
-    return mcsi_oneshot_tile(t, s, &U1, &U2, &i, &j, &part, &warp) ? mcsi_tiled_density(t, e, part, NULL, &warp, i, j, at) : 0.0f;
+    return mcsi_oneshot_tile(t, e, s, &U1, &U2, &i, &j, &part, &warp) ? mcsi_tiled_density(t, e, part, NULL, &warp, i, j, at)
+                                                                      : 0.0f;
 }
 MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2) {
     int32_t ok = 1;
@@ -4745,7 +4806,7 @@ MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const 
         x.w = w, x.row = at.row, x.col = at.col, x.pdf = mcsi_oneshot_density(t, e, &s, &at);
     } else {
         U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE;
-        if (!mcsi_oneshot_tile(t, &s, &U1, &U2, &i, &j, &part, &warp)) return mcsi_nothing(e);
+        if (!mcsi_oneshot_tile(t, e, &s, &U1, &U2, &i, &j, &part, &warp)) return mcsi_nothing(e);
         mcsi_warp_place(&warp, &U1, &U2, &part);
         x = mcsi_tiled_draw(e, mcsi_tiles_window(t, i, j), U1, U2, part, ok);
     }
