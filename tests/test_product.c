@@ -880,7 +880,7 @@ static void test_chi2(void) {
     mcst_group("product, chi-square");
     for (a = 0; a < MAPS; a++)
         for (l = 0; l < LOBES; l++) {
-            const uint32_t rows = (a + l) % 3 ? 16 : 32, odd = (uint32_t)(a + l) % 4 == 3;
+            const uint32_t rows = (a + l) % 3 ? 16 : (a + l) % 2 ? 64 : 32, odd = (uint32_t)(a + l) % 4 == 3;
             scene m;
             if (!mcst_case("%s, %s", maps[a].name, lobes[l].name)) continue;
             m = scene_make(maps[a].name, odd ? 50 : 64, odd ? 25 : 32, maps[a].value, rows);
@@ -960,7 +960,8 @@ static void test_mean(void) {
         {"sun", v_sun, 64, 32, 16, 10, 5, 0.7},      {"noise", v_noise, 64, 32, 32, 11, 4, 0.5},
         {"room", v_room, 100, 47, 16, 12, 6, 0.8},   {"smooth", v_smooth, 50, 25, 16, 13, 2, 0.6},
         {"room", v_room, 64, 32, 32, 14, 3, 0.4},    {"sparse", v_sparse, 40, 20, 16, 15, 4, 0.7},
-        {"half", v_half, 64, 32, 16, 16, 0, 0.9},
+        {"half", v_half, 64, 32, 16, 16, 0, 0.9},    {"room", v_room, 160, 80, 64, 2, 5, 0.4},
+        {"half", v_half, 50, 25, 64, 0, 4, 0.6},     {"sun", v_sun, 128, 64, 64, 10, 2, 0.7},
     };
     enum { CASES = (int)(sizeof cases / sizeof *cases) };
     const double f = scale();
