@@ -3430,10 +3430,10 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
 MCSI_CORE double mcsi_times_one(float u, int32_t *ok) { return (double)mcsi_unit(u, ok) * MCSI_ONE; }
 /* The place of U in row i of the view. */
 MCSI_CORE double mcsi_env_within(const mcsi_env_view *v, uint32_t i, double U) {
-    const mcsi_env_span *span = v->span + i;
+    mcsi_env_span part;
     if (!v->span) return U;
-    U *= span->mass * (1.0 / MCSI_ONE); /* and the sum must not round up to the end */
-    U = span->begin + (U < span->mass - 4.76837158203125e-07 ? U : span->mass - 4.76837158203125e-07);
+    part = v->span[i], U *= part.mass * (1.0 / MCSI_ONE); /* and the sum must not round up to the end */
+    U = part.begin + (U < part.mass - 4.76837158203125e-07 ? U : part.mass - 4.76837158203125e-07);
     U -= U > MCSI_ONE - 2.384185791015625e-07 ? (double)MCSI_ONE : 0.0; /* the next double is 2^31: one of x87 may lie between */
     return U > 0.0 ? U : 0.0;
 }
@@ -3795,9 +3795,10 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * Within a tile the density is that of the light times a bilinear function of the place among the light (the parts of the tile's
  * light above, and to the left within the row) that follows the reflection towards the corners, as far as the light reaches them:
  * so it is continuous within a tile, and varies within a texel. _pdf of a sample is its own to the rounding of that place, 2^-21 of
- * the map's texels. Cost of a sample: that of the environment's, two short searches, 2 sqrt, 5 div. Sources: Clarberg and
- * Akenine-Moeller 2008, "Practical product importance sampling for direct illumination"; Cline et al. 2006, "Two stage importance
- * sampling"; bilinear warping: Pharr, Jakob, Humphreys 2023, A.5. */
+ * the map's texels. Cost of a sample: that of the environment's, two short searches, 2 sqrt, 5 div; one-shot also the reflection
+ * towards 48 tiles and patches and 4 corners (40 with 32 rows, 64 with 64). Sources: Clarberg and Akenine-Moeller 2008, "Practical
+ * product importance sampling for direct illumination"; Cline et al. 2006, "Two stage importance sampling"; bilinear warping:
+ * Pharr, Jakob, Humphreys 2023, A.5. */
 
 #if MCSI_W == 1
 /* What is known of tiles, column by column: light, mean direction of it and its length's inverse, spread; radius of the tile and of
