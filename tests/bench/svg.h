@@ -3,7 +3,8 @@
  *     svg_plot p;
  *     svg_begin(&p, "file.svg", "title", "time, ns", "error, ulp", 1, 1, xmin, xmax, ymin, ymax);   the flags: log axis
  *     svg_series(&p, "name", n, x, y, SVG_LINE);      the first call gets the first marker, dash pattern and colour, and so on
- *     svg_label(&p, x, y, "text");                    beside a point, or not at all where other labels are
+ *     svg_keep_off(&p, n, x, y);                      no label is to lie on the marks of these points
+ *     svg_label(&p, x, y, "text");                    beside a point, or not at all where there is no room
  *     svg_note(&p, "text");                           a line below the legend
  *     if (svg_end(&p)) fail;
  *
@@ -18,14 +19,14 @@
 
 enum { SVG_POINTS, SVG_LINE, SVG_LINE_ONLY }; /* markers; markers joined by a line; a line without markers */
 enum { SVG_W = 1000, SVG_H = 600, SVG_L = 84, SVG_R = 770, SVG_T = 50, SVG_B = 530 }; /* sheet and frame in pixels */
-enum { SVG_SHAPES = 8, SVG_LABELS = 64 };
+enum { SVG_SHAPES = 8, SVG_BOXES = 512 };
 
 typedef struct {
     FILE *out;
     int log[2], series, row; /* axis 0: x, 1: y; rows of the legend used */
     double min[2], max[2];
-    int labels;
-    double label[SVG_LABELS][3]; /* left, right, baseline of what is written */
+    int boxes;
+    double box[SVG_BOXES][4]; /* left, right, top, bottom of what labels keep off: marks, other labels */
 } svg_plot;
 
 /* Widens [*lo, *hi] (empty while lo > hi) to hold the values that a log or linear axis can show. */
@@ -95,7 +96,7 @@ static inline void svg_axis(svg_plot *p, int axis) {
 static inline void svg_begin(svg_plot *p, const char *file, const char *title, const char *xlabel, const char *ylabel, int xlog,
                              int ylog, double xmin, double xmax, double ymin, double ymax) {
     p->out = fopen(file, "w");
-    p->series = p->row = p->labels = 0;
+    p->series = p->row = p->boxes = 0;
     p->log[0] = xlog, p->log[1] = ylog;
     p->min[0] = xmin, p->max[0] = xmax, p->min[1] = ymin, p->max[1] = ymax;
     if (!p->out) return;
@@ -172,20 +173,33 @@ static inline void svg_series(svg_plot *p, const char *name, int n, const double
     fprintf(p->out, "</text>\n");
 }
 
+static inline void svg_keep_box(svg_plot *p, double left, double right, double top, double bottom) {
+    double *box = p->box[p->boxes];
+    if (p->boxes == SVG_BOXES) return;
+    box[0] = left, box[1] = right, box[2] = top, box[3] = bottom, p->boxes++;
+}
+
+static inline void svg_keep_off(svg_plot *p, int n, const double *x, const double *y) {
+    int i;
+    for (i = 0; i < n; i++) {
+        const double at[2] = {svg_at(p, 0, x[i]), svg_at(p, 1, y[i])};
+        svg_keep_box(p, at[0] - 6, at[0] + 6, at[1] - 6, at[1] + 6);
+    }
+}
+
 static inline void svg_label(svg_plot *p, double x, double y, const char *s) {
     /* tried in this order; from the point, negative: the text ends there */
-    static const int place[7][2] = {{9, 4}, {9, 16}, {9, -8}, {-9, 4}, {-9, 16}, {-9, -8}, {9, 28}};
+    static const int place[][2] = {{9, 4}, {-9, 4}, {9, 16}, {9, -8}, {-9, 16}, {-9, -8}, {9, -20}, {-9, -20}};
     const double width = 6.7 * (double)strlen(s); /* of the widest of the fonts, at 12 pixels */
     int i, k;
-    if (!p->out || p->labels == SVG_LABELS) return;
-    for (i = 0; i < 7; i++) {
+    if (!p->out) return;
+    for (i = 0; i < (int)(sizeof place / sizeof *place); i++) {
         const double left = svg_at(p, 0, x) + place[i][0] - (place[i][0] < 0 ? width : 0), base = svg_at(p, 1, y) + place[i][1];
         if (left < SVG_L || left + width > SVG_R || base > SVG_B || base < SVG_T + 12) continue;
-        for (k = 0; k < p->labels; k++)
-            if (left < p->label[k][1] && left + width > p->label[k][0] && fabs(base - p->label[k][2]) < 12) break;
-        if (k < p->labels) continue;
-        p->label[k][0] = left, p->label[k][1] = left + width, p->label[k][2] = base;
-        p->labels++;
+        for (k = 0; k < p->boxes; k++)
+            if (left < p->box[k][1] && left + width > p->box[k][0] && base - 10 < p->box[k][3] && base + 3 > p->box[k][2]) break;
+        if (k < p->boxes) continue;
+        svg_keep_box(p, left, left + width, base - 10, base + 3);
         fprintf(p->out,
                 "<text fill=\"#303030\" stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\" font-size=\"12\" "
                 "text-anchor=\"%s\" x=\"%.1f\" y=\"%.1f\">",

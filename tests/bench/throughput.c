@@ -604,7 +604,8 @@ static void write_svg(const char *file, int pdf, const char *ylabel, double leas
     }
     svg_begin(&plot, bench_path(file), pdf ? "Run time against error of the density" : "Run time against error of the sample",
               "time per sample with pdf, ns (median)", ylabel, 1, 1, lo[0] / 1.3, hi[0] * 2, lo[1] / 2, hi[1] * 2);
-    for (k = 0; k < SAMPLERS; k++) { /* below the marks; only where there is room between them */
+    for (f = 0; f < FORMS; f++) svg_keep_off(&plot, n[f], x[f], y[f]);
+    for (k = 0; k < SAMPLERS; k++) { /* only where there is room between the marks */
         const double err = pdf ? error_of[k][TEXT].pdf_max : error_of[k][TEXT].max;
         if (err > 50) svg_label(&plot, spread_of(ns[k][TEXT]).median, err, samplers[k].name);
     }
