@@ -3782,8 +3782,9 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  * (build returns MCS_UNIFORM); a black map counts as even light, as in [env].
  * Narrow lobes (4 pi alpha_x alpha_y cos(theta_o) below 8 mean tiles): in the prepared form the tiles that by their mean
  * direction or a corner weigh more than a 256th of all, the 32 heaviest at most, have the reflection on a grid of 8 x 8 places
- * among their light, are bilinear in its 7 x 7 cells and weigh what that says; the others weigh less where the corners are darker
- * than the mean direction. A lobe narrower than the cells gets a share (p->brdf_share) of the samples for itself,
+ * among their light (the outer ones a hundredth of it inside), are bilinear in its 7 x 7 cells and weigh what that says; the others
+ * weigh less where the corners are darker than the mean direction. A lobe narrower than the cells gets a share (p->brdf_share) of
+ * the samples for itself,
  * (1 - matte) m/(1 + m), at most 0.95, where m + 0.03 is a fourteenth of the mean solid angle of a tile over
  * 4 pi alpha_x alpha_y cos(theta_o), that of the lobe (one-shot: m + 0.3 is the whole of it; both three times as much for _GAUSS
  * and _PHONG, which have no tails): directions by mcs_ggx_vndf, mcs_ward or mcs_phong; the density is that of the mixture, and what
@@ -4146,8 +4147,10 @@ MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_env_view *all, uint3
     p->e += height * row, p->x += height * sine * cx, p->y += height * sine * cy, p->z += height * row * (1.0 - t);
     p->within += height * row * 0.82246703342411322 * (1.0 / ((double)e->h * e->h) + 4.0 * sine * sine / ((double)e->w * e->w));
 }
+/* Places of nodes: even, but for the outer ones, which keep a hundredth of the light off the border, as what lies there is
+ * often far from the rest: beside a sun it is the edge of the tile. */
 MCSI_CORE double mcsi_node_place(uint32_t k) {
-    return k < MCSI_NODES - 1 ? k * ((double)MCSI_ONE / (MCSI_NODES - 1)) : MCSI_ONE - 0.5;
+    return k == 0 ? 0.01 * MCSI_ONE : k == MCSI_NODES - 1 ? 0.99 * MCSI_ONE : k * ((double)MCSI_ONE / (MCSI_NODES - 1));
 }
 /* Directions, in the map's frame, of a grid of places among a tile's light, from its first to its last; column by column. */
 MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mcsi_patch *p, float *node) {
