@@ -2982,7 +2982,9 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  *                                texels than a float u can tell apart
  *   mcs_env_pdf(e, w); mcs_env_texel(e, w) -> the same struct, for radiance and density in one look-up
  *   mcs_env_invert(e, w) -> (u1, u2)
- *   mcs_env_sample_n, _texel_n, _pdf_n   arrays; memory is fetched ahead, so these are the fast forms for large maps
+ *   mcs_env_sample_n(e, n, u1, u2, x, y, z, pdf, col, row), _texel_n(e, n, x, y, z, col, row, pdf), _pdf_n(e, n, x, y, z, pdf)
+ *                                arrays, of which results may be NULL; memory is fetched ahead, so these are the fast forms for
+ *                                large maps
  *   mcs_env_check(e, bytes)      whether memory (a file read or mapped) is a table: MCS_OK; MCS_ERR_MEMORY when cut short,
  *                                MCS_ERR_FORMAT when it is none, of another version or byte order, or damaged. Reads all
  *                                that samplers use
@@ -3049,6 +3051,7 @@ typedef struct {
     const uint32_t *cdf[MCSI_ENV_BLOCK];
     const uint16_t *guide[MCSI_ENV_BLOCK];
     double scale[MCSI_ENV_BLOCK], at[MCSI_ENV_BLOCK];
+    uint32_t in_col[MCSI_ENV_BLOCK], in_row[MCSI_ENV_BLOCK]; /* texel */
     float row_rest[MCSI_ENV_BLOCK], row_mass[MCSI_ENV_BLOCK], edge[MCSI_ENV_BLOCK], height[MCSI_ENV_BLOCK], col[MCSI_ENV_BLOCK],
         col_rest[MCSI_ENV_BLOCK], col_mass[MCSI_ENV_BLOCK], x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK], z[MCSI_ENV_BLOCK],
         pdf[MCSI_ENV_BLOCK];
@@ -3525,15 +3528,18 @@ MCSI_CORE float mcsi_env_draw_point(const mcs_env *e, const mcsi_env_view *v, do
     *col = mcsi_env_draw_col(mcsi_env_cdf(e, *row), e->w, &cells, U1, p, &mass);
     return (float)(mass * (part * mcsi_env_scale(v, i)));
 }
+/* Texel of a direction drawn from a constant map. */
+MCSI_CORE void mcsi_env_texel_of(const mcs_env *e, mcs_vec3 w, uint32_t *col, uint32_t *row) {
+    float off_pole, polar, turns;
+    mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
+    *row = mcsi_env_row_at(e, off_pole, polar), *col = mcsi_env_col_at(e, turns);
+}
 MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, int ok) {
     mcsi_env_point p;
     mcs_texel r;
     if (v->uniform) {
-        float off_pole, polar, turns;
         mcsi_env_draw_uniform(e, v, U1, U2, &p);
-        r.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner);
-        mcsi_env_locate(&e->frame, r.w, &off_pole, &polar, &turns);
-        r.row = mcsi_env_row_at(e, off_pole, polar), r.col = mcsi_env_col_at(e, turns);
+        r.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner), mcsi_env_texel_of(e, r.w, &r.col, &r.row);
         r.pdf = ok ? (float)(part * (double)mcsi_env_uniform_pdf(e, v)) : 0.0f;
     } else {
         r.pdf = mcsi_env_draw_point(e, v, U1, U2, part, &p, &r.row, &r.col), r.pdf = ok ? r.pdf : 0.0f;
@@ -3590,17 +3596,19 @@ MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi
         b->pdf[k] *= (float)(part * (double)mcsi_env_uniform_pdf(e, v));
     } else {
         uint32_t i = mcsi_env_draw_row(v, U2, &p);
-        b->at[k] = mcsi_env_within(v, i, U1), b->scale[k] = part * mcsi_env_scale(v, i);
+        b->in_row[k] = v->row + i, b->at[k] = mcsi_env_within(v, i, U1), b->scale[k] = part * mcsi_env_scale(v, i);
         b->cdf[k] = mcsi_env_cdf(e, v->row + i),
         b->guide[k] = mcsi_env_guide(e, v->row + i) + ((uint32_t)(int32_t)b->at[k] >> e->at.col_shift);
         MCSI_PREFETCH(b->guide[k]);
     }
     b->row_rest[k] = p.row_rest, b->row_mass[k] = p.row_mass, b->edge[k] = p.edge, b->height[k] = p.height;
 }
-MCS_FN void mcsi_env_block_land(const mcs_env *e, mcsi_env_block *b, size_t n, float *x, float *y, float *z, float *pdf) {
+MCS_FN void mcsi_env_block_land(const mcs_env *e, mcsi_env_block *b, size_t n, float *x, float *y, float *z, float *pdf,
+                                uint32_t *col, uint32_t *row) {
     mcsi_env_cells cells[MCSI_ENV_BLOCK];
     uint32_t mass;
     size_t k;
+    int even;
     for (k = 0; k < n; k++) {
         if (!b->cdf[k]) continue;
         cells[k] = mcsi_env_cells_of(b->guide[k], e->w, (uint32_t)(int32_t)b->at[k], e->at.col_shift);
@@ -3609,18 +3617,22 @@ MCS_FN void mcsi_env_block_land(const mcs_env *e, mcsi_env_block *b, size_t n, f
     for (k = 0; k < n; k++) {
         mcsi_env_point p;
         if (!b->cdf[k]) continue;
-        mcsi_env_draw_col(b->cdf[k], e->w, &cells[k], b->at[k], &p, &mass);
+        b->in_col[k] = mcsi_env_draw_col(b->cdf[k], e->w, &cells[k], b->at[k], &p, &mass);
         b->col[k] = p.col, b->col_rest[k] = p.col_rest, b->col_mass[k] = p.col_mass;
         b->pdf[k] *= (float)(mass * b->scale[k]);
     }
-    if (x || y || z) mcsi_env_directions_n(&e->frame, n, b, e->turn, e->inner);
+    even = !b->cdf[0] && (col || row);
+    if (x || y || z || even) mcsi_env_directions_n(&e->frame, n, b, e->turn, e->inner);
+    for (k = 0; even && k < n; k++) mcsi_env_texel_of(e, mcsi_vec3(b->x[k], b->y[k], b->z[k]), &b->in_col[k], &b->in_row[k]);
     if (x) memcpy(x, b->x, n * sizeof *x);
     if (y) memcpy(y, b->y, n * sizeof *y);
     if (z) memcpy(z, b->z, n * sizeof *z);
     if (pdf) memcpy(pdf, b->pdf, n * sizeof *pdf);
+    if (col) memcpy(col, b->in_col, n * sizeof *col);
+    if (row) memcpy(row, b->in_row, n * sizeof *row);
 }
 MCS_FN void mcsi_env_draw_n(const mcs_env *e, const mcsi_env_view *v, size_t n, const float *u1, const float *u2, float *x,
-                            float *y, float *z, float *pdf) {
+                            float *y, float *z, float *pdf, uint32_t *col, uint32_t *row) {
     mcsi_env_block b;
     size_t i, k, m;
     mcsi_env_block_start(&b, n);
@@ -3631,13 +3643,14 @@ MCS_FN void mcsi_env_draw_n(const mcs_env *e, const mcsi_env_view *v, size_t n, 
             double U1 = mcsi_times_one(u1[i + k], &ok), U2 = mcsi_times_one(u2[i + k], &ok);
             mcsi_env_block_aim(e, v, &b, k, U1, U2, 1.0, ok);
         }
-        mcsi_env_block_land(e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL);
+        mcsi_env_block_land(e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL,
+                            col ? col + i : NULL, row ? row + i : NULL);
     }
 }
-MCS_FN void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                             float *pdf) {
+MCS_FN void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf,
+                             uint32_t *col, uint32_t *row) {
     mcsi_env_view v = mcsi_env_whole(e);
-    mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf);
+    mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf, col, row);
 }
 MCS_FN void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
                             uint32_t *row, float *pdf) {
@@ -3747,9 +3760,9 @@ MCS_FN float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_v
 }
 #ifndef MCS_NO_BATCH
 MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1, const float *u2, float *x,
-                                    float *y, float *z, float *pdf) {
+                                    float *y, float *z, float *pdf, uint32_t *col, uint32_t *row) {
     mcsi_env_view v = mcsi_env_part(e, m);
-    mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf);
+    mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf, col, row);
 }
 #endif
 #endif /* MCSI_W == 1 */
@@ -3771,7 +3784,8 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  *     mcs_product_bytes(rows), mcs_product_build(p, bytes, t, e, &reflection); MCS_PRODUCT_BYTES(rows) is a constant, for the stack
  *     mcs_product_build_weights(p, bytes, t, e, weight)             any reflection: weight[rows * 2 rows], one per tile, to be
  *                                evaluated about mcs_tiles_direction(t, e, k); > 0 wherever the reflection may be
- *     mcs_product_sample(p, u1, u2) -> mcs_texel, mcs_product_pdf(p, w), mcs_product_sample_n
+ *     mcs_product_sample(p, u1, u2) -> mcs_texel, mcs_product_pdf(p, w),
+ *     mcs_product_sample_n(p, n, u1, u2, x, y, z, pdf, col, row)     results may be NULL
  *   one-shot form, for one sample at a point: no table, from 4 x 8 patches down to a tile
  *     mcs_oneshot_sample(t, e, &reflection, u1, u2) -> mcs_texel, mcs_oneshot_pdf(t, e, &reflection, w)
  *
@@ -4648,13 +4662,13 @@ MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
 }
 #ifndef MCS_NO_BATCH
 MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                 float *pdf) {
+                                 float *pdf, uint32_t *col, uint32_t *row) {
     mcsi_env_block b;
     mcsi_warp_block warps;
     double U1[MCSI_ENV_BLOCK], U2[MCSI_ENV_BLOCK], part[MCSI_ENV_BLOCK];
     const mcs_env_window *window[MCSI_ENV_BLOCK];
     const float *fine[MCSI_ENV_BLOCK];
-    uint32_t row[MCSI_ENV_BLOCK];
+    uint32_t tile_row[MCSI_ENV_BLOCK];
     int32_t ok[MCSI_ENV_BLOCK];
     size_t i, k, m;
     if (p->brdf_share > 0.0f || !(p->lit > 0.0)) {
@@ -4664,6 +4678,8 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
             if (y) y[i] = r.w.y;
             if (z) z[i] = r.w.z;
             if (pdf) pdf[i] = r.pdf;
+            if (col) col[i] = r.col;
+            if (row) row[i] = r.row;
         }
         return;
     }
@@ -4673,12 +4689,12 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         for (k = 0; k < m; k++) {
             ok[k] = 1, U1[k] = mcsi_times_one(u1[i + k], &ok[k]), U2[k] = mcsi_times_one(u2[i + k], &ok[k]);
-            row[k] = mcsi_product_row(p, &U2[k]);
+            tile_row[k] = mcsi_product_row(p, &U2[k]);
         }
         for (k = 0; k < m; k++) {
-            uint32_t col = mcsi_product_col(p, row[k], &U1[k], &part[k]);
-            mcsi_warp_source s = mcsi_product_source(p, row[k], col);
-            window[k] = mcsi_tiles_window(p->t, row[k], col), fine[k] = mcsi_product_fine_of(p, row[k], col);
+            uint32_t tile_col = mcsi_product_col(p, tile_row[k], &U1[k], &part[k]);
+            mcsi_warp_source s = mcsi_product_source(p, tile_row[k], tile_col);
+            window[k] = mcsi_tiles_window(p->t, tile_row[k], tile_col), fine[k] = mcsi_product_fine_of(p, tile_row[k], tile_col);
             MCSI_PREFETCH(window[k]);
             if (!p->warped) continue;
             warps.value[k] = *s.value, warps.pull[k] = *s.pull, warps.v00[k] = s.first[0], warps.v01[k] = s.first[1];
@@ -4699,7 +4715,8 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
             mcsi_env_view v = mcsi_env_part(p->e, window[k]);
             mcsi_env_block_aim(p->e, &v, &b, k, U1[k], U2[k], part[k], ok[k]);
         }
-        mcsi_env_block_land(p->e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL);
+        mcsi_env_block_land(p->e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL,
+                            col ? col + i : NULL, row ? row + i : NULL);
     }
 }
 #endif

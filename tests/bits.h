@@ -649,11 +649,10 @@ FN(oneshot_pdf) {
 
 /* --- array forms: all cases of one map, or of one product, in one call ------------------------------------------------------- */
 
-static void bits_put_point(float *out, mcs_texel t) { bits1_put3(out, 0, t.w), PUT(3, t.pdf); }
 /* in: random numbers 0, 1, points 2, 3, 4. */
 typedef void (*bits_array_call)(int kind, size_t n, float (*in)[CASES], float (*out)[CASES]);
 static void bits_arrays(int kinds, int (*kind)(const float *in), bits_array_call call) {
-    static float in[5][CASES], out[4][CASES];
+    static float in[5][CASES], out[6][CASES];
     static int from[CASES];
     int i, j, k, n;
     for (k = 0; k < kinds; k++) {
@@ -665,18 +664,24 @@ static void bits_arrays(int kinds, int (*kind)(const float *in), bits_array_call
         memset(out, 0, sizeof out);
         call(k, (size_t)n, in, out);
         for (i = 0; i < n; i++)
-            for (j = 0; j < 4; j++) result[from[i]][j] = out[j][i];
+            for (j = 0; j < 6; j++) result[from[i]][j] = out[j][i];
     }
 }
 #define ARRAY(name, kinds, kind, ...)                                                                                 \
     static void bits_call_##name(int k, size_t n, float(*in)[CASES], float(*out)[CASES]) { mcs_##name(__VA_ARGS__); } \
     static void bits_array_##name(void) { bits_arrays(kinds, kind, bits_call_##name); }
-#define DRAWN n, in[0], in[1], out[0], out[1], out[2], out[3]
+#define DRAW(name, kinds, kind, ...)                                                        \
+    static void bits_call_##name(int k, size_t n, float(*in)[CASES], float(*out)[CASES]) {  \
+        static uint32_t col[CASES], row[CASES];                                             \
+        mcs_##name(__VA_ARGS__, n, in[0], in[1], out[0], out[1], out[2], out[3], col, row); \
+        memcpy(out[4], col, n * sizeof *col), memcpy(out[5], row, n * sizeof *row);         \
+    }                                                                                       \
+    static void bits_array_##name(void) { bits_arrays(kinds, kind, bits_call_##name); }
 HOST(env_sample_n) {
     MAP;
-    bits_put_point(out, mcs_env_sample(m->env, IN(6), IN(7)));
+    bits_put_texel(out, 0, mcs_env_sample(m->env, IN(6), IN(7)));
 }
-ARRAY(env_sample_n, BITS_MAPS, bits_map_of, bits_map_at(k)->env, DRAWN)
+DRAW(env_sample_n, BITS_MAPS, bits_map_of, bits_map_at(k)->env)
 HOST(env_texel_n) {
     MAP;
     const mcs_texel t = mcs_env_texel(m->env, IN3(8));
@@ -692,16 +697,16 @@ HOST(env_pdf_n) { bits1_env_pdf(in, out); }
 ARRAY(env_pdf_n, BITS_MAPS, bits_map_of, bits_map_at(k)->env, n, in[2], in[3], in[4], out[0])
 HOST(env_window_sample_n) {
     MAP;
-    bits_put_point(out, mcs_env_window_sample(m->window, m->env, IN(6), IN(7)));
+    bits_put_texel(out, 0, mcs_env_window_sample(m->window, m->env, IN(6), IN(7)));
 }
-ARRAY(env_window_sample_n, BITS_MAPS, bits_map_of, bits_map_at(k)->window, bits_map_at(k)->env, DRAWN)
+DRAW(env_window_sample_n, BITS_MAPS, bits_map_of, bits_map_at(k)->window, bits_map_at(k)->env)
 HOST(product_sample_n) {
     PRODUCT;
-    bits_put_point(out, mcs_product_sample(p, IN(6), IN(7)));
+    bits_put_texel(out, 0, mcs_product_sample(p, IN(6), IN(7)));
 }
-ARRAY(product_sample_n, BITS_MAPS *BITS_SURFACES, bits_product_of, bits_map_at(k % BITS_MAPS)->product[k / BITS_MAPS], DRAWN)
+DRAW(product_sample_n, BITS_MAPS *BITS_SURFACES, bits_product_of, bits_map_at(k % BITS_MAPS)->product[k / BITS_MAPS])
 #undef ARRAY
-#undef DRAWN
+#undef DRAW
 #undef HOST
 #undef MAP
 #undef PRODUCT

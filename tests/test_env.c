@@ -271,7 +271,7 @@ static void test_whole_map(void) {
         const size_t n = draws - done < BATCH ? (size_t)(draws - done) : BATCH;
         mcs_pcg32_fill_n(&rng, n, u1);
         mcs_pcg32_fill_n(&rng, n, u2);
-        mcs_env_sample_n(env_in(&a), n, u1, u2, x, y, z, pdf);
+        mcs_env_sample_n(env_in(&a), n, u1, u2, x, y, z, pdf, NULL, NULL);
         for (i = 0; i < n; i++) {
             double turn = atan2(y[i], x[i]) / (2 * pi);
             uint32_t row = (uint32_t)(acos(z[i]) / pi * m->h), col;
@@ -736,6 +736,7 @@ static void check_texels(const mcs_env *e, size_t n, float *x, const float *y, c
 static void test_batch(void) {
     enum { MAX = 67, ROOM = 2100 };
     static float u1[ROOM], u2[ROOM], out[4][ROOM];
+    static uint32_t col[ROOM], row[ROOM];
     const map *m = &maps[SKY];
     arena a = build(m);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 73);
@@ -754,13 +755,18 @@ static void test_batch(void) {
                     for (i = 0; i < count + 8; i++) out[k][i] = -7.0f;
                     p[k] = skip >> k & 1 ? NULL : out[k] + at;
                 }
-                mcs_env_sample_n(env_in(&a), count, u1 + shift, u2 + at, p[0], p[1], p[2], p[3]);
+                for (i = 0; i < count + 8; i++) col[i] = row[i] = 77777;
+                mcs_env_sample_n(env_in(&a), count, u1 + shift, u2 + at, p[0], p[1], p[2], p[3], skip & 4 ? NULL : col + at,
+                                 skip & 8 ? NULL : row + at);
                 for (i = 0; i < count; i++) {
                     const mcs_texel s = mcs_env_sample(env_in(&a), u1[shift + i], u2[at + i]);
                     const float want[4] = {s.w.x, s.w.y, s.w.z, s.pdf};
                     for (k = 0; k < 4; k++) same &= !p[k] || p[k][i] == want[k];
+                    same &= (skip & 4 || col[at + i] == s.col) && (skip & 8 || row[at + i] == s.row);
                 }
                 for (k = 0; k < 4; k++) kept &= out[k][at - 1] == -7.0f && out[k][at + count] == -7.0f;
+                for (i = 0; i < count + 8; i++)
+                    if (i < at || i >= at + count) kept &= col[i] == 77777 && row[i] == 77777;
                 CHECK(same, "n = %zu, shift %zu, without %x: differs from scalar", count, shift, skip);
                 CHECK(kept, "n = %zu, shift %zu, without %x: written outside", count, shift, skip);
                 if (skip == 0) {
@@ -772,7 +778,7 @@ static void test_batch(void) {
                     mcs_env_pdf_n(env_in(&a), count, out[0] + at, out[1] + at, out[2] + at, NULL);
                     check_texels(env_in(&a), count, out[0] + at, out[1] + at, out[2] + at);
                     memcpy(pdf, u1 + shift, count * sizeof *pdf); /* in place */
-                    mcs_env_sample_n(env_in(&a), count, pdf, u2 + at, pdf, NULL, NULL, NULL);
+                    mcs_env_sample_n(env_in(&a), count, pdf, u2 + at, pdf, NULL, NULL, NULL, NULL, NULL);
                     CHECK(memcmp(pdf, out[0] + at, count * sizeof *pdf) == 0, "n = %zu: in place", count);
                 }
             }

@@ -341,7 +341,7 @@ static double record(const mcs_env *e, float *pdf) {
     for (i = 0; i < scaled(250); i++) {
         int k;
         mcs_pcg32_fill_n(&rng, DRAWS, u1), mcs_pcg32_fill_n(&rng, DRAWS, u2);
-        mcs_env_sample_n(e, DRAWS, u1, u2, x[0], x[1], x[2], x[3]);
+        mcs_env_sample_n(e, DRAWS, u1, u2, x[0], x[1], x[2], x[3], NULL, NULL);
         mcs_env_pdf_n(e, DRAWS, x[0], x[1], x[2], again[3]);
         for (k = 0; k < DRAWS; k++) sum += x[0][k] + 2 * x[1][k] + 4 * x[2][k] + x[3][k] + again[3][k];
         for (k = 0; k < DRAWS; k += 16) {
@@ -561,7 +561,7 @@ static void check_harmless(const mcs_env *e, const char *what, size_t at) {
     int i, outside = 0, no_density = 0, no_direction = 0, no_inverse = 0;
     for (i = 0; i < N; i++) a[i] = i < 4 ? (float)(i & 1) * 0x0.ffffffp0f : mcs_pcg32_float(&rng);
     for (i = 0; i < N; i++) b[i] = i < 4 ? (float)(i >> 1) * 0x0.ffffffp0f : mcs_pcg32_float(&rng);
-    mcs_env_sample_n(e, N, a, b, out[0], out[1], out[2], out[3]);
+    mcs_env_sample_n(e, N, a, b, out[0], out[1], out[2], out[3], NULL, NULL);
     mcs_env_pdf_n(e, N, out[0], out[1], out[2], pdf);
     for (i = 0; i < N; i++) {
         const mcs_texel s = mcs_env_sample(e, a[i], b[i]), t = mcs_env_texel(e, s.w);

@@ -494,6 +494,7 @@ static void check_window(const picture *p, const mcs_env *e, rectangle t, int dr
     mcs_env_window *m = (mcs_env_window *)(void *)a.at;
     double *observed = (double *)get(texels * sizeof *observed), *expected = (double *)get(texels * sizeof *expected);
     static float u1[BATCH], u2[BATCH], out[4][BATCH];
+    static uint32_t cols[BATCH], rows[BATCH];
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 151);
     ld all = 0, omega = 0, mass = 0, moved = 0;
     uint32_t r, c, last_row = 0, last_col = 0, falls = 0;
@@ -546,10 +547,11 @@ static void check_window(const picture *p, const mcs_env *e, rectangle t, int dr
         if (!uniform) CHECK(p->lum[(size_t)s.row * p->w + s.col] > 0, "%s: black texel (%u, %u)", what, s.col, s.row);
         if (i >= CORNERS * CORNERS) observed[(size_t)(uint32_t)row * p->w + (uint32_t)col]++;
         if (at < BATCH - 1) continue;
-        mcs_env_window_sample_n(m, e, BATCH, u1, u2, out[0], out[1], out[2], out[3]);
+        mcs_env_window_sample_n(m, e, BATCH, u1, u2, out[0], out[1], out[2], out[3], cols, rows);
         for (k = 0; k < BATCH; k++) {
             s = mcs_env_window_sample(m, e, u1[k], u2[k]);
             unequal += !(s.w.x == out[0][k] && s.w.y == out[1][k] && s.w.z == out[2][k] && s.pdf == out[3][k]);
+            unequal += !(s.col == cols[k] && s.row == rows[k]);
         }
     }
     CHECK(stray == 0, "%s: %d draws outside", what, stray);

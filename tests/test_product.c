@@ -814,7 +814,7 @@ static void check_counts(const sampler *d, int count, mcs_pcg32 *rng, double tes
     for (j = 0; j <= n; j++) observed[j] = 0, all += expected[j];
     for (i = 0; i < count; i += CHUNK) {
         fill(rng, CHUNK, u1, u2);
-        if (d->p) mcs_product_sample_n(d->p, CHUNK, u1, u2, x, y, z, pdf);
+        if (d->p) mcs_product_sample_n(d->p, CHUNK, u1, u2, x, y, z, pdf, NULL, NULL);
         for (k = 0; k < CHUNK; k++) {
             double col, row;
             mcs_vec3 w;
@@ -922,7 +922,7 @@ static estimate estimate_of(const sampler *d, int count, uint64_t stream) {
     int i, k, n = 0;
     for (i = 0; i < count; i += CHUNK) {
         fill(&rng, CHUNK, u1, u2);
-        if (d->p) mcs_product_sample_n(d->p, CHUNK, u1, u2, x, y, z, pdf);
+        if (d->p) mcs_product_sample_n(d->p, CHUNK, u1, u2, x, y, z, pdf, NULL, NULL);
         for (k = 0; k < CHUNK; k++, n++) {
             double v = 0, visible;
             uint32_t col, at;
@@ -1408,7 +1408,7 @@ static void test_memory(void) {
 static int same_draw(const sampler *d, float u1, float u2, mcs_texel by_array) {
     const mcs_texel t = mcs_product_sample(d->p, u1, u2);
     double col, row;
-    if (!mcst_arrays_contract()) return !memcmp(&t.w, &by_array.w, sizeof t.w) && !memcmp(&t.pdf, &by_array.pdf, sizeof t.pdf);
+    if (!mcst_arrays_contract()) return !memcmp(&t, &by_array, sizeof t);
     if (!(by_array.pdf > 0)) return !(t.pdf > 0);
     texel_of(d->m->w, d->m->h, by_array.w, &col, &row);
     by_array.col = col < d->m->w ? (uint32_t)col : d->m->w - 1, by_array.row = row < d->m->h ? (uint32_t)row : d->m->h - 1;
@@ -1417,6 +1417,7 @@ static int same_draw(const sampler *d, float u1, float u2, mcs_texel by_array) {
 static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
     enum { MOST = 150 };
     float u1[MOST + 1], u2[MOST + 1], out[4][MOST + 1], all[4][MOST + 1];
+    uint32_t col[2][MOST + 1], row[2][MOST + 1];
     int n, k, i, off;
     for (n = 0; n <= 72; n++) {
         const int count = n <= 70 ? n : n == 71 ? 129 : MOST;
@@ -1428,20 +1429,23 @@ static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
             fill(rng, (size_t)count + 1, u1, u2);
             if (count > 3) u1[off + 2] = NAN, u2[off + 3] = 1.0f;
             if (count > 4) u1[off + 4] = 0.0f;
-            mcs_product_sample_n(d->p, (size_t)count, u1 + off, u2 + off, all[0] + off, all[1] + off, all[2] + off, all[3] + off);
+            mcs_product_sample_n(d->p, (size_t)count, u1 + off, u2 + off, all[0] + off, all[1] + off, all[2] + off, all[3] + off,
+                                 col[0] + off, row[0] + off);
             for (i = off; i < count + off; i++) {
                 mcs_texel t;
-                t.w.x = all[0][i], t.w.y = all[1][i], t.w.z = all[2][i], t.pdf = all[3][i];
+                t.w.x = all[0][i], t.w.y = all[1][i], t.w.z = all[2][i], t.pdf = all[3][i], t.col = col[0][i], t.row = row[0][i];
                 CHECK(same_draw(d, u1[i], u2[i], t), "n = %d, entry %d: not that of sample(%a, %a)", count, i, (double)u1[i],
                       (double)u2[i]);
             }
             mcs_product_sample_n(d->p, (size_t)count, u1 + off, u2 + off, wanted & 1 ? x + off : NULL, wanted & 2 ? y + off : NULL,
-                                 wanted & 4 ? out[2] + off : NULL, wanted & 8 ? out[3] + off : NULL);
+                                 wanted & 4 ? out[2] + off : NULL, wanted & 8 ? out[3] + off : NULL,
+                                 wanted & 2 ? col[1] + off : NULL, wanted & 1 ? row[1] + off : NULL);
             for (i = off; i < count + off; i++)
                 CHECK((!(wanted & 1) || !memcmp(all[0] + i, x + i, 4)) && (!(wanted & 2) || !memcmp(all[1] + i, y + i, 4)) &&
                           (!(wanted & 4) || !memcmp(all[2] + i, out[2] + i, 4)) &&
-                          (!(wanted & 8) || !memcmp(all[3] + i, out[3] + i, 4)),
-                      "n = %d, entry %d, outputs %d: not those of all four", count, i, k);
+                          (!(wanted & 8) || !memcmp(all[3] + i, out[3] + i, 4)) && (!(wanted & 2) || col[0][i] == col[1][i]) &&
+                          (!(wanted & 1) || row[0][i] == row[1][i]),
+                      "n = %d, entry %d, outputs %d: not those of all", count, i, k);
         }
     }
 }

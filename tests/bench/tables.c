@@ -248,15 +248,17 @@ static void density_env_n(size_t at) {
 }
 static void draw_pwc_n(size_t at) { mcs_pwc_sample_n(now.pwc, DRAWS, pool[0] + at, out[0], out[3]); }
 static void draw_pwl_n(size_t at) { mcs_pwl_sample_n(now.pwl, DRAWS, pool[0] + at, out[0], out[3]); }
-static void draw_env_n(size_t at) { mcs_env_sample_n(now.env, DRAWS, pool[0] + at, pool[1] + at, out[0], out[1], out[2], out[3]); }
+static void draw_env_n(size_t at) {
+    mcs_env_sample_n(now.env, DRAWS, pool[0] + at, pool[1] + at, out[0], out[1], out[2], out[3], NULL, NULL);
+}
 static void draw_window_n(size_t at) {
-    mcs_env_window_sample_n(now.window, now.env, DRAWS, pool[0] + at, pool[1] + at, out[0], out[1], out[2], out[3]);
+    mcs_env_window_sample_n(now.window, now.env, DRAWS, pool[0] + at, pool[1] + at, out[0], out[1], out[2], out[3], NULL, NULL);
 }
 static void draw_product_n(int kind, size_t at) {
     size_t i;
     for (i = 0; i < DRAWS; i += RUN)
         mcs_product_sample_n(now.product[kind][i / RUN % SURFACES], RUN, pool[0] + at + i, pool[1] + at + i, out[0] + i, out[1] + i,
-                             out[2] + i, out[3] + i);
+                             out[2] + i, out[3] + i, NULL, NULL);
 }
 static void draw_matte_n(size_t at) { draw_product_n(MATTE, at); }
 static void draw_ggx_n(size_t at) { draw_product_n(GGX, at); }

@@ -302,8 +302,8 @@ static void draw_env(const mcs_env *e, const mcs_env_window *m, int axes, bytes 
         MUST(finite3(s.w) && finite3(bits.w) && finite3(at.w) && bits.pdf > 0);
         MUST(!good || (s.pdf > 0 && here == s.pdf && own.row == s.row && own.col == s.col));
     }
-    if (m) mcs_env_window_sample_n(m, e, count, u, u + count, to[0], to[1], to[2], to[3]);
-    else mcs_env_sample_n(e, count, u, u + count, to[0], to[1], to[2], to[3]);
+    if (m) mcs_env_window_sample_n(m, e, count, u, u + count, to[0], to[1], to[2], to[3], NULL, NULL);
+    else mcs_env_sample_n(e, count, u, u + count, to[0], to[1], to[2], to[3], NULL, NULL);
     for (k = 0; k < count; k++) {
         MUST(proper(to[3][k]) && (!axes || (finite(to[0][k]) && finite(to[1][k]) && finite(to[2][k]))));
         if (k & 1) to[0][k] = take_float(b);
@@ -349,7 +349,7 @@ static void fuzz_product(const mcs_env *e, bytes *b) {
         MUST(!(a.pdf > 0) || (mcs_product_pdf(p, a.w) > 0 && mcs_product_pdf(p, a.w) <= FLT_MAX));
         MUST(!(c.pdf > 0) || (mcs_oneshot_pdf(t, e, &r, c.w) > 0 && mcs_oneshot_pdf(t, e, &r, c.w) <= FLT_MAX));
     }
-    mcs_product_sample_n(p, count, u, u + count, to[0], to[1], to[2], to[3]);
+    mcs_product_sample_n(p, count, u, u + count, to[0], to[1], to[2], to[3], NULL, NULL);
     for (k = 0; k < count; k++) MUST(finite(to[0][k]) && finite(to[1][k]) && finite(to[2][k]) && proper(to[3][k]));
     for (i = 0; i < 4; i++) free(to[i]);
     free(u), free(p), free(t);

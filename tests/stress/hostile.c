@@ -639,8 +639,8 @@ static void check_map(const part_of *q, const mcs_env_window *m, int axes, uint6
         CHECK(below_one(t, back.x) && below_one(t, back.y), "invert %a %a", (double)back.x, (double)back.y);
     }
     for (k = 0; k < 2 * count; k++) u[k] = hostile_u(state);
-    if (m) mcs_env_window_sample_n(m, e, count, u, u + count, x, y, z, pdf);
-    else mcs_env_sample_n(e, count, u, u + count, x, y, z, pdf);
+    if (m) mcs_env_window_sample_n(m, e, count, u, u + count, x, y, z, pdf, NULL, NULL);
+    else mcs_env_sample_n(e, count, u, u + count, x, y, z, pdf, NULL, NULL);
     for (k = 0; k < count; k++) {
         const mcs_texel s = m ? mcs_env_window_sample(m, e, u[k], u[count + k]) : mcs_env_sample(e, u[k], u[count + k]);
         CHECK(finite(t, x[k]) && finite(t, y[k]) && finite(t, z[k]) && pdf[k] == s.pdf,
@@ -751,7 +751,7 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
                   (double)there, (double)shot_there);
     }
     for (k = 0; k < 2 * count; k++) u[k] = hostile_u(state);
-    mcs_product_sample_n(p, count, u, u + count, x, y, z, pdf);
+    mcs_product_sample_n(p, count, u, u + count, x, y, z, pdf, NULL, NULL);
     for (k = 0; k < count; k++) {
         const mcs_texel one = mcs_product_sample(p, u[k], u[count + k]);
         CHECK(finite(t, x[k]) && finite(t, y[k]) && finite(t, z[k]) && proper(t, pdf[k]), "array: u %a %a, w %a %a %a, pdf %a",

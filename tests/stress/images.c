@@ -209,9 +209,9 @@ static mcs_texel draw(const source *s, float u1, float u2) {
                                : mcs_product_sample(s->product, u1, u2);
 }
 static void draw_n(const source *s, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
-    if (s->kind == MAP) mcs_env_sample_n(s->e, n, u1, u2, x, y, z, pdf);
-    else if (s->kind == WINDOW) mcs_env_window_sample_n(s->window, s->e, n, u1, u2, x, y, z, pdf);
-    else mcs_product_sample_n(s->product, n, u1, u2, x, y, z, pdf);
+    if (s->kind == MAP) mcs_env_sample_n(s->e, n, u1, u2, x, y, z, pdf, NULL, NULL);
+    else if (s->kind == WINDOW) mcs_env_window_sample_n(s->window, s->e, n, u1, u2, x, y, z, pdf, NULL, NULL);
+    else mcs_product_sample_n(s->product, n, u1, u2, x, y, z, pdf, NULL, NULL);
 }
 static float density(const source *s, mcs_vec3 w) {
     return s->kind == MAP      ? mcs_env_pdf(s->e, w)
