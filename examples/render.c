@@ -531,19 +531,28 @@ static vec3 product_value(const scene *s, const environment *e, const surface *x
     return scale(1 / l.pdf, mul(material_eval(x->m, x->wo, wi), radiance_at(e, l.col, l.row)));
 }
 
-/* Several samples: the prepared form. */
+/* Several samples: the prepared form, a block at a time. */
 static vec3 sample_product(const scene *s, const environment *e, const surface *x, uint32_t lights, mcs_pcg32 *rng) {
+    enum { BLOCK = 32 };
     union {
         mcs_product p;
         char room[MCS_PRODUCT_BYTES(TILES)];
     } point;
     mcs_reflection r = reflection_of(x);
     vec3 sum = {0, 0, 0};
-    uint32_t i;
+    float u1[BLOCK], u2[BLOCK], wx[BLOCK], wy[BLOCK], wz[BLOCK], pdf[BLOCK];
+    uint32_t col[BLOCK], row[BLOCK], i, n;
     if (mcs_product_build(&point.p, sizeof point, e->tiles, e->table, &r) != MCS_OK) return sum;
-    for (i = 0; i < lights; i++) {
-        float u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng);
-        sum = add(sum, product_value(s, e, x, mcs_product_sample(&point.p, u1, u2)));
+    for (; lights > 0; lights -= n) {
+        n = lights < BLOCK ? lights : BLOCK;
+        mcs_pcg32_fill_n(rng, n, u1);
+        mcs_pcg32_fill_n(rng, n, u2);
+        mcs_product_sample_n(&point.p, n, u1, u2, wx, wy, wz, pdf, col, row);
+        for (i = 0; i < n; i++) {
+            mcs_texel l;
+            l.w = vec(wx[i], wy[i], wz[i]), l.pdf = pdf[i], l.col = col[i], l.row = row[i];
+            sum = add(sum, product_value(s, e, x, l));
+        }
     }
     return sum;
 }
