@@ -3621,7 +3621,7 @@ MCS_FN void mcsi_env_block_land(const mcs_env *e, mcsi_env_block *b, size_t n, f
         b->col[k] = p.col, b->col_rest[k] = p.col_rest, b->col_mass[k] = p.col_mass;
         b->pdf[k] *= (float)(mass * b->scale[k]);
     }
-    even = !b->cdf[0] && (col || row);
+    even = !b->cdf[0] && (col || row); /* a constant map: texels lie where directions do */
     if (x || y || z || even) mcsi_env_directions_n(&e->frame, n, b, e->turn, e->inner);
     for (k = 0; even && k < n; k++) mcsi_env_texel_of(e, mcsi_vec3(b->x[k], b->y[k], b->z[k]), &b->in_col[k], &b->in_row[k]);
     if (x) memcpy(x, b->x, n * sizeof *x);
