@@ -3008,7 +3008,7 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  * strategy. Such a table is incomplete (e->incomplete): its density is 0 where the map is not black.
  * Skipped: a constant map is the uniform sphere and its rows are never read; an all-black one likewise, build returns MCS_UNIFORM;
  * rows without light are not written, texels outside rows [row0, row1) and columns [col0, col1) not read.
- * Cost: two cache misses; 4.3 bytes a texel from 1024 x 512 on, 5.3 at 64 x 32. Source: Pharr, Jakob, Humphreys 2023, section
+ * Cost: two cache misses; 4.3 bytes a texel from 1024 x 512 on, 5.2 at 64 x 32. Source: Pharr, Jakob, Humphreys 2023, section
  * 12.5. */
 
 #ifndef MCS_NO_TABLES
@@ -4186,7 +4186,7 @@ MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mc
         node[k] = w.x, node[MCSI_GRID + k] = w.y, node[2 * MCSI_GRID + k] = w.z;
     }
 }
-/* Patch (i, j) of `rows` rows: of tiles itself; else its parts, whose fields lie from `level` on, and the sum of them. */
+/* Patch (i, j) of a map cut into `rows` rows of them: a tile, or the sum of its parts, whose fields are stored from `level` on. */
 MCS_FN void mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, uint32_t i, uint32_t j, float *level, mcsi_patch *p) {
     uint32_t side, parts, k, y, n = t->rows * t->cols;
     memset(p, 0, sizeof *p);

@@ -174,8 +174,9 @@ static inline void svg_series(svg_plot *p, const char *name, int n, const double
 }
 
 static inline void svg_keep_box(svg_plot *p, double left, double right, double top, double bottom) {
-    double *box = p->box[p->boxes];
+    double *box;
     if (p->boxes == SVG_BOXES) return;
+    box = p->box[p->boxes];
     box[0] = left, box[1] = right, box[2] = top, box[3] = bottom, p->boxes++;
 }
 
