@@ -30,8 +30,12 @@
  *               small); directions in units of 2^-24 absolute. Where a cosine with a half-vector cancels, its condition comes on
  *               top.
  *   bad input   never crashes and never gives NaN: pdf 0, weight 0 and a finite point. Bad are u outside [0,1), NaN anywhere,
- *               directions whose squared length is not within (1/4, 4), wo below the surface, parameters out of range (these also
- *               fire MCS_ASSERT in scalar functions). Densities above FLT_MAX are returned as FLT_MAX.
+ *               directions whose squared length is not within (1/4, 4), wo below the surface, parameters out of range. Densities
+ *               above FLT_MAX are returned as FLT_MAX.
+ *   unit        a direction between 1/2 and 2 long is not refused but taken as it is, and then densities are wrong by up to a factor
+ *               of 2: normalise what was interpolated or scaled.
+ *   mistakes    where MCS_ASSERT is defined (as assert, say), scalar functions tell parameters out of range, u outside [0,1), and
+ *               directions whose squared length is not within 0.001 of 1; array forms tell such a wo.
  *   widths      every function marked w in the index exists for 4, 8 and 16 lanes too: mcs8_ggx_pdf takes and returns mcs8_f and
  *               structs of mcs8_f. `_n` functions take plain arrays (one per component), pick the widest unit of the CPU at run
  *               time, accept any n and any alignment, may write in place of their inputs, and skip outputs that are NULL. Those of
@@ -45,7 +49,7 @@
 /* INDEX: find [tag] for the block of a sampler. "w": also 4, 8, 16 wide (mcs4_, mcs8_, mcs16_). Every public name stands here once.
  *
  * types        mcs_f mcs_i mcs_u mcs_vec2 mcs_vec3 mcs_sample1 mcs_sample2 mcs_dir mcs_brdf w; mcs_status; lanes mcs4_f mcs4_i
- *              mcs4_u mcs8_f mcs8_i mcs8_u mcs16_f mcs16_i mcs16_u; mcs_set mcs_load mcs_store w
+ *              mcs4_u mcs8_f mcs8_i mcs8_u mcs16_f mcs16_i mcs16_u; mcs_set mcs_load mcs_store w; mcs_lanes
  * [rng]        mcs_u01 mcs_u01_open w; mcs_pcg32 mcs_pcg32_make mcs_pcg32_next mcs_pcg32_float mcs_pcg32_advance mcs_pcg32_fill_n;
  *              mcs_philox4 mcs_philox mcs_philox_fill_n
  * [points]     mcs_sobol_bits mcs_sobol mcs_r2 mcs_hash w; mcs_sobol_n mcs_stratified mcs_latin
@@ -141,7 +145,7 @@
  * The MCS_NO_ switches only save compile time: functions that are not used leave no code in any case. */
 
 #ifndef MCS_ASSERT
-#define MCS_ASSERT(condition) ((void)0) /* called with the range conditions on parameters; define as assert to be told */
+#define MCS_ASSERT(condition) ((void)0) /* called with the conditions on arguments (mistakes, above); define as assert to be told */
 #endif
 #ifndef MCS_MAX_LANES
 #define MCS_MAX_LANES 16
@@ -149,24 +153,70 @@
 #ifndef MCS_SELF
 #define MCS_SELF "mcsample.h" /* how the header finds itself; only for a renamed copy */
 #endif
-#ifndef MCS_FN
-#if defined(__CUDACC__)
+
+/* ---- platform: the only place that knows compilers and instruction sets ------------------------------------------------------ */
+
+/* The attributes and vector types of gcc, which clang has too where it passes for MSVC and does not define __GNUC__. */
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(__TINYC__)
+#define MCSI_GNU
+#endif
+/* Kernels of a graphics processor call these functions. */
+#if defined(__CUDACC__) || defined(__HIPCC__)
+#define MCSI_DEVICE
+#endif
+/* How float expressions are evaluated: 0 as float, 1 as double, 2 with the digits of x87. 16 and 32 speak of _Float16 alone. */
+#if FLT_EVAL_METHOD == 16 || FLT_EVAL_METHOD == 32
+#define MCSI_FLT_EVAL 0
+#else
+#define MCSI_FLT_EVAL FLT_EVAL_METHOD
+#endif
+/* No vector types, or none that mix with floats: where float expressions are evaluated as double (s390x and x87 under -std=c99). */
+#if !defined(MCS_NO_WIDE) && (!defined(MCSI_GNU) || defined(MCSI_DEVICE) || MCSI_FLT_EVAL > 0)
+#define MCS_NO_WIDE
+#endif
+
+/* Linkage. MCS_FN stands before public functions, and before private ones that may be left as calls. MCSI_PRIVATE is the linkage of
+ * the other private functions: static, but that modules of C++ cannot export what calls those. Compilers would leave some functions
+ * as calls that return structs through memory: MCSI_INLINE stands before private ones, MCSI_HOT before public ones. MCSI_APART is a
+ * function with a body of its own. It is inline all the same, by which it vanishes where nothing calls it; gcc warns of both
+ * together where MCSI_QUIET does not stand before it and MCSI_LOUD behind it. */
+#if defined(MCS_FN) && defined(__cplusplus)
+#define MCSI_PRIVATE inline
+#else
+#define MCSI_PRIVATE static inline
+#endif
+#if defined(MCSI_GNU) && !defined(MCSI_DEVICE)
+#define MCSI_INLINE __attribute__((always_inline, unused)) MCSI_PRIVATE
+#endif
+#if defined(MCS_FN)
+#define MCSI_FN_GIVEN
+#elif defined(MCSI_DEVICE)
 #define MCS_FN __host__ __device__ static inline
-#elif defined(__GNUC__)
+#elif defined(MCSI_GNU)
 #define MCS_FN __attribute__((unused)) static inline
 #else
 #define MCS_FN static inline
 #endif
+#ifndef MCSI_INLINE
+#define MCSI_INLINE MCS_FN
+#define MCSI_APART MCS_FN
+#else
+#define MCSI_APART __attribute__((noinline, unused)) MCSI_PRIVATE
+#endif
+#if defined(MCSI_GNU) && !defined(__clang__)
+#define MCSI_QUIET _Pragma("GCC diagnostic push") _Pragma("GCC diagnostic ignored \"-Wattributes\"")
+#define MCSI_LOUD _Pragma("GCC diagnostic pop")
+#else
+#define MCSI_QUIET
+#define MCSI_LOUD
+#endif
+#ifdef MCSI_FN_GIVEN
+#define MCSI_HOT MCS_FN
+#else
+#define MCSI_HOT MCSI_INLINE
 #endif
 
-/* ---- platform: the only place that knows compilers and instruction sets ------------------------------------------------------ */
-
-/* No vector types, or none that mix with floats: where float expressions are evaluated as double (s390x and x87 under -std=c99). */
-#if !defined(MCS_NO_WIDE) && (!defined(__GNUC__) || defined(__TINYC__) || defined(__CUDACC__) || FLT_EVAL_METHOD > 0)
-#define MCS_NO_WIDE
-#endif
-
-#if defined(__GNUC__)
+#if defined(MCSI_GNU)
 /* About vectors passed to functions; here all of them are inlined. gcc reports it at the end of the file, so it stays off for the
  * rest of the including file as well. */
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -176,13 +226,17 @@
 #define MCSI_SUMS_MAY_MOVE /* (x + y) - y may become x */
 #endif
 
+/* clang takes the builtins that are named after instructions away in time and has portable ones instead. gcc keeps its own. */
 #if defined(__has_builtin)
 #if __has_builtin(__builtin_elementwise_sqrt)
 #define MCSI_ELEMENTWISE_SQRT
 #endif
+#if __has_builtin(__builtin_reduce_or)
+#define MCSI_REDUCE_OR
+#endif
 #endif
 
-#if defined(__SSE2__) && !defined(__CUDACC__) && !defined(__TINYC__)
+#if defined(__SSE2__) && defined(MCSI_GNU) && !defined(MCSI_DEVICE)
 #define MCSI_X86
 typedef float mcsi_x86_f __attribute__((vector_size(16)));
 typedef double mcsi_x86_d __attribute__((vector_size(16)));
@@ -190,18 +244,16 @@ typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #include <math.h>
 #endif
 
-/* MCSI_APART: a function with a body of its own. MCSI_UNROLL: before a loop of at most 16 rounds, as gcc -O2 keeps those. */
-#if defined(__GNUC__) && __GNUC__ >= 8 && !defined(__clang__) && !defined(__CUDACC__)
+/* MCSI_UNROLL: before a loop of at most 16 rounds, as gcc -O2 keeps those. */
+#if defined(MCSI_GNU) && !defined(__clang__) && !defined(MCSI_DEVICE) && __GNUC__ >= 8
 #define MCSI_UNROLL _Pragma("GCC unroll 16")
 #else
 #define MCSI_UNROLL
 #endif
-#if defined(__GNUC__) && !defined(__CUDACC__)
+#if defined(MCSI_GNU) && !defined(MCSI_DEVICE)
 #define MCSI_PREFETCH(p) __builtin_prefetch(p)
-#define MCSI_APART __attribute__((noinline, unused)) static
 #else
 #define MCSI_PREFETCH(p) ((void)(p))
-#define MCSI_APART MCS_FN
 #endif
 
 /* Square root without errno: sqrtf would cost a test and a call in every loop. */
@@ -218,7 +270,9 @@ MCS_FN float mcsi_sqrt(float x) {
 }
 
 MCS_FN double mcsi_sqrt_d(double x) {
-#if defined(MCSI_X86)
+#if defined(MCSI_ELEMENTWISE_SQRT)
+    return __builtin_elementwise_sqrt(x);
+#elif defined(MCSI_X86)
     mcsi_x86_d v = {x, x};
     v = __builtin_ia32_sqrtsd(v);
     return v[0];
@@ -249,7 +303,7 @@ typedef double mcsi16_d __attribute__((vector_size(128), aligned(16)));
  * MCSI_(x) a private one. On x86 two more passes compile the same bodies for AVX2 and AVX-512, for the `_n` forms alone. */
 #define MCSI_TARGET_AVX2 "avx2,fma"
 #define MCSI_TARGET_AVX512 "avx512f,avx512dq,avx512bw,avx512vl"
-#if defined(MCSI_X86) && !defined(MCS_NO_WIDE) && !defined(MCS_NO_BATCH)
+#if defined(MCSI_X86) && !defined(MCS_NO_WIDE) && !defined(MCS_NO_BATCH) && !defined(_MSC_VER) /* whose library lacks the query */
 #if !defined(__AVX2__) && MCS_MAX_LANES >= 8
 #define MCSI_PICK_AVX2
 #endif
@@ -259,6 +313,9 @@ typedef double mcsi16_d __attribute__((vector_size(128), aligned(16)));
 #endif
 #define MCSI_FOR_AVX2 __attribute__((target(MCSI_TARGET_AVX2), unused))
 #define MCSI_FOR_AVX512 __attribute__((target(MCSI_TARGET_AVX512), unused))
+#define MCSI_CPU_HAS_AVX2 (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+#define MCSI_CPU_HAS_AVX512 \
+    (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw"))
 
 #ifndef MCS_NO_BATCH
 enum { MCSI_IN_MAX = 3, MCSI_OUT_MAX = 5, MCSI_LANES_MAX = 16 };
@@ -279,6 +336,7 @@ MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const fl
 }
 
 /* Not cold: gcc 12 leaves vzeroupper out of cold exits, and SSE code is ten times slower from there on. */
+MCSI_QUIET
 MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
     int k;
     size_t rest = b->n - b->i;
@@ -302,6 +360,7 @@ MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
     b->rest = rest, b->i = 0, b->n = lanes;
     return 1;
 }
+MCSI_LOUD
 /* Two loops, so that the inner one has a plain head: gcc then takes divisions and roots that are constant out of it. */
 #define MCSI_EACH(b)                                                       \
     for ((b).more = 1; (b).more; (b).more = mcsi_batch_rest(&(b), MCSI_W)) \
@@ -321,15 +380,31 @@ typedef enum {
 typedef enum { MCS_WARD_GMD = 0, MCS_WARD_DUER = 1, MCS_WARD_1992 = 2 } mcs_ward_model;
 
 /* The pass whose loops the `_n` forms use when no wider one may be picked at run time. */
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && MCS_MAX_LANES >= 16
 #define MCSI_BASE(name) mcsi16_##name
 #define MCSI_BASE_W 16
-#elif defined(__AVX2__)
+#elif defined(__AVX2__) && MCS_MAX_LANES >= 8
 #define MCSI_BASE(name) mcsi8_##name
 #define MCSI_BASE_W 8
 #else
 #define MCSI_BASE(name) mcsi4_##name
 #define MCSI_BASE_W 4
+#endif
+#ifndef MCS_NO_BATCH
+/* How many lanes the `_n` forms compute at once on this processor: 4, 8 or 16; 1 where there are no vector types. */
+MCS_FN int mcs_lanes(void) {
+#if defined(MCSI_PICK_AVX512)
+    if (MCSI_CPU_HAS_AVX512) return 16;
+#endif
+#if defined(MCSI_PICK_AVX2)
+    if (MCSI_CPU_HAS_AVX2) return 8;
+#endif
+#if defined(MCS_NO_WIDE)
+    return 1;
+#else
+    return MCSI_BASE_W;
+#endif
+}
 #endif
 
 /* Scalar names of the lane types, so that one body serves all widths. */
@@ -402,6 +477,7 @@ typedef double mcsi_d;
 #endif
 #define MCSI_W 8
 #define MCSI_LOOPS
+#define MCSI_PICKED
 #define MCS_(name) mcsi_avx2p_##name
 #define MCSI_(name) mcsi_avx2_##name
 #define MCSI_F mcs8_f
@@ -427,6 +503,7 @@ typedef double mcsi_d;
 #endif
 #define MCSI_W 16
 #define MCSI_LOOPS
+#define MCSI_PICKED
 #define MCS_(name) mcsi_avx512p_##name
 #define MCSI_(name) mcsi_avx512_##name
 #define MCSI_F mcs16_f
@@ -450,20 +527,23 @@ typedef double mcsi_d;
  * F, I, U stand for the float, int32 and uint32 lanes of the pass. Masks are lanes of I: 0 or 1 in the scalar pass, 0 or -1 in the
  * others, so `&` and `|` join them and nothing else may be done with them. */
 
-/* MCSI_FN before public functions of every width, MCSI_CORE before their parts, which compilers would leave as calls that return
- * structs through memory. */
-#if MCSI_W == 1
+/* MCSI_FN before public functions of every width, MCSI_SAMPLE before those that MCSI_HOT is meant for, MCSI_CORE before private
+ * ones. The passes that are picked at run time make no public functions. */
+#define MCSI_CORE MCSI_INLINE
+#if defined(MCSI_PICKED)
+#define MCSI_FN MCSI_INLINE
+#define MCSI_SAMPLE MCSI_INLINE
+#elif MCSI_W == 1
 #define MCSI_FN MCS_FN
-#if defined(__GNUC__) && !defined(__CUDACC__)
-#define MCSI_CORE __attribute__((always_inline, unused)) static inline
+#define MCSI_SAMPLE MCSI_HOT
 #else
-#define MCSI_CORE MCS_FN
+#define MCSI_FN MCSI_HOT
+#define MCSI_SAMPLE MCSI_HOT
 #endif
+#if MCSI_W == 1
 #define MCSI_REQUIRE(ok) MCS_ASSERT(ok)
 #else
 #define MCSI_REQUIRE(ok) ((void)0)
-#define MCSI_FN __attribute__((always_inline, unused)) static inline
-#define MCSI_CORE MCSI_FN
 #endif
 
 /* Array forms: MCSI_BATCH(x_n, (parameters), (arguments), body) defines the loop in the passes that the `_n` forms use, and in the
@@ -471,7 +551,7 @@ typedef double mcsi_d;
 #define MCSI_BATCH(name, params, args, ...) MCSI_BATCH_AS(mcs_##name, name, params, args, __VA_ARGS__)
 #if defined(MCSI_LOOPS)
 #define MCSI_BATCH_AS(caller, name, params, args, ...) \
-    __attribute__((unused)) static inline void MCSI_(name) params { __VA_ARGS__ }
+    __attribute__((unused)) MCSI_PRIVATE void MCSI_(name) params { __VA_ARGS__ }
 #elif MCSI_W > 1
 #define MCSI_BATCH_AS(caller, name, params, args, ...)
 #elif defined(MCS_NO_WIDE)
@@ -479,28 +559,27 @@ typedef double mcsi_d;
     MCS_FN void caller params { __VA_ARGS__ }
 #else
 #if defined(MCSI_PICK_AVX512)
-#define MCSI_DECLARE_AVX512(name, params) MCSI_FOR_AVX512 static inline void mcsi_avx512_##name params;
-#define MCSI_TRY_AVX512(name, args)                                                                                     \
-    if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")) \
-        mcsi_avx512_##name args;                                                                                        \
+#define MCSI_DECLARE_AVX512(name, params) MCSI_FOR_AVX512 MCSI_PRIVATE void mcsi_avx512_##name params;
+#define MCSI_TRY_AVX512(name, args)                   \
+    if (MCSI_CPU_HAS_AVX512) mcsi_avx512_##name args; \
     else
 #else
 #define MCSI_DECLARE_AVX512(name, params)
 #define MCSI_TRY_AVX512(name, args)
 #endif
 #if defined(MCSI_PICK_AVX2)
-#define MCSI_DECLARE_AVX2(name, params) MCSI_FOR_AVX2 static inline void mcsi_avx2_##name params;
-#define MCSI_TRY_AVX2(name, args)                                                               \
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) mcsi_avx2_##name args; \
+#define MCSI_DECLARE_AVX2(name, params) MCSI_FOR_AVX2 MCSI_PRIVATE void mcsi_avx2_##name params;
+#define MCSI_TRY_AVX2(name, args)                 \
+    if (MCSI_CPU_HAS_AVX2) mcsi_avx2_##name args; \
     else
 #else
 #define MCSI_DECLARE_AVX2(name, params)
 #define MCSI_TRY_AVX2(name, args)
 #endif
-#define MCSI_BATCH_AS(caller, name, params, args, ...)                 \
-    MCSI_DECLARE_AVX512(name, params)                                  \
-    MCSI_DECLARE_AVX2(name, params)                                    \
-    __attribute__((unused)) static inline void MCSI_BASE(name) params; \
+#define MCSI_BATCH_AS(caller, name, params, args, ...)                \
+    MCSI_DECLARE_AVX512(name, params)                                 \
+    MCSI_DECLARE_AVX2(name, params)                                   \
+    __attribute__((unused)) MCSI_PRIVATE void MCSI_BASE(name) params; \
     MCS_FN void caller params { MCSI_TRY_AVX512(name, args) MCSI_TRY_AVX2(name, args) MCSI_BASE(name) args; }
 #endif
 
@@ -508,9 +587,9 @@ typedef double mcsi_d;
 
 /* Public: x in all lanes; lanes from and to an array of any alignment. */
 #if MCSI_W == 1
-MCSI_CORE float mcs_set(float x) { return x; }
-MCSI_CORE float mcs_load(const float *p) { return *p; }
-MCSI_CORE void mcs_store(float *p, float x) { *p = x; }
+MCSI_SAMPLE float mcs_set(float x) { return x; }
+MCSI_SAMPLE float mcs_load(const float *p) { return *p; }
+MCSI_SAMPLE void mcs_store(float *p, float x) { *p = x; }
 MCSI_CORE void mcsi_store_int(uint32_t *p, int32_t i) { *p = (uint32_t)i; }
 MCSI_CORE int32_t mcsi_bits(float x) {
     int32_t i;
@@ -534,14 +613,14 @@ MCSI_CORE float mcsi_sel(int32_t m, float a, float b) { return m ? a : b; }
 MCSI_CORE float mcsi_max(float a, float b) { return a > b ? a : b; }
 MCSI_CORE float mcsi_min(float a, float b) { return a < b ? a : b; }
 #else
-MCSI_CORE MCSI_F MCS_(set)(float x) {
+MCSI_SAMPLE MCSI_F MCS_(set)(float x) {
     MCSI_F zero = {0.0f};
     return x - zero;
 }
 /* Through a type that may lie anywhere: gcc 12 copies by memcpy in pieces of 16 bytes, and the vector then waits for them. */
 typedef float MCSI_(anywhere) __attribute__((vector_size(4 * MCSI_W), aligned(4), may_alias));
-MCSI_CORE MCSI_F MCS_(load)(const float *p) { return *(const MCSI_(anywhere) *)(const void *)p; }
-MCSI_CORE void MCS_(store)(float *p, MCSI_F v) { *(MCSI_(anywhere) *)(void *)p = v; }
+MCSI_SAMPLE MCSI_F MCS_(load)(const float *p) { return *(const MCSI_(anywhere) *)(const void *)p; }
+MCSI_SAMPLE void MCS_(store)(float *p, MCSI_F v) { *(MCSI_(anywhere) *)(void *)p = v; }
 MCSI_CORE void MCSI_(store_int)(uint32_t *p, MCSI_I i) { *(MCSI_(anywhere) *)(void *)p = (MCSI_F)i; }
 MCSI_CORE MCSI_I MCSI_(bits)(MCSI_F x) { return (MCSI_I)x; }
 MCSI_CORE MCSI_F MCSI_(from_bits)(MCSI_I i) { return (MCSI_F)i; }
@@ -554,16 +633,14 @@ MCSI_CORE MCSI_F MCSI_(to_float)(MCSI_I i) { return __builtin_convertvector(i, M
 #define MCSI_TRUNC_D(x) MCSI_(trunc)(MCSI_NARROW(x))
 #define MCSI_MAX_D(x, y) MCSI_WIDEN(MCSI_(max)(MCSI_NARROW(x), MCS_(set)(y)))
 MCSI_CORE MCSI_F MCSI_(sel)(MCSI_I m, MCSI_F a, MCSI_F b) { return (MCSI_F)(((MCSI_I)a & m) | ((MCSI_I)b & ~m)); }
-#if defined(MCSI_X86) && MCSI_W == 4
+/* The second of both where one is NaN, as the instructions have it; clang makes those of the plain text, gcc takes their names. */
+#if defined(MCSI_X86) && !defined(__clang__) && MCSI_W == 4
 MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps(a, b); }
 MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps(a, b); }
-#elif defined(MCSI_AVX)
+#elif defined(MCSI_AVX) && !defined(__clang__)
 MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps256(a, b); }
 MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps256(a, b); }
-#elif defined(MCSI_AVX512) && defined(__clang__)
-MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps512(a, b, 4); }
-MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps512(a, b, 4); }
-#elif defined(MCSI_AVX512)
+#elif defined(MCSI_AVX512) && !defined(__clang__)
 MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps512_mask(a, b, a, -1, 4); }
 MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps512_mask(a, b, a, -1, 4); }
 #else
@@ -600,7 +677,7 @@ MCSI_CORE MCSI_F MCSI_(sqrt)(MCSI_F x) {
 MCSI_CORE MCSI_F MCSI_(blend)(MCSI_I m, MCSI_F a, MCSI_F b) {
     return MCSI_(from_bits)((MCSI_(bits)(a) & m) | (MCSI_(bits)(b) & ~m));
 }
-#if MCSI_W == 1 && defined(__GNUC__) && !defined(__TINYC__)
+#if MCSI_W == 1 && defined(MCSI_GNU)
 MCSI_CORE float mcsi_abs(float x) { return __builtin_fabsf(x); }
 MCSI_CORE float mcsi_with_sign(float magnitude, float sign) { return __builtin_copysignf(magnitude, sign); }
 #else
@@ -615,6 +692,7 @@ MCSI_CORE MCSI_F MCSI_(unit)(MCSI_F u, MCSI_I *ok) {
 #if MCSI_W == 1
     if (u > 0.0f && u < 1.0f) return u;
 #endif
+    MCSI_REQUIRE(u >= 0.0f && u < 1.0f);
     v = MCSI_(min)(MCSI_(max)(u, MCS_(set)(0.0f)), MCS_(set)(0.99999994f));
     *ok = *ok & (v == u);
     return v;
@@ -637,7 +715,7 @@ MCSI_CORE MCSI_I MCSI_(always)(void) { return MCS_(set)(0.0f) == MCS_(set)(0.0f)
 
 /* x as a float in memory holds it: where expressions keep more digits (x87), compilers leave them to variables as well. */
 MCSI_CORE MCSI_F MCSI_(stored)(MCSI_F x) {
-#if FLT_EVAL_METHOD == 2
+#if MCSI_FLT_EVAL == 2
     volatile float memory = x;
     return memory;
 #else
@@ -654,7 +732,7 @@ MCSI_CORE MCSI_F MCSI_(stored)(MCSI_F x) {
 MCSI_CORE MCSI_F MCSI_(to_grid)(MCSI_F x, float step, float big, MCSI_I *k) {
     MCSI_F sum = x + big;
     *k = MCSI_(bits)(sum) - MCSI_(bits)(MCS_(set)(big));
-#if defined(MCSI_SUMS_MAY_MOVE) || FLT_EVAL_METHOD != 0
+#if defined(MCSI_SUMS_MAY_MOVE) || MCSI_FLT_EVAL != 0
     return step * MCSI_(to_float)(*k);
 #else
     (void)step;
@@ -663,7 +741,7 @@ MCSI_CORE MCSI_F MCSI_(to_grid)(MCSI_F x, float step, float big, MCSI_I *k) {
 }
 
 /* The same for doubles of either sign, and for those in [-151, 0] where the difference might be taken for x. */
-#if defined(MCSI_SUMS_MAY_MOVE) || FLT_EVAL_METHOD == 2
+#if defined(MCSI_SUMS_MAY_MOVE) || MCSI_FLT_EVAL == 2
 #define MCSI_ROUND_D(x) MCSI_INT_WIDEN(MCSI_TRUNC_D(MCSI_MAX_D(x, -151.0) - 0.5))
 #else
 #define MCSI_ROUND_D(x) (((x) + 6755399441055744.0) - 6755399441055744.0)
@@ -845,10 +923,16 @@ MCSI_CORE MCSI_F MCSI_(dot)(MCS_(vec3) a, MCS_(vec3) b) { return a.x * b.x + a.y
 MCSI_CORE MCSI_F MCSI_(exact_dot)(MCS_(vec3) a, MCS_(vec3) b) {
     return MCSI_NARROW(MCSI_WIDEN(a.x) * MCSI_WIDEN(b.x) + MCSI_WIDEN(a.y) * MCSI_WIDEN(b.y) + MCSI_WIDEN(a.z) * MCSI_WIDEN(b.z));
 }
+/* What MCS_ASSERT takes for a unit vector. A careful caller normalises in float, which leaves |w|^2 within 2^-21 of 1, and turns the
+ * vector by float frames. A frame is orthonormal to 4 ulp (12 x 2^-24 in |w|^2) and the sums of three products round (6 x 2^-24): each
+ * moves |w|^2 by less than 2^-19, 100 of them by 2e-4. A reciprocal root of 12 bits, as processors have it, leaves 2^-10.4. All of
+ * these pass. */
+#define MCSI_IS_UNIT(length2) ((length2) >= 0.999f && (length2) <= 1.001f)
 /* A direction made safe: bad ones (not about unit length, NaN) become +z and leave *ok. */
 MCSI_CORE MCS_(vec3) MCSI_(direction)(MCS_(vec3) w, MCSI_I *ok) {
     MCSI_F length2 = MCSI_(dot)(w, w);
     MCSI_I good = (length2 > 0.25f) & (length2 < 4.0f);
+    MCSI_REQUIRE(MCSI_IS_UNIT(length2));
     *ok = *ok & good;
     return MCSI_(vec3)(MCSI_(sel)(good, w.x, MCS_(set)(0.0f)), MCSI_(sel)(good, w.y, MCS_(set)(0.0f)),
                        MCSI_(sel)(good, w.z, MCS_(set)(1.0f)));
@@ -857,12 +941,17 @@ MCSI_CORE MCS_(vec3) MCSI_(direction)(MCS_(vec3) w, MCSI_I *ok) {
 MCSI_CORE MCS_(vec3) MCSI_(above)(MCS_(vec3) w, MCSI_I *ok) {
     MCSI_F length2 = MCSI_(dot)(w, w);
     MCSI_I good = (length2 > 0.25f) & (length2 < 4.0f) & (w.z > 0.0f);
+    MCSI_REQUIRE(MCSI_IS_UNIT(length2));
     *ok = *ok & good;
     return MCSI_(vec3)(MCSI_(sel)(good, w.x, MCS_(set)(0.0f)), MCSI_(sel)(good, w.y, MCS_(set)(0.0f)),
                        MCSI_(sel)(good, w.z, MCS_(set)(1.0f)));
 }
-/* All lanes alike: how the array forms spread the scalars of a call. */
+/* All lanes alike: how the array forms spread the scalars of a call, and a direction of it. */
 MCSI_CORE MCS_(vec3) MCSI_(spread)(mcs_vec3 v) { return MCSI_(vec3)(MCS_(set)(v.x), MCS_(set)(v.y), MCS_(set)(v.z)); }
+MCSI_CORE MCS_(vec3) MCSI_(spread_direction)(mcs_vec3 w) {
+    MCS_ASSERT(MCSI_IS_UNIT(mcsi_dot(w, w)));
+    return MCSI_(spread)(w);
+}
 
 #define MCSI_PI 3.14159274f
 #define MCSI_1_PI 0.318309873f
@@ -1146,7 +1235,7 @@ MCSI_CORE MCSI_I MCSI_(linear_ends)(MCSI_F *a, MCSI_F *b) {
     *a = *a * one * other, *b = *b * one * other;
     return ok;
 }
-MCSI_CORE MCS_(sample1) MCS_(linear_sample)(MCSI_F a, MCSI_F b, MCSI_F u) {
+MCSI_SAMPLE MCS_(sample1) MCS_(linear_sample)(MCSI_F a, MCSI_F b, MCSI_F u) {
     MCSI_I ok = MCSI_(linear_ends)(&a, &b);
     MCSI_F r;
     u = MCSI_(unit)(u, &ok);
@@ -1164,7 +1253,7 @@ MCSI_FN MCSI_F MCS_(linear_invert)(MCSI_F a, MCSI_F b, MCSI_F x) {
     return MCSI_(u_of)(ok, x * ((a * (2.0f - x) + b * x) / (a + b)));
 }
 
-MCSI_CORE MCS_(sample1) MCS_(tent_sample)(MCSI_F r, MCSI_F u) {
+MCSI_SAMPLE MCS_(sample1) MCS_(tent_sample)(MCSI_F r, MCSI_F u) {
     MCSI_I ok = MCSI_(scale_ok)(r);
     MCSI_F v, q;
     MCSI_REQUIRE(ok);
@@ -1184,7 +1273,7 @@ MCSI_FN MCSI_F MCS_(tent_invert)(MCSI_F r, MCSI_F x) {
     return MCSI_(u_of)(ok & (x == x), MCSI_(sel)(x < 0.0f, half, 1.0f - half));
 }
 
-MCSI_CORE MCS_(sample1) MCS_(exponential_sample)(MCSI_F rate, MCSI_F u) {
+MCSI_SAMPLE MCS_(sample1) MCS_(exponential_sample)(MCSI_F rate, MCSI_F u) {
     MCSI_I ok = MCSI_(scale_ok)(rate);
     MCSI_REQUIRE(ok);
     u = MCSI_(unit)(u, &ok);
@@ -1213,7 +1302,7 @@ MCSI_CORE MCSI_I MCSI_(truncexp_ends)(MCSI_F rate, MCSI_F m, MCSI_F *e, MCSI_F *
     *one_minus_e = -*one_minus_e;
     return ok;
 }
-MCSI_CORE MCS_(sample1) MCS_(truncexp_sample)(MCSI_F rate, MCSI_F m, MCSI_F u) {
+MCSI_SAMPLE MCS_(sample1) MCS_(truncexp_sample)(MCSI_F rate, MCSI_F m, MCSI_F u) {
     MCSI_F e, d, w, c, x;
     MCSI_I flat, ok = MCSI_(truncexp_ends)(rate, m, &e, &d, &flat);
     u = MCSI_(unit)(u, &ok);
@@ -1235,7 +1324,7 @@ MCSI_FN MCSI_F MCS_(truncexp_invert)(MCSI_F rate, MCSI_F m, MCSI_F x) {
     return MCSI_(u_of)(ok, MCSI_(sel)(flat, x / m, -p / d));
 }
 
-MCSI_CORE MCS_(sample1) MCS_(normal_sample)(MCSI_F mean, MCSI_F sd, MCSI_F u) {
+MCSI_SAMPLE MCS_(sample1) MCS_(normal_sample)(MCSI_F mean, MCSI_F sd, MCSI_F u) {
     MCSI_I ok = MCSI_(scale_ok)(sd) & (MCSI_(abs)(mean) <= 1e30f);
     MCSI_F z;
     MCSI_REQUIRE(ok);
@@ -1256,7 +1345,7 @@ MCSI_FN MCSI_F MCS_(normal_invert)(MCSI_F mean, MCSI_F sd, MCSI_F x) {
     return MCSI_(u_of)(ok & (z == z), MCSI_(sel)(z < 0.0f, tail, 1.0f - tail));
 }
 
-MCSI_CORE MCS_(sample1) MCS_(logistic_sample)(MCSI_F mean, MCSI_F s, MCSI_F u) {
+MCSI_SAMPLE MCS_(sample1) MCS_(logistic_sample)(MCSI_F mean, MCSI_F s, MCSI_F u) {
     MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
     MCSI_F v;
     MCSI_REQUIRE(ok);
@@ -1284,7 +1373,7 @@ MCSI_CORE MCSI_F MCSI_(root)(MCSI_F n, MCSI_F v, MCSI_F *density) {
     return x;
 }
 MCSI_CORE MCSI_F MCSI_(power)(MCSI_F n, double plus, MCSI_F x) { return MCSI_(pow_unit)(x, n, plus, 0, NULL); }
-MCSI_CORE MCS_(sample1) MCS_(power_sample)(MCSI_F n, MCSI_F u) {
+MCSI_SAMPLE MCS_(sample1) MCS_(power_sample)(MCSI_F n, MCSI_F u) {
     MCSI_I ok = MCSI_(exponent_ok)(n);
     MCSI_F x, pdf;
     MCSI_REQUIRE(ok);
@@ -1305,7 +1394,7 @@ MCSI_FN MCSI_F MCS_(power_invert)(MCSI_F n, MCSI_F x) {
     return MCSI_(u_of)(ok, MCSI_(power)(n, 1.0, MCSI_(within)(ok, x, 0.0f, 1.0f)));
 }
 
-MCSI_CORE MCS_(sample1) MCS_(evenpower_sample)(MCSI_F n, MCSI_F u) {
+MCSI_SAMPLE MCS_(sample1) MCS_(evenpower_sample)(MCSI_F n, MCSI_F u) {
     MCSI_I ok = MCSI_(exponent_ok)(n);
     MCSI_F d, x, pdf;
     MCSI_REQUIRE(ok);
@@ -1380,7 +1469,7 @@ MCSI_CORE MCS_(vec2) MCSI_(uv)(MCSI_I ok, MCSI_F u1, MCSI_F u2) {
                        MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u2, zero), top), zero));
 }
 
-MCSI_CORE MCS_(sample2) MCS_(disk_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(sample2) MCS_(disk_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
     return MCSI_(sample2)(ok, R, MCSI_(sqrt)(u1), u2);
@@ -1392,7 +1481,7 @@ MCSI_FN MCS_(vec2) MCS_(disk_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
     return MCSI_(uv)(MCSI_(scale_ok)(R) & (p * p + q * q < 4.0f), p * p + q * q, MCSI_(atan2_turns)(q, p));
 }
 
-MCSI_CORE MCS_(sample2) MCS_(concentric_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(sample2) MCS_(concentric_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)(), wide;
     MCSI_F a, b, r, q, axis;
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
@@ -1441,7 +1530,7 @@ MCSI_CORE MCSI_F MCSI_(one_minus_z)(MCS_(vec3) w) {
     return MCSI_(sel)(w.z > 0.0f, s / (1.0f + MCSI_(abs)(w.z)), 1.0f - w.z);
 }
 
-MCSI_CORE MCS_(dir) MCS_(sphere_sample)(MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(dir) MCS_(sphere_sample)(MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
     return MCSI_(around_z)(ok, 2.0f * MCSI_(sqrt)(u1 * (1.0f - u1)), 1.0f - 2.0f * u1, u2, MCS_(set)(MCSI_1_4PI));
@@ -1457,7 +1546,7 @@ MCSI_FN MCS_(vec2) MCS_(sphere_invert)(MCS_(vec3) w) {
     return MCSI_(uv)(ok, 0.5f * MCSI_(one_minus_z)(w), MCSI_(atan2_turns)(w.y, w.x));
 }
 
-MCSI_CORE MCS_(dir) MCS_(hemisphere_sample)(MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(dir) MCS_(hemisphere_sample)(MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
     return MCSI_(around_z)(ok, MCSI_(sqrt)(u1 * (2.0f - u1)), 1.0f - u1, u2, MCS_(set)(MCSI_1_2PI));
@@ -1473,7 +1562,7 @@ MCSI_FN MCS_(vec2) MCS_(hemisphere_invert)(MCS_(vec3) w) {
     return MCSI_(uv)(ok, MCSI_(one_minus_z)(w), MCSI_(atan2_turns)(w.y, w.x));
 }
 
-MCSI_CORE MCS_(dir) MCS_(cosine_sample)(MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(dir) MCS_(cosine_sample)(MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F z;
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok), z = MCSI_(sqrt)(1.0f - u1);
@@ -1495,7 +1584,7 @@ MCSI_FN MCSI_F MCS_(cone_from_sin2)(MCSI_F sin2) {
     return s / (1.0f + MCSI_(sqrt)(1.0f - s));
 }
 MCSI_CORE MCSI_I MCSI_(cone_ok)(MCSI_F k) { return (k >= 1e-30f) & (k <= 2.0f); }
-MCSI_CORE MCS_(dir) MCS_(cone_sample)(MCSI_F k, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(dir) MCS_(cone_sample)(MCSI_F k, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(cone_ok)(k);
     MCSI_F t;
     MCSI_REQUIRE(ok);
@@ -1557,7 +1646,8 @@ MCSI_BATCH(cone_sample_n, (float k, size_t n, const float *u1, const float *u2, 
 #endif
 
 /* ==== [frame] an orthonormal frame from a normal ===============================================================================
- * domain unit n; s, t, n right-handed; a bad n gives the axes. Orthonormal to 4 ulp. 1 div, no branch; seam at n.z = -0.
+ * domain unit n; s, t, n right-handed; a bad n gives the axes, one that is not unit a frame that is skewed. Orthonormal to 4 ulp. 1
+ * div, no branch; seam at n.z = -0.
  * Source: Duff et al. 2017, "Building an orthonormal basis, revisited", listing 3. */
 
 typedef struct {
@@ -1656,10 +1746,12 @@ MCSI_CORE MCS_(vec3) MCSI_(mirror)(MCS_(vec3) wo, MCS_(vec3) p, MCSI_F s) {
 
 /* Is any lane of a mask set? For detours that few samples need; compilers are told so, as the detours would cost registers. */
 MCSI_CORE int MCSI_(rarely)(MCSI_I m) {
-#if MCSI_W == 1 && defined(__GNUC__)
+#if MCSI_W == 1 && defined(MCSI_GNU)
     return (int)__builtin_expect(m, 0);
 #elif MCSI_W == 1
     return m;
+#elif defined(MCSI_REDUCE_OR)
+    return (int)__builtin_expect(__builtin_reduce_or(m) != 0, 0);
 #elif defined(MCSI_X86) && MCSI_W == 4
     return (int)__builtin_expect(__builtin_ia32_movmskps((MCSI_F)m), 0);
 #elif defined(MCSI_AVX)
@@ -1704,7 +1796,7 @@ MCSI_CORE MCSI_I MCSI_(cancelled)(MCSI_F wo_z, MCSI_F d, MCSI_F p2) { return (2.
     MCSI_BATCH(NAME##_sample_n, (const mcs_##MATERIAL *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, \
                                  float *y, float *z, float *pdf, float *weight), (m, wo, n, u1, u2, x, y, z, pdf, weight), \
         const MCS_(MATERIAL) material = MCSI_(MATERIAL##_spread)(m); \
-        const MCS_(vec3) eye = MCSI_(spread)(wo); \
+        const MCS_(vec3) eye = MCSI_(spread_direction)(wo); \
         mcsi_batch b; \
         mcsi_batch_start(&b, n, u1, u2, NULL); \
         b.out[0] = x, b.out[1] = y, b.out[2] = z, b.out[3] = pdf, b.out[4] = weight; \
@@ -1721,7 +1813,7 @@ MCSI_CORE MCSI_I MCSI_(cancelled)(MCSI_F wo_z, MCSI_F d, MCSI_F p2) { return (2.
                           float *value), \
                (m, wo, n, x, y, z, value), \
         const MCS_(MATERIAL) material = MCSI_(MATERIAL##_spread)(m); \
-        const MCS_(vec3) eye = MCSI_(spread)(wo); \
+        const MCS_(vec3) eye = MCSI_(spread_direction)(wo); \
         mcsi_batch b; \
         mcsi_batch_start(&b, n, x, y, z); \
         b.out[0] = value; \
@@ -1736,7 +1828,7 @@ MCSI_CORE MCSI_I MCSI_(cancelled)(MCSI_F wo_z, MCSI_F d, MCSI_F p2) { return (2.
     MCSI_BATCH(NAME##_sample_n, (const mcs_##MATERIAL *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, \
                                  float *y, float *z, float *pdf), (m, wo, n, u1, u2, x, y, z, pdf), \
         const MCS_(MATERIAL) material = MCSI_(MATERIAL##_spread)(m); \
-        const MCS_(vec3) eye = MCSI_(spread)(wo); \
+        const MCS_(vec3) eye = MCSI_(spread_direction)(wo); \
         MCSI_LOOP_DIR(MCS_(NAME##_sample)(&material, eye, p, q)))
 /* clang-format on */
 #else
@@ -1779,7 +1871,7 @@ MCSI_CORE MCSI_F MCSI_(cos_power)(MCSI_F n, MCSI_F tan2) {
     return MCSI_(exp_neg)(-0.5f * n * MCSI_(log1p)(MCSI_(min)(tan2, MCS_(set)(1e37f))));
 }
 
-MCSI_CORE MCS_(dir) MCS_(phong_lobe_sample)(const MCS_(phong) * m, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(dir) MCS_(phong_lobe_sample)(const MCS_(phong) * m, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F c, d;
     u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
@@ -1800,7 +1892,7 @@ MCSI_FN MCS_(vec2) MCS_(phong_lobe_invert)(const MCS_(phong) * m, MCS_(vec3) w) 
     return MCSI_(uv)(ok, -d, MCSI_(atan2_turns)(w.y, w.x));
 }
 
-MCSI_CORE MCS_(brdf) MCS_(phong_sample)(const MCS_(phong) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(brdf) MCS_(phong_sample)(const MCS_(phong) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCS_(frame) f;
     MCS_(dir) l;
@@ -1975,10 +2067,12 @@ MCSI_CORE MCSI_F MCSI_(gauss_pdf)(const MCSI_(slopes) * m, MCS_(vec3) wo, MCS_(v
     return MCSI_(keep)(ok, m->norm * MCSI_(exp_neg)(-MCSI_(slope_square)(m, h)) * (MCSI_(dot)(h, h) / (h.z * h.z)) / (2.0f * h.z));
 }
 
-MCSI_CORE MCS_(dir) MCS_(ward_h_sample)(const MCS_(ward) * m, MCSI_F u1, MCSI_F u2) { return MCSI_(gauss_h_sample)(&m->s, u1, u2); }
+MCSI_SAMPLE MCS_(dir) MCS_(ward_h_sample)(const MCS_(ward) * m, MCSI_F u1, MCSI_F u2) {
+    return MCSI_(gauss_h_sample)(&m->s, u1, u2);
+}
 MCSI_FN MCSI_F MCS_(ward_h_pdf)(const MCS_(ward) * m, MCS_(vec3) h) { return MCSI_(gauss_h_pdf)(&m->s, h); }
 MCSI_FN MCS_(vec2) MCS_(ward_h_invert)(const MCS_(ward) * m, MCS_(vec3) h) { return MCSI_(gauss_h_invert)(&m->s, h); }
-MCSI_CORE MCS_(brdf) MCS_(ward_sample)(const MCS_(ward) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(brdf) MCS_(ward_sample)(const MCS_(ward) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F g, d, p2, r = MCSI_(gauss_radius)(&m->s, u1, &ok, &g);
     MCS_(brdf) s;
@@ -2047,12 +2141,12 @@ MCSI_CORE MCSI_F MCSI_(beckmann_shadow)(const MCSI_(slopes) * m, MCS_(vec3) w) {
     MCSI_F l = t * 0.282094792f * MCSI_(exp_neg)(-a * a) - w.z * MCSI_(normal_tail)(a * 1.41421356f);
     return MCSI_(max)(l, MCS_(set)(0.0f));
 }
-MCSI_CORE MCS_(dir) MCS_(beckmann_h_sample)(const MCS_(beckmann) * m, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(dir) MCS_(beckmann_h_sample)(const MCS_(beckmann) * m, MCSI_F u1, MCSI_F u2) {
     return MCSI_(gauss_h_sample)(&m->s, u1, u2);
 }
 MCSI_FN MCSI_F MCS_(beckmann_h_pdf)(const MCS_(beckmann) * m, MCS_(vec3) h) { return MCSI_(gauss_h_pdf)(&m->s, h); }
 MCSI_FN MCS_(vec2) MCS_(beckmann_h_invert)(const MCS_(beckmann) * m, MCS_(vec3) h) { return MCSI_(gauss_h_invert)(&m->s, h); }
-MCSI_CORE MCS_(brdf) MCS_(beckmann_sample)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(brdf) MCS_(beckmann_sample)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F g, d, p2, lo, li, r = MCSI_(gauss_radius)(&m->s, u1, &ok, &g);
     MCS_(brdf) s;
@@ -2102,7 +2196,8 @@ MCSI_BATCH_VALUE(beckmann_eval, beckmann)
  * mcs_ggx_vndf_*     the same BRDF by visible normals: pdf of wi = D/(2 (wo.z + t)), t = |(ax x, ay y, z)| of wo; weight G2/G1.
  * mcs_ggx_bounded_*  visible normals within the cap that can reflect upwards: pdf D/(2 (k wo.z + t)), fewer lost samples. The best
  *                    of the three for rough surfaces; equal to vndf for small alpha.
- * mcs_ggx_d, _g1, _g2   D(h); Smith G1 = 2z/(z+t); height-correlated G2 = 2 zo zi/(zo ti + zi to)
+ * mcs_ggx_d, _g1, _g2   D(h); Smith G1 = 2z/(z+t); height-correlated G2 = 2 zo zi/(zo ti + zi to), of reflection: 0 where wo or wi
+ *                    is below the surface
  * domain             (u1, u2); vndf and bounded: u1 turns around wo's azimuth in the stretched frame, u2 from the top down
  * parameters         ax, ay > 0, taken within [1e-7, 1e4]; mcs_is_mirror tells alphas that are below it: use a mirror
  * cost               h: 2 sqrt, 2 div, 1 sincos; ggx: 1 sqrt, 3 div, 1 sincos, and 2 sqrt, 1 div for the weight. vndf, bounded: 1
@@ -2156,7 +2251,7 @@ MCSI_CORE MCSI_F MCSI_(ggx_radius)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_I *o
     *g = m->norm * (v * v);
     return MCSI_(sqrt)(u1 / v);
 }
-MCSI_CORE MCS_(dir) MCS_(ggx_h_sample)(const MCS_(ggx) * m, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(dir) MCS_(ggx_h_sample)(const MCS_(ggx) * m, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F g, r = MCSI_(ggx_radius)(&m->s, u1, &ok, &g);
     return MCSI_(slope_dir)(&m->s, ok, r, g, u2);
@@ -2172,7 +2267,7 @@ MCSI_FN MCS_(vec2) MCS_(ggx_h_invert)(const MCS_(ggx) * m, MCS_(vec3) h) {
     h = MCSI_(above)(h, &ok), e = MCSI_(min)(MCSI_(slope_square)(&m->s, h), MCS_(set)(1e30f));
     return MCSI_(slope_invert)(&m->s, ok, h, e / (1.0f + e));
 }
-MCSI_CORE MCS_(brdf) MCS_(ggx_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(brdf) MCS_(ggx_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F g, d, p2, to, ti, r = MCSI_(ggx_radius)(&m->s, u1, &ok, &g);
     MCS_(brdf) s;
@@ -2347,21 +2442,21 @@ MCSI_CORE MCS_(vec2) MCSI_(visible_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo,
                      MCSI_(one_minus_z)(c) / v.cap);
 }
 
-MCSI_CORE MCS_(dir) MCS_(ggx_vndf_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(dir) MCS_(ggx_vndf_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     return MCSI_(visible_h_sample)(m, wo, u1, u2, 0);
 }
 MCSI_FN MCSI_F MCS_(ggx_vndf_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) { return MCSI_(visible_h_pdf)(m, wo, h, 0); }
 MCSI_FN MCS_(vec2) MCS_(ggx_vndf_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) {
     return MCSI_(visible_h_invert)(m, wo, h, 0);
 }
-MCSI_CORE MCS_(brdf) MCS_(ggx_vndf_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(brdf) MCS_(ggx_vndf_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     return MCSI_(visible_sample)(m, wo, u1, u2, 0);
 }
 MCSI_FN MCSI_F MCS_(ggx_vndf_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) { return MCSI_(visible_pdf)(m, wo, wi, 0); }
 MCSI_FN MCSI_F MCS_(ggx_vndf_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
     return MCSI_(visible_weight)(m, wo, wi, 0);
 }
-MCSI_CORE MCS_(dir) MCS_(ggx_bounded_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(dir) MCS_(ggx_bounded_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     return MCSI_(visible_h_sample)(m, wo, u1, u2, 1);
 }
 MCSI_FN MCSI_F MCS_(ggx_bounded_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) {
@@ -2370,7 +2465,7 @@ MCSI_FN MCSI_F MCS_(ggx_bounded_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(
 MCSI_FN MCS_(vec2) MCS_(ggx_bounded_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) {
     return MCSI_(visible_h_invert)(m, wo, h, 1);
 }
-MCSI_CORE MCS_(brdf) MCS_(ggx_bounded_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(brdf) MCS_(ggx_bounded_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     return MCSI_(visible_sample)(m, wo, u1, u2, 1);
 }
 MCSI_FN MCSI_F MCS_(ggx_bounded_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) { return MCSI_(visible_pdf)(m, wo, wi, 1); }
@@ -2436,7 +2531,7 @@ MCSI_CORE MCS_(vec3) MCSI_(ashikhmin_half)(const MCS_(ashikhmin) * m, MCSI_F u1,
     *scale = MCSI_(sqrt)(-d * (2.0f + d) * (1.84467441e+19f / (c2 + y * y))) * 2.32830644e-10f, *p = m->norm * (1.0f - u1);
     return MCSI_(vec3)(*scale * c, *scale * y, cosine);
 }
-MCSI_CORE MCS_(dir) MCS_(ashikhmin_h_sample)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(dir) MCS_(ashikhmin_h_sample)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCS_(dir) h;
     MCSI_F p, scale;
@@ -2471,7 +2566,7 @@ MCSI_CORE MCSI_F MCSI_(ashikhmin_cosine)(MCS_(ashikhmin) m, MCS_(vec3) wo, MCSI_
     }
     return d;
 }
-MCSI_CORE MCS_(brdf) MCS_(ashikhmin_sample)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
+MCSI_SAMPLE MCS_(brdf) MCS_(ashikhmin_sample)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
     MCSI_I ok = MCSI_(always)();
     MCS_(vec3) h, wi;
     MCSI_F p, scale, d;
@@ -2597,7 +2692,7 @@ MCSI_CORE float mcsi_word_weight(const uint32_t *word) {
 MCSI_CORE void mcsi_put_weight(uint32_t *word, float w) { memcpy(word, &w, sizeof w); }
 /* memmove of n words, which kernels do not have. */
 MCS_FN void mcsi_move(uint32_t *to, const float *from, uint32_t n) {
-#ifdef __CUDA_ARCH__
+#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
     uint32_t i;
     int up = (uintptr_t)to <= (uintptr_t)from;
     for (i = 0; i < n; i++) mcsi_put_weight(to + (up ? i : n - 1 - i), from[up ? i : n - 1 - i]);
@@ -4450,6 +4545,7 @@ MCSI_CORE int mcsi_own_draw(const mcsi_own_lobe *l, float share, float *u1, floa
     return 1;
 }
 /* One body for sample and pdf: contraction that differs would show in lobes as narrow as the rounding of a direction. */
+MCSI_QUIET
 MCSI_APART float mcsi_own_pdf(const mcsi_own_lobe *l, mcs_vec3 w) {
     w = mcs_to_local(&l->frame, w);
     switch (l->profile) {
@@ -4458,6 +4554,7 @@ MCSI_APART float mcsi_own_pdf(const mcsi_own_lobe *l, mcs_vec3 w) {
     default: return mcs_ggx_vndf_pdf(&l->ggx, l->wo, w);
     }
 }
+MCSI_LOUD
 MCSI_CORE float mcsi_own_mix(const mcsi_own_lobe *l, float share, mcs_vec3 w, float tiled) {
     return share > 0.0f ? mcs_mix_pdf(share, mcsi_own_pdf(l, w), tiled) : tiled;
 }
@@ -4779,22 +4876,22 @@ MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcsi
                                 uint32_t *j, double *part, mcsi_warp *warp) {
     float value[MCSI_PATCHES], weight[MCSI_PATCHES], v[MCSI_PATCHES]; /* whole vectors are computed */
     const float *level = mcsi_tiles_patches(t);
-    uint32_t rows = MCSI_PATCH_ROWS, below = t->rows / MCSI_PATCH_ROWS, I = *i / below, J = *j / below, k = 0;
+    uint32_t rows = MCSI_PATCH_ROWS, below = t->rows / MCSI_PATCH_ROWS, in_row = *i / below, in_col = *j / below, k = 0;
     size_t at;
     mcsi_patches_weigh(s, MCSI_PATCHES, level, value, weight);
-    if (!mcsi_grid_draw(weight, MCSI_PATCH_ROWS, MCSI_PATCH_COLS, U1, U2, &I, &J, part)) return 0;
+    if (!mcsi_grid_draw(weight, MCSI_PATCH_ROWS, MCSI_PATCH_COLS, U1, U2, &in_row, &in_col, part)) return 0;
     level += (int)MCSI_TILE_FIELDS * MCSI_PATCHES;
     do {
         uint32_t side = mcsi_patch_side(t, rows), parts = side * side, y, x;
-        const float *patch = level + MCSI_TILE_FIELDS * (size_t)(J * rows + I) * parts;
+        const float *patch = level + MCSI_TILE_FIELDS * (size_t)(in_col * rows + in_row) * parts;
         below /= side, y = *i / below % side, x = *j / below % side;
         mcsi_patches_weigh(s, parts, patch, value, weight);
         if (!mcsi_parts_draw(patch, side, value, weight, U1, U2, &y, &x, part)) return 0;
-        I = I * side + y, J = J * side + x, k = x * side + y, level += MCSI_TILE_FIELDS * 2 * (size_t)rows * rows * parts,
-        rows *= side;
+        in_row = in_row * side + y, in_col = in_col * side + x, k = x * side + y,
+        level += MCSI_TILE_FIELDS * 2 * (size_t)rows * rows * parts, rows *= side;
     } while (below > 1);
-    *i = I, *j = J, at = (size_t)J * rows + I;
-    mcsi_tile_prefetch(e, mcsi_tiles_window(t, I, J), *U2);
+    *i = in_row, *j = in_col, at = (size_t)in_col * rows + in_row;
+    mcsi_tile_prefetch(e, mcsi_tiles_window(t, in_row, in_col), *U2);
     mcsi_corners_value(s, 4, mcsi_tiles_around(t) + 12 * at, 4, v);
     *warp = mcsi_warp_make(value[k], mcsi_tiles_fields(t)[MCSI_TILE_PULL * (size_t)t->rows * t->cols + at], v[0], v[1], v[2], v[3]);
     return 1;
@@ -4880,7 +4977,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #endif /* MCSI_W == 1 */
 
 #undef MCSI_FN
+#undef MCSI_SAMPLE
 #undef MCSI_CORE
+#undef MCSI_PICKED
 #undef MCSI_F
 #undef MCSI_I
 #undef MCSI_U

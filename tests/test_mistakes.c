@@ -1,0 +1,209 @@
+/* The commonest mistakes of users, as MCS_ASSERT tells them: directions that are not unit vectors, random numbers outside [0,1). What
+ * a careful caller gives, normalised in float and turned by many float frames, must pass. */
+static int asserted; /* how often a condition of the header did not hold */
+#define MCS_ASSERT(condition) ((void)((condition) ? 0 : asserted++))
+#include "registry.h"
+
+static const float wrong_length[] = {0, 0.3f, 0.5f, 0.7f, 0.9f, 0.99f, 0.999f, 1.001f, 1.01f, 1.1f, 1.9f, 2.5f, 1e20f, NAN};
+static const float wrong_u[] = {1, -1e-7f, 2, -INFINITY, INFINITY, NAN};
+enum { LENGTHS = sizeof wrong_length / sizeof *wrong_length, US = sizeof wrong_u / sizeof *wrong_u, TURNS = 100, CAREFUL = 2000 };
+
+/* A direction above the surface, as a user's program makes it. */
+static mcs_vec3 careful(uint64_t *state) {
+    mcs_vec3 w;
+    do {
+        w.x = (float)(int32_t)(mcst_mix(state) >> 32) * 0x1p-31f;
+        w.y = (float)(int32_t)(mcst_mix(state) >> 32) * 0x1p-31f;
+        w.z = (float)(uint32_t)(mcst_mix(state) >> 33) * 0x1p-31f;
+    } while (w.x * w.x + w.y * w.y + w.z * w.z < 1e-4f);
+    const float inverse = 1 / sqrtf(w.x * w.x + w.y * w.y + w.z * w.z);
+    w.x *= inverse;
+    w.y *= inverse;
+    w.z *= inverse;
+    return w;
+}
+
+/* A function of a row at a point that is to be judged: does it assert? */
+static int tells(const mcst_row *row, int which, const float *p, const float *x) {
+    float out[5];
+    const float u = 0.3f;
+    asserted = 0;
+    switch (which) {
+    case 0: row->fn[0].pdf(p, x, out); break;
+    case 1:
+        if (row->fn[0].invert) row->fn[0].invert(p, x, out);
+        break;
+    case 2: row->fn[0].sample(p, &u, &u, out); break;
+    case 3:
+        if (row->fn[0].eval) row->fn[0].eval(p, x, out);
+        break;
+    default:
+        if (row->fn[0].weight) row->fn[0].weight(p, x, out);
+    }
+    return asserted;
+}
+
+static void check_row(const mcst_row *row) {
+    static const int takes_point[] = {1, 1, 0, 1, 1};
+    uint64_t state = mcst.seed;
+    float p[MCST_P], x[3], out[5];
+    mcst_grid_get(row, 0, p);
+    for (int i = 0; i < US; i++) {
+        const float good = 0.3f;
+        asserted = 0;
+        row->fn[0].sample(p, &wrong_u[i], &good, out);
+        CHECK(asserted > 0, "u1 = %g", (double)wrong_u[i]);
+        asserted = 0;
+        row->fn[0].sample(p, &good, &wrong_u[i], out);
+        CHECK(row->inputs < 2 || asserted > 0, "u2 = %g", (double)wrong_u[i]);
+    }
+    if (row->dim < 3) return;
+    for (int which = 0; which < 5; which++) {
+        if (which == 1 && !row->fn[0].invert) continue;
+        if (which > 2 && !row->fn[0].eval) continue;
+        for (int i = 0; i < LENGTHS; i++) {
+            const float w[3] = {0.48f, 0.6f, 0.64f}, length = wrong_length[i];
+            for (int k = 0; k < 3; k++) {
+                x[k] = w[k];
+                p[3 + k] = w[k];
+            }
+            CHECK(!tells(row, which, p, x), "function %d tells of unit vectors", which);
+            for (int k = 0; k < 3; k++) x[k] = length * w[k];
+            CHECK(!takes_point[which] || tells(row, which, p, x), "function %d, point of length %g", which, (double)length);
+            for (int k = 0; k < 3; k++) {
+                x[k] = w[k];
+                p[3 + k] = length * w[k];
+            }
+            CHECK(!row->has_wo || tells(row, which, p, x), "function %d, wo of length %g", which, (double)length);
+        }
+    }
+    for (int i = 0; i < LENGTHS && row->has_wo; i++) { /* the wo of an array form */
+        const float u[3] = {0.1f, 0.2f, 0.3f};
+        float y[5][3];
+        float *const to[5] = {y[0], y[1], y[2], y[3], y[4]};
+        p[3] = 0;
+        p[4] = 0.6f * wrong_length[i];
+        p[5] = 0.8f * wrong_length[i];
+        asserted = 0;
+        row->sample_n(p, 3, u, u, to);
+        CHECK(asserted > 0, "array form, wo of length %g", (double)wrong_length[i]);
+        if (!row->pdf_n) continue;
+        asserted = 0;
+        row->pdf_n(p, 3, u, u, u, y[0]);
+        CHECK(asserted > 0, "densities in arrays, wo of length %g", (double)wrong_length[i]);
+    }
+    for (int i = 0; i < CAREFUL; i++) {
+        const mcs_vec3 w = careful(&state), wo = careful(&state);
+        const float good[3] = {w.x, w.y, w.z};
+        p[3] = wo.x;
+        p[4] = wo.y;
+        p[5] = wo.z;
+        for (int which = 0; which < 5; which++)
+            CHECK(!tells(row, which, p, good), "function %d tells of a careful caller's vectors", which);
+    }
+}
+
+/* Calls FUNCTION with a good vector `w` and with wrong ones. */
+#define TELLS(name, call)                                                       \
+    do {                                                                        \
+        mcs_vec3 w = unit;                                                      \
+        asserted = 0;                                                           \
+        (void)(call);                                                           \
+        CHECK(!asserted, name " tells of a unit vector");                       \
+        for (int i_ = 0; i_ < LENGTHS; i_++) {                                  \
+            const float l_ = wrong_length[i_];                                  \
+            w.x = l_ * unit.x;                                                  \
+            w.y = l_ * unit.y;                                                  \
+            w.z = l_ * unit.z;                                                  \
+            asserted = 0;                                                       \
+            (void)(call);                                                       \
+            CHECK(asserted > 0, name " says nothing of length %g", (double)l_); \
+        }                                                                       \
+    } while (0)
+#define TELLS_U(name, call)                                                 \
+    do {                                                                    \
+        float u = 0.3f;                                                     \
+        asserted = 0;                                                       \
+        (void)(call);                                                       \
+        CHECK(!asserted, name " tells of a good u");                        \
+        for (int i_ = 0; i_ < US; i_++) {                                   \
+            u = wrong_u[i_];                                                \
+            asserted = 0;                                                   \
+            (void)(call);                                                   \
+            CHECK(asserted > 0, name " says nothing of u = %g", (double)u); \
+        }                                                                   \
+    } while (0)
+
+static void check_vectors(void) {
+    const mcs_vec3 unit = {0.48f, 0.6f, 0.64f};
+    const mcs_ggx m = mcs_ggx_make(0.3f, 0.3f);
+    TELLS("mcs_frame_make", mcs_frame_make(w));
+    TELLS("mcs_reflect, wo", mcs_reflect(w, unit));
+    TELLS("mcs_reflect, h", mcs_reflect(unit, w));
+    TELLS("mcs_half, wo", mcs_half(w, unit));
+    TELLS("mcs_half, wi", mcs_half(unit, w));
+    TELLS("mcs_cos_d, wo", mcs_cos_d(w, unit));
+    TELLS("mcs_cos_d, wi", mcs_cos_d(unit, w));
+    TELLS("mcs_ggx_d", mcs_ggx_d(&m, w));
+    TELLS("mcs_ggx_g1", mcs_ggx_g1(&m, w));
+    TELLS("mcs_ggx_g2, wo", mcs_ggx_g2(&m, w, unit));
+    TELLS("mcs_ggx_g2, wi", mcs_ggx_g2(&m, unit, w));
+}
+
+static void check_tables(void) {
+    const mcs_vec3 unit = {0.48f, 0.6f, 0.64f};
+    const float weights[] = {1, 2, 3, 4, 5, 6, 7, 8};
+    const mcs_image image = mcs_image_make(weights, 4, 2, 1);
+    static double pwc_room[128];
+    mcs_pwc *pwc = (mcs_pwc *)(void *)pwc_room;
+    static double pwl_room[128];
+    mcs_pwl *pwl = (mcs_pwl *)(void *)pwl_room;
+    static double alias_room[128];
+    mcs_alias *alias = (mcs_alias *)(void *)alias_room;
+    static double e_room[128];
+    mcs_env *e = (mcs_env *)(void *)e_room;
+    static double window_room[128];
+    mcs_env_window *window = (mcs_env_window *)(void *)window_room;
+    CHECK(!mcs_pwc_build(pwc, sizeof pwc_room, weights, 8) && !mcs_pwl_build(pwl, sizeof pwl_room, weights, 7) &&
+              !mcs_alias_build(alias, sizeof alias_room, weights, 8) && !mcs_env_build(e, sizeof e_room, &image) &&
+              !mcs_env_window_build(window, sizeof window_room, e, 0, 1, 1, 2),
+          "builds");
+    TELLS_U("mcs_pwc_sample", mcs_pwc_sample(pwc, u));
+    TELLS_U("mcs_pwl_sample", mcs_pwl_sample(pwl, u));
+    TELLS_U("mcs_discrete_sample", mcs_discrete_sample(pwc, u));
+    TELLS_U("mcs_alias_sample", mcs_alias_sample(alias, u));
+    TELLS_U("mcs_env_sample, u1", mcs_env_sample(e, u, 0.5f));
+    TELLS_U("mcs_env_sample, u2", mcs_env_sample(e, 0.5f, u));
+    TELLS_U("mcs_env_window_sample", mcs_env_window_sample(window, e, u, u));
+    TELLS("mcs_env_pdf", mcs_env_pdf(e, w));
+    TELLS("mcs_env_texel", mcs_env_texel(e, w));
+    TELLS("mcs_env_invert", mcs_env_invert(e, w));
+    TELLS("mcs_env_window_pdf", mcs_env_window_pdf(window, e, w));
+}
+
+/* Turned there and back by float frames, 100 of them. */
+static void check_turns(void) {
+    uint64_t state = mcst.seed;
+    for (int i = 0; i < 500; i++) {
+        mcs_vec3 w = careful(&state);
+        for (int k = 0; k < TURNS; k++) {
+            const mcs_frame f = mcs_frame_make(careful(&state));
+            w = k % 2 ? mcs_to_local(&f, w) : mcs_to_world(&f, w);
+        }
+        asserted = 0;
+        mcs_sphere_pdf(w);
+        CHECK(!asserted, "|w|^2 - 1 = %g", (double)(w.x * w.x + w.y * w.y + w.z * w.z) - 1);
+    }
+}
+
+int main(int argc, char **argv) {
+    mcst_start(argc, argv);
+    mcst_group("mistakes of rows");
+    for (size_t i = 0; i < MCST_NROWS; i++)
+        if (mcst_case("%s", mcst_rows[i].name)) check_row(&mcst_rows[i]);
+    mcst_group("mistakes elsewhere");
+    if (mcst_case("functions of directions")) check_vectors();
+    if (mcst_case("tables and maps")) check_tables();
+    if (mcst_case("turned by 100 frames")) check_turns();
+    return mcst_finish();
+}
