@@ -960,7 +960,8 @@ MCSI_CORE MCS_(vec3) MCSI_(spread_direction)(mcs_vec3 w) {
 
 /* ==== [rng] uniform random numbers =============================================================================================
  * mcs_u01(bits)        (bits >> 8) 2^-24: the 2^24 multiples in [0,1), never 1 (bits * 2^-32 rounds to 1 for the top 128 values)
- * mcs_u01_open(bits)   ((bits >> 9) + 1/2) 2^-23: in (0,1), for maps with a logarithm at both ends
+ * mcs_u01_open(bits)   ((bits >> 9) + 1/2) 2^-23: in (0,1), the same from both ends. For maps of your own that have a logarithm or
+ *                      a quotient there, and where 1 - u must be such a number too; the maps of this header take 0 from mcs_u01
  * mcs_pcg32_*          O'Neill 2014, "PCG: a family of simple fast space-efficient statistically good algorithms", XSH-RR 64/32:
  *                      2^64 numbers per stream, 2^63 streams; advance(delta) jumps in 64 steps at most, delta modulo 2^64 (so -1
  *                      goes back)
@@ -1205,18 +1206,21 @@ MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed) 
  *   exponential(rate)     rate e^(-rate x), x >= 0              rate in [1e-18, 1e18]          1 log, 1 div
  *   truncexp(rate, m)     the same cut off at m                 rate in [0, 1e18] (0: uniform), m in [1e-18, 1e18]; rate m up to 80
  *                         counts as is, above the cut is far below 2^-24 and left out          1 log, 1 exp, 2 div
- *   normal(mean, sd)      by inversion, u = 0 taken as 2^-126   sd in [1e-18, 1e18]            1 log, 1 sqrt, 1 div, 1 exp (pdf)
- *   logistic(mean, s)     e^-z/(s (1+e^-z)^2), z=(x-mean)/s     s in [1e-18, 1e18]             1 log, 2 div; u = 0 as 2^-126
+ *   normal(mean, sd)      by inversion, |x - mean| < 5.5 sd     sd in [1e-18, 1e18]            1 log, 1 sqrt, 1 div, 1 exp (pdf)
+ *   logistic(mean, s)     e^-z/(s (1+e^-z)^2), z=(x-mean)/s     s in [1e-18, 1e18]             1 log, 2 div; |x - mean| < 17.4 s
  *   power(n)              (n+1) x^n on [0,1]                    n in [0, 1e9]                  1 pow, 1 div
  *   evenpower(n)          (n+1)/2 |x|^n on [-1,1]               n in [0, 1e9]                  1 pow, 1 div; signed root of 2u-1
  *
  * Accuracy: pdf of u and of x within 0.45 E (normal), 0.2 E (the others); x within 7 ulp (normal), 4 (the others) of the exact map
- * or of its scale. For unbounded densities prefer mcs_u01_open. Source: inverse CDFs, e.g. Pharr, Jakob, Humphreys 2023, appendix
- * A; evenpower is slide 13 of the lecture for n = 2. */
+ * or of its scale. normal and logistic are unbounded at u = 0, which stands for all of [0, 2^-24): they take u below 2^-25 as
+ * 2^-25, the middle of that cell, because any smaller number would be drawn as often, but stand for less and weigh more. Source:
+ * inverse CDFs, e.g. Pharr, Jakob, Humphreys 2023, appendix A; evenpower is slide 13 of the lecture for n = 2. */
 
 MCSI_CORE MCSI_F MCSI_(u_of)(MCSI_I ok, MCSI_F u) {
     return MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u, MCS_(set)(0.0f)), MCS_(set)(0.99999994f)), MCS_(set)(0.0f));
 }
+/* u of a map that is unbounded at 0: at least the middle of the first of 2^24 cells. */
+MCSI_CORE MCSI_F MCSI_(off_zero)(MCSI_F u) { return MCSI_(max)(u, MCS_(set)(2.98023224e-08f)); }
 MCSI_CORE MCS_(sample1) MCSI_(sample1)(MCSI_I ok, MCSI_F x, MCSI_F pdf) {
     MCS_(sample1) s;
     s.x = MCSI_(sel)(ok, x, MCS_(set)(0.0f));
@@ -1329,7 +1333,7 @@ MCSI_SAMPLE MCS_(sample1) MCS_(normal_sample)(MCSI_F mean, MCSI_F sd, MCSI_F u) 
     MCSI_F z;
     MCSI_REQUIRE(ok);
     u = MCSI_(unit)(u, &ok);
-    z = MCSI_(normal_quantile)(MCSI_(max)(u, MCS_(set)(FLT_MIN)));
+    z = MCSI_(normal_quantile)(MCSI_(off_zero)(u));
     return MCSI_(sample1)(ok, mean + sd * z, MCSI_(exp_neg)(-0.5f * z * z) * (0.398942280f / sd));
 }
 MCSI_FN MCSI_F MCS_(normal_pdf)(MCSI_F mean, MCSI_F sd, MCSI_F x) {
@@ -1349,7 +1353,7 @@ MCSI_SAMPLE MCS_(sample1) MCS_(logistic_sample)(MCSI_F mean, MCSI_F s, MCSI_F u)
     MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
     MCSI_F v;
     MCSI_REQUIRE(ok);
-    v = MCSI_(max)(MCSI_(unit)(u, &ok), MCS_(set)(FLT_MIN));
+    v = MCSI_(off_zero)(MCSI_(unit)(u, &ok));
     return MCSI_(sample1)(ok, mean + s * MCSI_(log)(v / (1.0f - v)), v * (1.0f - v) / s);
 }
 MCSI_FN MCSI_F MCS_(logistic_pdf)(MCSI_F mean, MCSI_F s, MCSI_F x) {

@@ -28,7 +28,7 @@ typedef struct {
 #define O_SQRT_2 1.414213562373095048801688724209698079L
 #define O_SQRT_2PI 2.506628274631000502415765284811045253L
 #define O_INV_SQRT_PI 0.564189583547756286948079451560772586L
-#define O_U_MIN 0x1p-126L /* the u that normal and logistic take for anything smaller */
+#define O_U_MIN 0x1p-25L /* the u that normal and logistic take for anything smaller */
 
 /* ---- vectors ---- */
 

@@ -162,7 +162,7 @@ static qd half_vector_density(const setting *s, q3 h) {
 }
 
 static void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2, q3 *x) {
-    const qd a = s->a, b = s->b, least = 0x1p-126;
+    const qd a = s->a, b = s->b, least = 0x1p-25;
     const qd d = 2 * u1 - 1, e = 2 * u2 - 1;
     *x = vec(0, 0, 0);
     switch (s->id) {

@@ -248,7 +248,7 @@ static double quantile(double p) {
 }
 static void exact_quantile(double p, double want[2]) { want[0] = quantile(p); }
 static void exact_normal(double u, double want[2]) {
-    const double z = quantile(fmax(u, 0x1p-126));
+    const double z = quantile(fmax(u, 0x1p-25));
     want[0] = (double)arg[0] + (double)arg[1] * z;
     want[1] = 0.39894228040143267794 * exp(-0.5 * z * z) / (double)arg[1];
 }
@@ -258,7 +258,7 @@ static void exact_exponential(double u, double want[2]) {
     want[1] = (double)arg[0] * (1 - u);
 }
 static void exact_logistic(double u, double want[2]) {
-    const double v = fmax(u, 0x1p-126);
+    const double v = fmax(u, 0x1p-25);
     want[0] = (double)arg[0] + (double)arg[1] * (u > 0.25 ? log1p((2 * u - 1) / (1 - u)) : log(v / (1 - v)));
     want[1] = v * (1 - v) / (double)arg[1];
 }
@@ -651,15 +651,19 @@ static void set_result(result *r, const char *name, enum unit unit, double limit
     r->nan_gives_0 = 0;
 }
 
-/* The support; unbounded densities reach as far as 2^-126 allows, 88 rates, 13 standard deviations. */
+/* The support; unbounded densities reach as far as 2^-25 allows, 17.4 scales, 5.5 standard deviations. */
 static void support(const mcst_row *of, double *lo, double *hi) {
-    const double a = (double)arg[0], b = (double)arg[1], far = 14 * b + 0x1p-23 * fabs(a);
+    const double a = (double)arg[0], b = (double)arg[1], noise = 0x1p-23 * fabs(a);
     *lo = 0, *hi = 1;
     switch (of->coord) {
     case MCST_TENT: *lo = -a, *hi = a; break;
     case MCST_HALFLINE: *hi = 17 / a; break;
     case MCST_TRUNCATED: *hi = b; break;
-    case MCST_WHOLELINE: *lo = a - (strcmp(of->name, "normal") ? 88 * b + far : far), *hi = a + 18 * b + far; break;
+    case MCST_WHOLELINE: {
+        const double far = (strcmp(of->name, "normal") ? 17.4 : 5.5) * b + noise;
+        *lo = a - far, *hi = a + far;
+        break;
+    }
     case MCST_EVENPOWER: *lo = -1; break;
     default: break;
     }

@@ -1,0 +1,76 @@
+/* The maps of one dimension over all of the 2^24 numbers that mcs_u01 gives: the estimator that they make at the ends of unbounded
+ * densities, and that they never turn back. */
+#define MCST_WIDE
+#include "registry.h"
+
+enum { CELLS = 1 << 24, BLOCK = 1 << 12, FORMS = 5 };
+static const char *const form_name[FORMS] = {"scalar", "4 wide", "8 wide", "16 wide", "array"};
+
+/* x and pdf of k 2^-24 for a block of k from `first` on, by one of the forms. */
+static void draw_block(const mcst_row *row, const float *p, int form, int first, float *x, float *pdf) {
+    static float u[BLOCK];
+    const int lanes = form < 4 ? (form ? 2 << form : 1) : 0;
+    float set[MCST_P * 16], out[5 * 16];
+    int i, k;
+    for (i = 0; i < BLOCK; i++) u[i] = (float)(first + i) * 0x1p-24f;
+    if (!lanes) {
+        float *const arrays[5] = {x, NULL, NULL, pdf, NULL};
+        row->sample_n(p, BLOCK, u, u, arrays);
+        return;
+    }
+    for (k = 0; k < MCST_P * lanes; k++) set[k] = p[k / lanes];
+    for (i = 0; i < BLOCK; i += lanes) {
+        row->fn[form].sample(set, u + i, u + i, out);
+        memcpy(x + i, out, (size_t)lanes * sizeof *x);
+        memcpy(pdf + i, out + 3 * lanes, (size_t)lanes * sizeof *pdf);
+    }
+}
+
+/* The integral of f(x) = e^(-|x| / width), estimated with every u = k h, h = 2^-24, once, is a sum of rectangles h F(u) with
+ * F(u) = f(x(u)) / pdf(u). F falls on [0,1/4] at least and rises on its mirror image. So k = 0 counts h F(h/2); those of
+ * k = 1 ... n - 1 lie between I, the integral of f from x(h) to x(n h), and I + h F(h); and those of k = 1 ... 2^24 - 1 between I,
+ * from x(h) to x(1 - h), and I + 2 h F(h). Near the middle F turns back by less than 4, which moves the sum by less than 8 h. Values
+ * x and pdf are within 7 ulp of |x| < 17.4 and 0.45 E of a density above 2e-8 of the peak, which moves F by
+ * 7 * 17.4 * 2^-23 + 0.45e-6 * 18.8 < 2.4e-5 of itself. The array form sums all k, the others the first block. */
+static void check_zero(const char *name, double width) {
+    const mcst_row *row = mcst_find(name);
+    const double h = 0x1p-24, rounding = 2.4e-5, turn = 8 * h;
+    const ld places[3] = {0x1p-25L, 0x1p-24L, BLOCK * 0x1p-24L};
+    double f[3], F[3];
+    float p[MCST_P];
+    int form, i;
+    mcst_fill(row, 0, 1, 1, 0, p);
+    for (i = 0; i < 3; i++) {
+        ld x[3];
+        row->truth.map(p, places[i], 0, x);
+        f[i] = exp(-fabs((double)x[0]) / width), F[i] = f[i] / (double)row->truth.pdf_u(p, places[i], 0);
+    }
+    for (form = 0; form < FORMS; form++) {
+        static float x[BLOCK], pdf[BLOCK];
+        const int all = form == FORMS - 1;
+        const double least = h * F[0] + (all ? 2 * width * (1 - f[1]) : width * (f[2] - f[1]));
+        const double most = least + (all ? 2 : 1) * h * F[1];
+        double sum = 0, largest = 0;
+        int k;
+        if (!mcst_case("%s: integral of e^-|x/%g|, %s", name, width, form_name[form])) continue;
+        for (k = 0; k < (all ? CELLS : BLOCK); k += BLOCK) {
+            draw_block(row, p, form, k, x, pdf);
+            for (i = 0; i < BLOCK; i++) {
+                const double part = h * exp(-fabs((double)x[i]) / width) / (double)pdf[i];
+                sum += part;
+                largest = fmax(largest, part);
+            }
+        }
+        CHECK(sum >= least * (1 - rounding) - turn, "%.9g, not within %.9g ... %.9g", sum, least, most);
+        CHECK(sum <= most * (1 + rounding) + turn, "%.9g, not within %.9g ... %.9g", sum, least, most);
+        CHECK(largest <= h * F[0] * (1 + rounding), "one sample gives %g of it, not %g", largest, h * F[0]);
+    }
+}
+
+int main(int argc, char **argv) {
+    mcst_start(argc, argv);
+    mcst_group("u = 0");
+    check_zero("normal", 1);
+    check_zero("logistic", 2);
+    return mcst_finish();
+}
