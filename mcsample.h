@@ -5,7 +5,7 @@
  *
  *     #include "mcsample.h"
  *
- *     mcs_pcg32 rng = mcs_pcg32_make(1, 0);                    // seed, stream
+ *     mcs_pcg32 rng = mcs_pcg32_for(1, pixel, sample);         // seed, and what the numbers are for
  *     mcs_ggx   m   = mcs_ggx_make(0.3f, 0.1f);                // alpha along x and y, prepared once per material
  *     mcs_vec3  wo  = {0.6f, 0.0f, 0.8f};                      // to the eye; the surface normal is +z
  *     float     u1  = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
@@ -50,8 +50,8 @@
  *
  * types        mcs_f mcs_i mcs_u mcs_vec2 mcs_vec3 mcs_sample1 mcs_sample2 mcs_dir mcs_brdf w; mcs_status; lanes mcs4_f mcs4_i
  *              mcs4_u mcs8_f mcs8_i mcs8_u mcs16_f mcs16_i mcs16_u; mcs_set mcs_load mcs_store w; mcs_lanes
- * [rng]        mcs_u01 mcs_u01_open w; mcs_pcg32 mcs_pcg32_make mcs_pcg32_next mcs_pcg32_float mcs_pcg32_advance mcs_pcg32_fill_n;
- *              mcs_philox4 mcs_philox mcs_philox_fill_n
+ * [rng]        mcs_u01 mcs_u01_open w; mcs_pcg32 mcs_pcg32_for mcs_pcg32_make mcs_pcg32_next mcs_pcg32_float mcs_pcg32_advance
+ *              mcs_pcg32_fill_n; mcs_philox4 mcs_philox mcs_philox_fill_n
  * [points]     mcs_sobol_bits mcs_sobol mcs_r2 mcs_hash w; mcs_sobol_n mcs_stratified mcs_latin
  * [1d]         densities per length on a line, w
  *              mcs_linear_sample mcs_linear_pdf mcs_linear_invert mcs_linear_sample_n           on [0,1], from a to b
@@ -965,6 +965,11 @@ MCSI_CORE MCS_(vec3) MCSI_(spread_direction)(mcs_vec3 w) {
  * mcs_pcg32_*          O'Neill 2014, "PCG: a family of simple fast space-efficient statistically good algorithms", XSH-RR 64/32:
  *                      2^64 numbers per stream, 2^63 streams; advance(delta) jumps in 64 steps at most, delta modulo 2^64 (so -1
  *                      goes back)
+ *   _for(seed, pixel, sample)  a generator for each pixel and sample, or for whatever else two numbers tell apart. Philox mixes all
+ *                      three into state and stream: those of neighbours have nothing in common. The one to use.
+ *   _make(seed, stream)  O'Neill's own start, bit for bit, for one generator alone. It does not mix: the first numbers of
+ *                      neighbouring seeds or streams, as (k, k), (1, k) or (k, 0) for pixel k, follow a pattern that is seen in
+ *                      pictures and that no debug build can recognise
  * mcs_philox           Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3", Philox4x32-10: four words that depend
  *                      on key and counter alone; no state to keep
  * fills                out[i] is the float of the i-th word: of the generator, or of word i mod 4 of block counter + i / 4 */
@@ -1060,6 +1065,13 @@ MCS_FN mcs_philox4 mcs_philox(uint64_t key, uint64_t counter_lo, uint64_t counte
     c.v[2] = (uint32_t)counter_hi, c.v[3] = (uint32_t)(counter_hi >> 32);
     mcsi_philox_rounds(key, c.v);
     return c;
+}
+MCS_FN mcs_pcg32 mcs_pcg32_for(uint64_t seed, uint64_t pixel, uint64_t sample) {
+    const mcs_philox4 c = mcs_philox(seed, pixel, sample);
+    mcs_pcg32 r;
+    r.state = (uint64_t)c.v[0] << 32 | c.v[1];
+    r.inc = ((uint64_t)c.v[2] << 32 | c.v[3]) | 1u;
+    return r;
 }
 #endif
 #ifndef MCS_NO_BATCH

@@ -676,7 +676,7 @@ static void picture_statistics(const pixel *p, size_t n, outcome *r) {
     r->error = sqrt(variance) / (double)n;
 }
 
-/* Every pixel has its own stream, seeded from (seed, pixel, strategy) by the counter-based generator, and owns all that it
+/* Every pixel has its own stream, seeded from (seed, pixel, strategy), and owns all that it
  * changes: the picture does not depend on the number of threads. */
 static outcome render(const options *o, const scene *s, const environment *e, strategy how, pixel *image) {
     size_t pixels = (size_t)o->w * o->h, i;
@@ -687,9 +687,8 @@ static outcome render(const options *o, const scene *s, const environment *e, st
     int watched = isatty(fileno(stderr));
     if (!watched) p.rows = -1;
     for (i = 0; i < pixels; i++) {
-        mcs_philox4 key = mcs_philox(o->seed, i, how);
         memset(&image[i], 0, sizeof image[i]);
-        image[i].rng = mcs_pcg32_make((uint64_t)key.v[0] << 32 | key.v[1], (uint64_t)key.v[2] << 32 | key.v[3]);
+        image[i].rng = mcs_pcg32_for(o->seed, i, how);
     }
     while (r.spp < o->spp && !(o->error > 0 && r.spp > 0 && r.error <= o->error * r.mean) &&
            !(o->seconds > 0 && r.spp > 1 && r.cpu >= o->seconds)) {

@@ -18,7 +18,7 @@
     X(ggx_g1) X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf)
 #define BITS_WORDS(X) X(hash) X(sobol_bits)
 #define BITS_SCALAR(X) \
-    X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n) \
+    X(pcg32_for) X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n) \
     X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) \
     X(discrete_sample) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) \
     X(alias_bytes) X(alias_build) X(alias_sample) X(alias_sample_bits) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) \
@@ -146,6 +146,10 @@ BITS_HD static void bits_put_array(float *out, int i, const void *a, size_t n) {
 }
 enum { BITS_LONG = 200, BITS_CELLS = 40 };
 
+FN(pcg32_for) {
+    const mcs_pcg32 r = mcs_pcg32_for(WORD2(11), WORD2(12), WORD(13));
+    bits_put_word2(out, 0, r.state), bits_put_word2(out, 2, r.inc);
+}
 FN(pcg32_make) {
     const mcs_pcg32 r = mcs_pcg32_make(WORD2(11), WORD(13));
     bits_put_word2(out, 0, r.state), bits_put_word2(out, 2, r.inc);

@@ -29,8 +29,8 @@ static void draw_block(const mcst_row *row, const float *p, int form, int first,
 /* The integral of f(x) = e^(-|x| / width), estimated with every u = k h, h = 2^-24, once, is a sum of rectangles h F(u) with
  * F(u) = f(x(u)) / pdf(u). F falls on [0,1/4] at least and rises on its mirror image. So k = 0 counts h F(h/2); those of
  * k = 1 ... n - 1 lie between I, the integral of f from x(h) to x(n h), and I + h F(h); and those of k = 1 ... 2^24 - 1 between I,
- * from x(h) to x(1 - h), and I + 2 h F(h). Near the middle F turns back by less than 4, which moves the sum by less than 8 h. Values
- * x and pdf are within 7 ulp of |x| < 17.4 and 0.45 E of a density above 2e-8 of the peak, which moves F by
+ * from x(h) to x(1 - h), and I + 2 h F(h). Near the middle F turns back by less than 4, which moves the sum by less than 8 h. x is
+ * within 7 ulp of |x| < 17.4 and pdf within 0.45 E of a density above 2e-8 of the peak, which moves F by
  * 7 * 17.4 * 2^-23 + 0.45e-6 * 18.8 < 2.4e-5 of itself. The array form sums all k, the others the first block. */
 static void check_zero(const char *name, double width) {
     const mcst_row *row = mcst_find(name);

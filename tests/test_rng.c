@@ -126,35 +126,130 @@ static void test_philox_known_answers(void) {
     }
 }
 
+/* 128 bits made of three words. */
+typedef void mixer(uint64_t a, uint64_t b, uint64_t c, uint32_t out[4]);
+static void mix_philox(uint64_t a, uint64_t b, uint64_t c, uint32_t out[4]) {
+    const mcs_philox4 block = mcs_philox(a, b, c);
+    memcpy(out, block.v, sizeof block.v);
+}
 /* One flipped input bit flips each of the 128 output bits with probability 1/2. Over T trials the count of flips of one output
  * bit by one input bit is binomial(T, 1/2); 192 input by 128 output bits are 24576 counts, and 6.5 standard deviations are
- * passed by one of them with probability 24576 * 8e-11 = 2e-6. */
-static void test_philox_avalanche(void) {
+ * passed by one of them with probability 24576 * 8e-11 = 2e-6. Returns how many do. */
+static int avalanche(mixer *mix) {
     enum { TRIALS = 256 };
     static int flips[192][128];
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 77);
-    int t, in, out;
+    int t, in, out, bad = 0;
+    memset(flips, 0, sizeof flips);
     for (t = 0; t < TRIALS; t++) {
         uint64_t w[3];
-        mcs_philox4 base;
+        uint32_t base[4], b[4];
         for (in = 0; in < 3; in++) {
             w[in] = mcs_pcg32_next(&r);
             w[in] = w[in] << 32 | mcs_pcg32_next(&r);
         }
-        base = mcs_philox(w[0], w[1], w[2]);
+        mix(w[0], w[1], w[2], base);
         for (in = 0; in < 192; in++) {
-            mcs_philox4 b;
             w[in >> 6] ^= (uint64_t)1 << (in & 63);
-            b = mcs_philox(w[0], w[1], w[2]);
+            mix(w[0], w[1], w[2], b);
             w[in >> 6] ^= (uint64_t)1 << (in & 63);
-            for (out = 0; out < 128; out++) flips[in][out] += (int)((b.v[out >> 5] ^ base.v[out >> 5]) >> (out & 31) & 1u);
+            for (out = 0; out < 128; out++) flips[in][out] += (int)((b[out >> 5] ^ base[out >> 5]) >> (out & 31) & 1u);
         }
     }
     for (in = 0; in < 192; in++)
-        for (out = 0; out < 128; out++) {
-            const double sd = fabs(flips[in][out] - TRIALS / 2.0) / sqrt(TRIALS / 4.0);
-            CHECK(sd <= 6.5, "input bit %d, output bit %d: %d of %d", in, out, flips[in][out], TRIALS);
+        for (out = 0; out < 128; out++) bad += !(fabs(flips[in][out] - TRIALS / 2.0) <= 6.5 * sqrt(TRIALS / 4.0));
+    return bad;
+}
+
+/* ---- generators of neighbours ---- */
+
+/* Ways to a generator for pixel and sample: that of the header, and those that were tried before it was there. */
+typedef mcs_pcg32 start(uint64_t seed, uint64_t pixel, uint64_t sample);
+static mcs_pcg32 start_stream(uint64_t seed, uint64_t pixel, uint64_t sample) { return mcs_pcg32_make(seed + sample, pixel); }
+static mcs_pcg32 start_seed(uint64_t seed, uint64_t pixel, uint64_t sample) { return mcs_pcg32_make(seed ^ pixel, sample); }
+
+/* The first four words of a generator, as 128 bits that depend on its arguments. */
+static start *mixed_by;
+static void mix_first_words(uint64_t a, uint64_t b, uint64_t c, uint32_t out[4]) {
+    mcs_pcg32 r = mixed_by(a, b, c);
+    int i;
+    for (i = 0; i < 4; i++) out[i] = mcs_pcg32_next(&r);
+}
+
+enum { NEIGHBOURS = 1 << 20, FAMILIES = 11 };
+static const char *const family_name[FAMILIES] = {"(k, k, 0)",     "(1, k << 40, 0)", "(1, k, 0)",         "(k, 0, 0)",
+                                                  "(1, 0, k)",     "(1, 0, k << 40)", "(0, k, k)",         "(k, k, k)",
+                                                  "(seed, -k, 7)", "(k << 44, 0, 0)", "(seed, x + y w, s)"};
+static void family(int i, uint64_t k, uint64_t a[3]) {
+    const uint64_t x = k & 127, y = k >> 7 & 127, s = k >> 14; /* a corner of a picture that is 1920 pixels wide, with 64 samples */
+    const uint64_t all[FAMILIES][3] = {{k, k, 0},
+                                       {1, k << 40, 0},
+                                       {1, k, 0},
+                                       {k, 0, 0},
+                                       {1, 0, k},
+                                       {1, 0, k << 40},
+                                       {0, k, k},
+                                       {k, k, k},
+                                       {mcst.seed, 0 - k, 7},
+                                       {k << 44, 0, 0},
+                                       {mcst.seed, x + y * 1920, s}};
+    memcpy(a, all[i], sizeof all[i]);
+}
+
+/* Over 2^20 neighbours: the first number of k beside that of k + 1, and the first beside the second of each, as pairs over 64 x 64
+ * cells, counts that are too even as unlikely as those that are too uneven, and their correlation: for independent numbers
+ * it is 0 with a standard deviation of 1/sqrt(n), n = 2^20 or 2^19. Returns the least p of the four, each doubled as it has two
+ * sides. */
+static double least_p(start *of, int which) {
+    static double count[4096], expect[4096];
+    static float u[2][NEIGHBOURS];
+    double least = 1;
+    int k, along;
+    for (k = 0; k < NEIGHBOURS; k++) {
+        uint64_t a[3];
+        mcs_pcg32 r;
+        family(which, (uint64_t)k, a);
+        r = of(a[0], a[1], a[2]);
+        u[0][k] = mcs_pcg32_float(&r), u[1][k] = mcs_pcg32_float(&r);
+    }
+    for (along = 0; along < 2; along++) {
+        const int step = along ? 2 : 1;
+        const double n = NEIGHBOURS / step;
+        double sum = 0, p;
+        for (k = 0; k < 4096; k++) count[k] = 0, expect[k] = n / 4096;
+        for (k = 0; k < NEIGHBOURS; k += step) {
+            const float v = u[0][k], w = along ? u[0][k + 1] : u[1][k];
+            count[(int)(v * 64) * 64 + (int)(w * 64)] += 1;
+            sum += 12 * ((double)v - 0.5) * ((double)w - 0.5);
         }
+        p = chi2_test(count, expect, 4096, NULL, NULL);
+        least = fmin(least, 2 * fmin(p, 1 - p));
+        least = fmin(least, erfc(fabs(sum) / sqrt(2 * n)));
+    }
+    return least;
+}
+
+static void test_neighbours(void) {
+    int i, off;
+    for (i = 0; i < FAMILIES; i++)
+        if (mcst_case("neighbours %s", family_name[i])) {
+            const double p = least_p(mcs_pcg32_for, i);
+            CHECK(p >= level, "p = %g", p);
+        }
+    if (mcst_case("avalanche of the first words")) {
+        mixed_by = mcs_pcg32_for;
+        off = avalanche(mix_first_words);
+        CHECK(off == 0, "%d of the 24576 counts are off", off);
+    }
+    if (mcst_case("the reference start fails these tests")) { /* what they are worth: mcs_pcg32_make is no substitute */
+        static const int visible[] = {0, 1, 2, 3, 10};
+        for (i = 0; i < (int)(sizeof visible / sizeof *visible); i++) {
+            const double p = fmin(least_p(start_stream, visible[i]), least_p(start_seed, visible[i]));
+            CHECK(p < level, "%s: p = %g", family_name[visible[i]], p);
+        }
+        mixed_by = start_stream;
+        CHECK(avalanche(mix_first_words) > 0, "its first words depend on all bits");
+    }
 }
 
 /* ---- integer to float ---- */
@@ -325,7 +420,9 @@ int main(int argc, char **argv) {
     if (mcst_case("float is u01 of the word")) test_pcg32_float();
     mcst_group("philox");
     if (mcst_case("known-answer vectors")) test_philox_known_answers();
-    if (mcst_case("avalanche")) test_philox_avalanche();
+    if (mcst_case("avalanche")) CHECK(avalanche(mix_philox) == 0, "some of the 24576 counts are off");
+    mcst_group("neighbouring generators");
+    test_neighbours();
     mcst_group("u01");
     test_u01();
 #ifndef MCS_NO_WIDE
