@@ -9,7 +9,7 @@ check() { # status, what
 mkdir -p "$dir" && rm -f "$dir"/*
 
 # Deviations are in standard errors of the difference to the most efficient strategy: one of five beyond 4 in 3000 runs. With 64
-# samples the few that hit the sun by its reflection leave the error of `uniform` anywhere from 0.008 to 0.036; with 256 it is known.
+# samples the few that hit the mirrored sun leave the error of `uniform` anywhere from 0.008 to 0.036; with 256 it is known.
 "$render" --strategy all --size 240x80 --spp 256 --out "$dir/all" >"$dir/all.txt"
 check $? "render: every strategy"
 awk '/^mean squared/ { exit } /^(uniform|cosine|brdf|env|mis|product) / { n++; if (NF != 10 || $10 > 4 || $10 < -4) print }

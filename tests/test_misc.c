@@ -451,6 +451,47 @@ static mcs_stat stat_tree(int from, int to) {
 
 static int same_stat(mcs_stat a, mcs_stat b) { return a.n == b.n && a.mean == b.mean && a.m2 == b.m2; }
 
+/* Any five of these values, each with either sign: mean and sum of squares as sums in long double, of values divided by 2^600, give
+ * them; sums of squares above DBL_MAX are DBL_MAX. Rounding: 5 steps of the mean, each to 2 u of the largest value, and of m2, each
+ * to 6 u of the terms, which share a sign. A mean may be off by what its terms cancel, and m2 by its square root's part in that. */
+static void check_huge(const mcs_stat *s, const double *x, int n) {
+    const ld u = 0x1p-53L, down = ldexpl(1, -600);
+    ld mean = 0, m2 = 0, size = 0, off;
+    int i;
+    for (i = 0; i < n; i++) mean += (ld)x[i] * down / n, size = fmaxl(size, fabsl((ld)x[i]) * down);
+    for (i = 0; i < n; i++) m2 += ((ld)x[i] * down - mean) * ((ld)x[i] * down - mean);
+    CHECK(s->n == n && fabsl((ld)s->mean * down - mean) <= 10 * u * size, "%g %g %g ...: mean %g, not %Lg 2^600", x[0], x[1], x[2],
+          s->mean, mean);
+    off = 30 * u * m2 + 2 * (10 * u * size) * sqrtl(n * m2) + n * (10 * u * size) * (10 * u * size);
+    if ((m2 - off) / down < DBL_MAX * down)
+        CHECK(s->m2 >= 0 && fabsl((ld)s->m2 * down * down - m2) <= off + 0x1p-1074L, "%g %g %g ...: m2 %g, not %Lg 2^1200", x[0],
+              x[1], x[2], s->m2, m2);
+    else CHECK(s->m2 == DBL_MAX, "%g %g %g ...: m2 %g, not DBL_MAX", x[0], x[1], x[2], s->m2);
+    CHECK(mcs_stat_variance(s) <= DBL_MAX && mcs_stat_error(s) <= DBL_MAX, "variance %g", mcs_stat_variance(s));
+}
+static void test_huge_stat(void) {
+    static const double sizes[] = {0, 1, 1e139, 1e140, 1e150, 1.3e154, 1e200, 1e299, 1e300, 1e307, 1e308, DBL_MAX};
+    enum { SIZES = (int)(sizeof sizes / sizeof *sizes) };
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 141);
+    int i, k;
+    for (i = 0; i < 100000; i++) {
+        mcs_stat s, parts[2];
+        double x[5];
+        const int cut = i % 6;
+        memset(&s, 0, sizeof s);
+        parts[0] = parts[1] = s;
+        for (k = 0; k < 5; k++) {
+            const double size = sizes[mcs_pcg32_next(&r) % SIZES];
+            x[k] = mcs_pcg32_next(&r) & 1 ? size : -size;
+            mcs_stat_add(&s, x[k]);
+            mcs_stat_add(&parts[k >= cut], x[k]);
+        }
+        check_huge(&s, x, 5);
+        s = mcs_stat_merge(parts[0], parts[1]);
+        check_huge(&s, x, 5);
+    }
+}
+
 static void test_stat_values(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 127);
     int i;
@@ -503,6 +544,7 @@ static void test_stat_values(void) {
         for (i = 0; i < 1000; i++) mcs_stat_add(&s, 0.1);
         CHECK(s.mean == 0.1 && s.m2 == 0 && mcs_stat_error(&s) == 0, "mean %g, sum of squares %g", s.mean, s.m2);
     }
+    if (mcst_case("values up to DBL_MAX")) test_huge_stat();
 }
 
 /* x^2 over [0,1]: integral 1/3, variance 4/45, kurtosis 15/7. Over R repetitions, (R - 1) var(means) N / (4/45) is chi-square with
