@@ -1450,20 +1450,27 @@ static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
     }
 }
 
+static int has_fine(const sampler *d) {
+    uint32_t k, fine = 0;
+    for (k = 0; k < 2 * d->m->rows * d->m->rows; k++) fine += mcsi_product_fine(d->p)[k] > 0;
+    return fine > 0;
+}
+
 static void test_arrays(void) {
     int i;
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 72);
     mcst_group("product, arrays");
-    for (i = 0; i < 5; i++) {
+    for (i = 0; i < 6; i++) { /* the last one has fine grids and no share for the lobe: then arrays go through them, too */
         scene m;
         surface s;
         sampler d;
-        static const int of[] = {0, 2, 8, 1, 2};
+        static const int of[] = {0, 2, 8, 1, 2, 4};
         if (!mcst_case("%s%s", lobes[of[i]].name, i == 3 ? ", black" : i == 4 ? ", constant" : "")) continue;
         m = scene_make("sun", 64, 32, i == 3 ? v_black : i == 4 ? v_constant : v_sun, 16);
         s = surface_make(normals[i], local_wo(0.5, 0.1), lobes[of[i]]);
         d = sampler_make(&m, &s, 1);
         CHECK((i == 2) == (d.share > 0), "share %g", d.share);
+        CHECK((i == 2 || i == 5) == has_fine(&d), "grids of fine tiles");
         check_arrays(&d, &rng);
         sampler_free(&d);
         scene_free(&m);

@@ -1,0 +1,288 @@
+/* Values that no sampler test looks at closely: D, G1 and G2 of GGX, the cone of a sine, what a wide alpha magnifies, what the
+ * length of a half-vector must not do, the detours' sine and cosine, the steps of R2, mixtures with a bad share, the row of a
+ * direction beside a border, cells that only a guard keeps. All against long double. EPS = 2^-24 is half an ulp of 1. */
+#include "arena.h"
+#include "registry.h"
+
+#define EPS 0x1p-24
+
+static void random_direction(uint64_t *state, float lowest, float w[3]) { /* cosines from 1 to `lowest`, evenly in the logarithm */
+    float u, v;
+    double s;
+    mcst_uniform(state, 1, &u, &v);
+    w[2] = (float)pow((double)lowest, (double)u);
+    s = sqrt((1 - (double)w[2]) * (1 + (double)w[2]));
+    w[0] = (float)(s * cos(6.283185307179586 * (double)v)), w[1] = (float)(s * sin(6.283185307179586 * (double)v));
+}
+
+static mcs_vec3 vec3(const float *w) {
+    mcs_vec3 v;
+    v.x = w[0], v.y = w[1], v.z = w[2];
+    return v;
+}
+
+static ld relative(float got, ld want) { return fabsl((ld)got - want) / want; }
+
+/* ---- GGX ---- */
+
+static ld ggx_t(ld ax, ld ay, o_vec3 w) { return sqrtl(ax * ax * w.x * w.x + ay * ay * w.y * w.y + w.z * w.z); }
+
+/* Roundings, in EPS. t: a product and its square 3, two sums 2, half of it for the root and 1 more: 3.5. G1: 2 z/(z + t): a sum and
+ * a quotient more, 5.5. G2: products z t 1, a sum, two products above it, a quotient: 8.5. D: 1/alpha and the product with it 2,
+ * squared 5, two sums 7; |h|^2 4, a quotient 1: 12 of q, 25 of its square; 1/pi, two 1/alpha, two products and one more 6: 31. */
+static void ggx_values(float ax, float ay, uint64_t seed) {
+    const mcs_ggx m = mcs_ggx_make(ax, ay);
+    const ld a = (ld)ax, b = (ld)ay;
+    float o[3], i[3];
+    int k;
+    for (k = 0; k < 2000; k++) {
+        random_direction(&seed, 1e-6f, o), random_direction(&seed, 1e-6f, i);
+        {
+            const o_vec3 wo = mcst_o3(o), wi = mcst_o3(i);
+            const ld to = ggx_t(a, b, wo), ti = ggx_t(a, b, wi), d = o_ggx_d(a, b, wo), g1 = 2 * wo.z / (wo.z + to),
+                     g2 = 2 * wo.z * wi.z / (wo.z * ti + wi.z * to);
+            const float got_d = mcs_ggx_d(&m, vec3(o)), got1 = mcs_ggx_g1(&m, vec3(o)), got2 = mcs_ggx_g2(&m, vec3(o), vec3(i));
+            if (d < (ld)FLT_MAX && d > (ld)FLT_MIN)
+                CHECK(relative(got_d, d) <= 32 * EPS, "D at %g %g %g: %g, not %Lg", (double)o[0], (double)o[1], (double)o[2],
+                      (double)got_d, d);
+            CHECK(relative(got1, g1) <= 6 * EPS, "G1 at %g %g %g: %g, not %Lg", (double)o[0], (double)o[1], (double)o[2],
+                  (double)got1, g1);
+            CHECK(relative(got2, g2) <= 9 * EPS, "G2 at %g %g %g, %g %g %g: %g, not %Lg", (double)o[0], (double)o[1], (double)o[2],
+                  (double)i[0], (double)i[1], (double)i[2], (double)got2, g2);
+        }
+        i[2] = -i[2];
+        CHECK(mcs_ggx_d(&m, vec3(i)) == 0 && mcs_ggx_g1(&m, vec3(i)) == 0 && mcs_ggx_g2(&m, vec3(o), vec3(i)) == 0 &&
+                  mcs_ggx_g2(&m, vec3(i), vec3(o)) == 0,
+              "below the surface, %g %g %g: D %g, G1 %g, G2 %g", (double)i[0], (double)i[1], (double)i[2],
+              (double)mcs_ggx_d(&m, vec3(i)), (double)mcs_ggx_g1(&m, vec3(i)), (double)mcs_ggx_g2(&m, vec3(o), vec3(i)));
+    }
+}
+
+/* Half-vectors within a slope of 10 of the normal, where a wide alpha magnifies the rounding of what it stretches: the density of
+ * u, within E of the header, which is 1e-6 at least. */
+static void wide_alphas(const mcst_row *row, float ax, float ay) {
+    const int bounded = strstr(row->name, "bounded") != NULL;
+    uint64_t seed = mcst_seed_for(row->name, "wide", ax > ay);
+    int k, tried = 0;
+    for (k = 0; k < 20000; k++) {
+        float p[MCST_P], u[2], v[2], out[5];
+        double slope, turn;
+        o_vec2 at;
+        o_vec3 h;
+        ld want;
+        mcst_uniform(&seed, 1, &v[0], &v[1]);
+        p[0] = ax, p[1] = ay, p[2] = 0;
+        random_direction(&seed, 1e-4f, p + 3);
+        slope = pow(10, 2.5 * (double)v[0] - 1.5), turn = 6.283185307179586 * (double)v[1];
+        h = o_unit(o_vec((ld)(slope * cos(turn)), (ld)(slope * sin(turn)), 1));
+        if (bounded) at = o_ggx_bounded_h_invert((ld)ax, (ld)ay, mcst_o3(p + 3), h);
+        else at = o_ggx_vndf_h_invert((ld)ax, (ld)ay, mcst_o3(p + 3), h);
+        u[0] = (float)at.x, u[1] = (float)at.y;
+        if (!(u[0] >= 0 && u[0] < 1 && u[1] >= 0 && u[1] < 1)) continue; /* no half-vector of this wo */
+        row->fn[0].sample(p, &u[0], &u[1], out);
+        want = row->truth.pdf_u(p, (ld)u[0], (ld)u[1]);
+        if (!(out[3] > 0 && want > 0)) continue; /* lost */
+        tried++;
+        CHECK(relative(out[3], want) <= 1e-6L, "wo %g %g %g, u %a %a: %.9g, not %.9Lg", (double)p[3], (double)p[4], (double)p[5],
+              (double)u[0], (double)u[1], (double)out[3], want);
+    }
+    CHECK(tried >= 5000, "%d half-vectors", tried);
+}
+
+/* ---- Ashikhmin and Shirley ---- */
+
+/* The half-vector is up to 4 ulp off unit length, and 2 (h.wo) h - wo would carry twice that into wi, across it as well as along.
+ * Where |h|^2 is off by 2 EPS or more, its correction is right to the rounding of |h|^2 and of 2 - |h|^2, EPS each, which does not
+ * depend on how far off |h|^2 is: the regression of the error of wi on what the length alone would do is far below 1/2; it is 1
+ * without correction. */
+static void reflection_at_rounded_half(void) {
+    uint64_t seed = mcst_seed_for("ashikhmin", "length", 0);
+    double xx = 0, xy = 0;
+    int k, n = 0;
+    for (k = 0; k < 1500000; k++) {
+        const float wo[3] = {0.6f * 0.70710678f, 0.8f * 0.70710678f, 0.70710678f};
+        float u[4];
+        mcs_ashikhmin m;
+        mcs_vec3 h;
+        mcs_brdf s;
+        o_vec3 exact, unit, across;
+        ld off, c, sine, err;
+        mcst_uniform(&seed, 2, &u[0], &u[2]);
+        u[0] = 1 - u[0] * u[0];
+        if (!(u[0] < 1)) continue;
+        m = mcs_ashikhmin_make((float)pow(10, 5 * (double)u[1]), (float)pow(10, 5 * (double)u[3] - 2));
+        h = mcs_ashikhmin_h_sample(&m, u[0], u[2]).w;
+        off = o_dot(o_v3(h.x, h.y, h.z), o_v3(h.x, h.y, h.z)) - 1;
+        if (fabsl(off) < 2 * EPS) continue;
+        s = mcs_ashikhmin_sample(&m, vec3(wo), u[0], u[2]);
+        if (!(s.pdf > 0)) continue;
+        unit = o_unit(o_v3(h.x, h.y, h.z)), exact = o_reflect(mcst_o3(wo), unit), c = o_dot(unit, exact);
+        across = o_add(unit, o_scale(-c, exact)), sine = o_len(across);
+        if (sine * c < 0.3L) continue; /* nothing goes across */
+        err = o_dot(o_add(o_v3(s.wi.x, s.wi.y, s.wi.z), o_scale(-1, exact)), across) / sine;
+        n++, xx += (double)(2 * c * sine * off * (2 * c * sine * off)), xy += (double)(2 * c * sine * off * err);
+    }
+    CHECK(n >= 1000, "%d half-vectors of that length", n);
+    CHECK(fabs(xy / xx) <= 0.5, "%g of the rounding of the length goes into the direction", xy / xx);
+}
+
+/* ---- one number ---- */
+
+/* k = 1 - sqrt(1 - s) as s/(1 + sqrt(1 - s)): 1 - s EPS, of which its root has half and 1 more; that is half of the sum at most,
+ * whose rounding is 1 more, the quotient 1: 2.75. */
+static void cones(void) {
+    uint64_t seed = mcst_seed_for("cone", "sine", 0);
+    float u, v;
+    int i;
+    for (i = 0; i < 100000; i++) {
+        float s, k;
+        ld want;
+        mcst_uniform(&seed, 1, &u, &v);
+        s = i % 2 ? u : (float)pow(10, -30 * (double)u), k = mcs_cone_from_sin2(s);
+        want = (ld)s / (1 + sqrtl(1 - (ld)s));
+        if (s > 0) CHECK(relative(k, want) <= 3 * EPS, "sin^2 = %g: %g, not %Lg", (double)s, (double)k, want);
+    }
+    CHECK(mcs_cone_from_sin2(0) == 0 && mcs_cone_from_sin2(-1) == 0 && mcs_cone_from_sin2(1) == 1 && mcs_cone_from_sin2(2) == 1,
+          "at the ends, and beyond: %g %g %g %g", (double)mcs_cone_from_sin2(0), (double)mcs_cone_from_sin2(-1),
+          (double)mcs_cone_from_sin2(1), (double)mcs_cone_from_sin2(2));
+}
+
+/* To 1e-12, as its comment says: two series to x^13 and x^14 on an eighth of a turn leave x^15/15! = 2e-14, arguments 4e-16. */
+static void detour_angles(void) {
+    int i;
+    for (i = 0; i <= 100000; i++) {
+        const double t = i / 100000.0;
+        double s, c;
+        ld sine, cosine;
+        mcsi_sincos_d(t, &s, &c);
+        o_sincos2pi((ld)t, &sine, &cosine);
+        CHECK(fabsl((ld)s - sine) <= 1e-12L && fabsl((ld)c - cosine) <= 1e-12L, "t = %g: off by %Lg and %Lg", t, (ld)s - sine,
+              (ld)c - cosine);
+    }
+}
+
+/* Steps 1/g and 1/g^2, g^3 = g + 1: each is a multiple of 2^-32, off by half of one, and a coordinate is cut to 2^-24. */
+static void r2_steps(void) {
+    ld g = 1.3L;
+    uint32_t i;
+    for (i = 0; i < 30; i++) g -= (g * g * g - g - 1) / (3 * g * g - 1);
+    for (i = 1; i <= 4096; i++) {
+        const mcs_vec2 first = mcs_r2(0, 5), p = mcs_r2(i, 5);
+        const ld x = (ld)p.x - (ld)first.x - (ld)i / g, y = (ld)p.y - (ld)first.y - (ld)i / (g * g);
+        const ld bound = (ld)i * 0x1p-33L + 0x1p-24L;
+        CHECK(fabsl(x - rintl(x)) <= bound && fabsl(y - rintl(y)) <= bound, "point %u: off by %Lg and %Lg", i, x - rintl(x),
+              y - rintl(y));
+    }
+}
+
+static void bad_shares(void) {
+    CHECK(mcs_mix_pdf(-0.5f, 1, 2) == 2 && mcs_mix_pdf(-INFINITY, 1, 2) == 2 && mcs_mix_pdf(1.5f, 1, 2) == 1 &&
+              mcs_mix_pdf(INFINITY, 1, 2) == 1,
+          "shares outside [0,1]: %g %g %g %g", (double)mcs_mix_pdf(-0.5f, 1, 2), (double)mcs_mix_pdf(-INFINITY, 1, 2),
+          (double)mcs_mix_pdf(1.5f, 1, 2), (double)mcs_mix_pdf(INFINITY, 1, 2));
+}
+
+/* ---- tables ---- */
+
+/* Beside 3e38 the halves of 1e-45 round to 0, yet no cell that has light may lose it. */
+static void tiny_cells(void) {
+    const float f[] = {3e38f, 0, 0x1p-149f, 0x1p-149f, 0, 0};
+    arena a = arena_make(mcs_pwl_bytes(5));
+    mcs_pwl *t = (mcs_pwl *)(void *)a.at;
+    int i;
+    CHECK(mcs_pwl_build(t, a.bytes, f, 5) == MCS_OK, "build");
+    for (i = 0; i < 5; i++)
+        CHECK((mcs_pwl_pdf(t, ((float)i + 0.5f) / 5) > 0) == (i < 4), "cell %d: density %g", i,
+              (double)mcs_pwl_pdf(t, ((float)i + 0.5f) / 5));
+    arena_free(&a);
+}
+
+/* ---- rows of a map ---- */
+
+/* 1 - cos of border k of h, from the nearer pole. */
+static ld border(uint32_t k, uint32_t h) {
+    const ld s = sinl(0.5L * O_PI * (ld)k / (ld)h);
+    return 2 * s * s;
+}
+
+/* Directions beside the borders of rows: 1 - cos(theta) of a float direction is known to 4 EPS (two products and a sum 2, 1 + |z|
+ * 1, a quotient 1) and the error of its length, the guess from the angle only to 2^-23 turns: a row off that is not set right
+ * shows. */
+static void rows_beside_borders(uint32_t h) {
+    mcs_image image;
+    float *light = (float *)malloc(2 * (size_t)h * sizeof *light);
+    arena a = arena_make(mcs_env_bytes(2, h));
+    mcs_env *e = (mcs_env *)(void *)a.at;
+    uint64_t seed = mcst_seed_for("env", "rows", h);
+    uint32_t k;
+    int i, beside = 0;
+    if (!light) exit(2);
+    for (k = 0; k < 2 * h; k++) light[k] = (float)(1 + k % 3);
+    image = mcs_image_make(light, 2, h, 1);
+    CHECK(mcs_env_build(e, a.bytes, &image) == MCS_OK, "build");
+    for (i = 0; i < 300000; i++) {
+        float u, v, w[3];
+        double theta;
+        ld t, slack;
+        uint32_t m, row;
+        o_vec3 o;
+        mcst_uniform(&seed, 1, &u, &v);
+        k = 1 + (uint32_t)(mcst_mix(&seed) % (h - 1));
+        theta = ST_PI * k / h, theta += fmin(theta, ST_PI - theta) * ldexp((double)u - 0.5, -18 - (int)(mcst_mix(&seed) % 6));
+        w[0] = (float)(sin(theta) * cos(6.283185307179586 * (double)v));
+        w[1] = (float)(sin(theta) * sin(6.283185307179586 * (double)v));
+        w[2] = (float)cos(theta);
+        o = o_v3(w[0], w[1], fabsf(w[2]));
+        t = o_one_minus_cos(o), slack = t * (4 * EPS + fabsl(o_dot(o, o) - 1));
+        m = w[2] < 0 ? h - k : k; /* from the nearer pole the border that it lies beside, or the one before */
+        if (2 * m > h) m = h - m; /* across the equator */
+        if (fabsl(t - border(m, h)) <= slack || 2 * m == h) continue;
+        if (t < border(m, h)) m--;
+        beside++;
+        row = mcs_env_texel(e, vec3(w)).row;
+        CHECK(row == (w[2] < 0 ? h - 1 - m : m), "(%a, %a, %a): row %u, not %u", (double)w[0], (double)w[1], (double)w[2], row,
+              w[2] < 0 ? h - 1 - m : m);
+    }
+    CHECK(beside >= 10000, "%d directions", beside);
+    /* What holds whatever the angle's rounding is: the angle only has to be right to 2^-23 turns, 1 - cos says which row it is. */
+    for (i = 0; i < 200000; i++) {
+        const uint32_t last = (h - 1) / 2, m = (uint32_t)(mcst_mix(&seed) % (last + 1));
+        const int down = i & 1, off = (int)(mcst_mix(&seed) % 3) - 1;
+        float u, v, t;
+        uint32_t row;
+        mcst_uniform(&seed, 1, &u, &v);
+        t = (float)(border(m, h) + (fminl(border(m + 1, h), 1) - border(m, h)) * (ld)(i & 2 ? u * 0x1p-6f : 1 - u * 0x1p-6f));
+        if (!((ld)t > border(m, h) && ((ld)t < border(m + 1, h) || m == last))) continue; /* beyond a border */
+        u = (float)(acos(1 - (double)t) / (2 * ST_PI) + off * 0x1p-23), u = u > 0 ? u : 0;
+        row = mcsi_env_row_at(e, down ? -t : t, u);
+        CHECK(row == (down ? h - 1 - m : m), "1 - cos %a, %d of 2^-23 turns off: row %u, not %u", (double)t, off, row,
+              down ? h - 1 - m : m);
+    }
+    free(light);
+    arena_free(&a);
+}
+
+int main(int argc, char **argv) {
+    static const uint32_t heights[] = {5, 64, 1000, 4099};
+    static const char *const visible[] = {"ggx_vndf_h", "ggx_vndf", "ggx_bounded_h", "ggx_bounded"};
+    size_t i;
+    mcst_start(argc, argv);
+    mcst_group("values, GGX");
+    for (i = 0; i < MCST_COUNT(mcst_grid_alpha); i++)
+        if (mcst_case("D, G1, G2 of %g %g", (double)mcst_grid_alpha[i][0], (double)mcst_grid_alpha[i][1]))
+            ggx_values(mcst_grid_alpha[i][0], mcst_grid_alpha[i][1], mcst_seed_for("ggx", "values", i));
+    for (i = 0; i < 8; i++)
+        if (mcst_case("%s of a wide alpha along %s", visible[i / 2], i % 2 ? "y" : "x"))
+            wide_alphas(mcst_find(visible[i / 2]), i % 2 ? 1.0f : 100.0f, i % 2 ? 100.0f : 0.5f);
+    mcst_group("values, others");
+    if (mcst_case("Ashikhmin and Shirley: the length of h")) reflection_at_rounded_half();
+    if (mcst_case("cone of a sine")) cones();
+    if (mcst_case("sine and cosine of the detours")) detour_angles();
+    if (mcst_case("steps of R2")) r2_steps();
+    if (mcst_case("mixtures with a bad share")) bad_shares();
+    if (mcst_case("piecewise linear cells of 1e-45 beside 3e38")) tiny_cells();
+    mcst_group("values, rows of a map");
+    for (i = 0; i < MCST_COUNT(heights); i++)
+        if (mcst_case("%u rows", heights[i])) rows_beside_borders(heights[i]);
+    return mcst_finish();
+}
