@@ -28,7 +28,7 @@ static void array_of_one(const float *p, size_t n, const float *u1, const float 
 
 typedef struct {
     double p;   /* the least p-value of chi-square and Kolmogorov-Smirnov */
-    double gap; /* |mass - 1| in tolerances; 0 where it is not resolved */
+    double gap; /* |mass - 1| in tolerances */
 } verdict;
 
 static verdict judge(const mcst_row *row, const float *p, uint64_t seed) {
@@ -40,7 +40,7 @@ static verdict judge(const mcst_row *row, const float *p, uint64_t seed) {
     mcst_fit_xy(row, p, SAMPLES, seed, &fit);
     v.p = mcst_fit_worst(&fit);
     m = mcst_mass_of(row, p);
-    v.gap = m.resolved ? fabs(m.integral - m.lit) / m.tolerance : 0;
+    v.gap = fabs(m.integral - m.lit) / m.tolerance;
     return v;
 }
 
