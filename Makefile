@@ -61,6 +61,9 @@ cross: ## the same bits on other machines: cross compilers and qemu-user where i
 analyze: ## valgrind, memory sanitizer, -fanalyzer, clang-tidy, cppcheck, where installed; ONLY=name picks one
 	@BUILD='$(BUILD)' sh tests/analyze.sh $(ONLY)
 
+mutants: ## does a test fail for every slip in tests/mutants.txt? ten minutes; ONLY='name...' picks some
+	@CC='$(CC)' BUILD='$(BUILD)' sh tests/mutants.sh $(JOBS) $(ONLY)
+
 examples: ## build and run every numbered example, build the renderer and check its means and what it refuses
 	@echo '$(CC): $(FLAGS)'
 	+@$(SUBMAKE) example-binaries $(RENDER)
@@ -165,4 +168,4 @@ $(BENCH)/%: tests/bench/%.c $(BENCH_HEADERS)
 	$(CC) $(BENCH_FLAGS) $< -o $@ $(LIBS)
 
 FORCE:
-.PHONY: test stress cross analyze examples demo hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries
+.PHONY: test stress cross analyze mutants examples demo hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries

@@ -59,7 +59,7 @@ static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
          * fraction of the lobe's width; wo.h is about the larger of wo.z and the width */
         const double width = row->coord == MCST_SLOPES ? fmin(m.a, m.b) : 1 / sqrt(fmax(m.a, m.b) + 1);
         m.noise /= width;
-        if (strcmp(row->name, "phong") != 0) m.noise /= fmax(m.wo[2], width); /* Phong's lobe is of directions, not of half-vectors */
+        if (strcmp(row->name, "phong") != 0) m.noise /= fmax(m.wo[2], width); /* Phong's lobe is of directions */
         m.frame = MCST_HALF;
         if (!strcmp(row->name, "phong")) {
             const double *z = m.ez;

@@ -46,15 +46,15 @@ typedef struct {
 
 static int mcst_masses_skipped;
 
-/* Where the rounding of a point moves it by more than a fifth of the lobe's width there is nothing to integrate: a float or two hold
- * all of it. Such a set is no case; it is named and counted. */
+/* Where the rounding of a point moves it by more than a fifth of the lobe's width there is nothing to integrate: a float or two
+ * hold all of it. Such a set is no case; it is named and counted. */
 static inline int mcst_mass_resolved(const mcst_row *row, const float *p) {
     const double noise = mcst_map_make(row, p).noise;
     if (noise <= 0.2) return 1;
     mcst_masses_skipped++;
     if (!mcst.list && !mcst.filter)
-        printf("SKIPPED: mass of %s %g %g, wo %g %g %g: rounding moves a point by %.1f widths of the lobe\n", row->name, (double)p[0],
-               (double)p[1], (double)p[3], (double)p[4], (double)p[5], noise);
+        printf("SKIPPED: mass of %s %g %g, wo %g %g %g: rounding moves a point by %.1f widths of the lobe\n", row->name,
+               (double)p[0], (double)p[1], (double)p[3], (double)p[4], (double)p[5], noise);
     return 0;
 }
 

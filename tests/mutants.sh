@@ -4,7 +4,7 @@
 # A mutant that no case fails for has survived, and counts as failed. So do a text that the header does not hold as often as the
 # record says, a mutant that does not compile, and cases that fail (or do not exist) with the header as it is. Stored hashes
 # (test_bits) are not asked: they notice any change, wrong or not.
-# Variables: CC, BUILD. Everything lies in BUILD/mutants; mutants JOBS at a time. NAME: only these records.
+# JOBS 0: only whether the list fits the header. Variables: CC, BUILD. Everything lies in BUILD/mutants; mutants JOBS at a time. NAME: only these records.
 set -u
 jobs=$1
 shift
@@ -115,7 +115,7 @@ worker() {
     done <"$dir/names"
 }
 
-baseline
+[ "$jobs" = 0 ] || baseline
 while [ "$jobs" -gt 0 ]; do
     worker &
     jobs=$((jobs - 1))

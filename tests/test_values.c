@@ -89,6 +89,50 @@ static void wide_alphas(const mcst_row *row, float ax, float ay) {
     CHECK(tried >= 5000, "%d half-vectors", tried);
 }
 
+/* Alphas count as the nearer end of [1e-7, 1e4]. D of the normal is 1/(pi ax ay): 1/pi, two reciprocals and two products, of alphas
+ * that are floats (1e-7 is not: 1 more): 6. */
+static void ends_of_alpha(void) {
+    static const float alpha[][2] = {{1e-7f, 1e-7f}, {1e-9f, 1e-7f}, {0x1p-149f, 1e-7f}, {3e-7f, 3e-7f}, {5e-6f, 5e-6f},
+                                     {1e4f, 1e4f},   {1e5f, 1e4f},   {FLT_MAX, 1e4f},    {5e3f, 5e3f},   {INFINITY, 1e4f}};
+    const mcs_vec3 up = {0, 0, 1};
+    size_t i;
+    for (i = 0; i < MCST_COUNT(alpha); i++) {
+        const mcs_ggx x = mcs_ggx_make(alpha[i][0], 0.5f), y = mcs_ggx_make(0.5f, alpha[i][0]);
+        const ld want = 1 / (O_PI * 0.5L * (ld)alpha[i][1]);
+        CHECK(relative(mcs_ggx_d(&x, up), want) <= 8 * EPS && relative(mcs_ggx_d(&y, up), want) <= 8 * EPS,
+              "alpha %g: %g and %g, not %Lg", (double)alpha[i][0], (double)mcs_ggx_d(&x, up), (double)mcs_ggx_d(&y, up), want);
+    }
+    CHECK(mcs_is_mirror(1e-8f, 9e-8f) && !mcs_is_mirror(1e-8f, 1e-7f) && !mcs_is_mirror(0.1f, 1e-8f) &&
+              !mcs_is_mirror(1e-7f, 1e-7f),
+          "mirrors");
+}
+
+/* ---- half-vectors at right angles to wo ---- */
+
+/* wo.h below 1/8: its terms cancel, its own rounding would be 8 of them and more. With it to half an ulp the density has (1 - u1)
+ * and its product with the norm (6: see D above), |p|^2 3, squared and with g 8, the quotient by 4 wo.h 1: 16 EPS. */
+static void cancelling_cosines(const mcst_row *row, float a, float b) {
+    uint64_t seed = mcst_seed_for(row->name, "cancel", a > b);
+    int k, tried = 0;
+    for (k = 0; k < 60000; k++) {
+        float p[MCST_P], u[2], v[2], out[5];
+        ld x[3], want;
+        o_vec3 wo;
+        mcst_uniform(&seed, 1, &u[0], &u[1]), mcst_uniform(&seed, 1, &v[0], &v[1]);
+        mcst_fill(row, a, b, (float)(0.25 * pow(10, -3 * (double)v[0])), 6.2831853f * v[1], p);
+        want = row->truth.pdf_u(p, (ld)u[0], (ld)u[1]);
+        if (!(want > 0)) continue;
+        row->truth.map(p, (ld)u[0], (ld)u[1], x), wo = mcst_o3(p + 3);
+        if (o_dot(wo, o_half(wo, o_vec(x[0], x[1], x[2]))) > 0.125L) continue;
+        row->fn[0].sample(p, &u[0], &u[1], out);
+        if (!(out[3] > 0)) continue;
+        tried++;
+        CHECK(relative(out[3], want) <= 16 * EPS, "wo %g %g %g, u %a %a: %.9g, not %.9Lg", (double)p[3], (double)p[4], (double)p[5],
+              (double)u[0], (double)u[1], (double)out[3], want);
+    }
+    CHECK(tried >= 1000, "%d half-vectors", tried);
+}
+
 /* ---- Ashikhmin and Shirley ---- */
 
 /* The half-vector is up to 4 ulp off unit length, and 2 (h.wo) h - wo would carry twice that into wi, across it as well as along.
@@ -173,6 +217,69 @@ static void r2_steps(void) {
         CHECK(fabsl(x - rintl(x)) <= bound && fabsl(y - rintl(y)) <= bound, "point %u: off by %Lg and %Lg", i, x - rintl(x),
               y - rintl(y));
     }
+}
+
+/* Densities of points and directions without a lobe, within what the header says: in E, 1e-6 as they are constant or cosines. */
+static void constants(const char *name, double bound) {
+    const mcst_row *row = mcst_find(name);
+    uint64_t seed = mcst_seed_for(name, "constants", 0);
+    int k;
+    for (k = 0; k < 3000; k++) {
+        float p[MCST_P], u[2], out[5], pdf;
+        ld want, off;
+        mcst_grid_get(row, (size_t)k % mcst_grid_count(row), p), mcst_uniform(&seed, 1, &u[0], &u[1]);
+        row->fn[0].sample(p, &u[0], &u[1], out), want = row->truth.pdf_u(p, (ld)u[0], (ld)u[1]);
+        CHECK(relative(out[3], want) <= bound * 1e-6L, "%s: pdf of u %.9g, not %.9Lg", name, (double)out[3], want);
+        row->fn[0].pdf(p, out, &pdf), want = row->truth.pdf(p, out);
+        off = row->dim == 3 ? fabsl(o_len(mcst_o3(out)) - 1) : 0; /* densities of directions are of unit ones */
+        if (want > 0) CHECK(relative(pdf, want) <= bound * 1e-6L + off, "%s: pdf of x %.9g, not %.9Lg", name, (double)pdf, want);
+    }
+}
+
+/* Outside the support densities are 0 and inverses are the nearer end. Rims take in the rounding of what lies on them, 5e-7. */
+static void beyond_the_ends(void) {
+    const float top = 0.99999994f;
+    CHECK(mcs_linear_pdf(1, 3, -0.1f) == 0 && mcs_linear_pdf(1, 3, 1.1f) == 0 && mcs_linear_invert(1, 3, -2) == 0 &&
+              mcs_linear_invert(3, 1, 4) == top && mcs_linear_invert(1, 0, 1.5f) == top,
+          "linear: %g %g %g", (double)mcs_linear_invert(1, 3, -2), (double)mcs_linear_invert(3, 1, 4),
+          (double)mcs_linear_invert(1, 0, 1.5f));
+    CHECK(mcs_tent_pdf(2, -2.1f) == 0 && mcs_tent_pdf(2, 2.1f) == 0 && mcs_tent_invert(2, -3) == 0 && mcs_tent_invert(2, 3) == top,
+          "tent: %g %g", (double)mcs_tent_invert(2, -3), (double)mcs_tent_invert(2, 3));
+    CHECK(mcs_exponential_pdf(2, -0x1p-149f) == 0 && mcs_exponential_pdf(2, -1) == 0 && mcs_exponential_invert(2, -1) == 0 &&
+              mcs_exponential_invert(2, 1e30f) == top,
+          "exponential: %g", (double)mcs_exponential_pdf(2, -1));
+    CHECK(mcs_truncexp_pdf(2, 3, -1) == 0 && mcs_truncexp_pdf(2, 3, 3.1f) == 0 && mcs_truncexp_pdf(0, 3, 3.1f) == 0 &&
+              mcs_truncexp_invert(2, 3, -1) == 0 && mcs_truncexp_invert(2, 3, 4) == top && mcs_truncexp_invert(0, 3, 4) == top,
+          "truncexp: %g, %g %g", (double)mcs_truncexp_pdf(2, 3, 3.1f), (double)mcs_truncexp_invert(2, 3, -1),
+          (double)mcs_truncexp_invert(2, 3, 4));
+    CHECK(mcs_power_pdf(2, -0.5f) == 0 && mcs_power_pdf(2, 1.5f) == 0 && mcs_power_invert(2, -0.5f) == 0 &&
+              mcs_power_invert(2, 1.5f) == top && mcs_evenpower_pdf(2, -1.5f) == 0 && mcs_evenpower_pdf(2, 1.5f) == 0 &&
+              mcs_evenpower_invert(2, -1.5f) == 0 && mcs_evenpower_invert(2, 1.5f) == top,
+          "powers: %g %g %g", (double)mcs_power_invert(2, 1.5f), (double)mcs_evenpower_invert(2, -1.5f),
+          (double)mcs_evenpower_invert(2, 1.5f));
+    CHECK(mcs_disk_pdf(3, 3.00001f, 0) == 0 && mcs_concentric_pdf(3, 0, -3.00001f) == 0 && mcs_disk_pdf(3, 3, 0) > 0,
+          "disks, 3e-6 past the rim: %g", (double)mcs_disk_pdf(3, 3.00001f, 0));
+}
+
+static void opposed(void) {
+    const float w[][3] = {{0, 0, 1}, {0.6f, 0, 0.8f}, {1, 0, 0}, {-0.48f, 0.6f, 0.64f}};
+    size_t i;
+    for (i = 0; i < MCST_COUNT(w); i++) {
+        const float back[3] = {-w[i][0], -w[i][1], -w[i][2]};
+        const mcs_vec3 h = mcs_half(vec3(w[i]), vec3(back));
+        CHECK(h.x == 0 && h.y == 0 && h.z == 1, "(%g, %g, %g)", (double)h.x, (double)h.y, (double)h.z);
+    }
+}
+
+/* The place in a stratum is the middle of one of equal parts: turned round, bits and strata give the same from the other end. */
+static void jitter(void) {
+    uint32_t k, i;
+    for (k = 0; k <= 20; k++)
+        for (i = 0; i < 1000; i++) {
+            const uint32_t n = 1u << k, bits = mcs_hash(i, k), at = bits % n;
+            const float a = mcsi_jitter(at, n, bits), b = mcsi_jitter(n - 1 - at, n, ~bits);
+            CHECK((double)a + (double)b == 1, "%u of %u, bits %u: %.9g and %.9g", at, n, bits, (double)a, (double)b);
+        }
 }
 
 static void bad_shares(void) {
@@ -265,6 +372,12 @@ static void rows_beside_borders(uint32_t h) {
 int main(int argc, char **argv) {
     static const uint32_t heights[] = {5, 64, 1000, 4099};
     static const char *const visible[] = {"ggx_vndf_h", "ggx_vndf", "ggx_bounded_h", "ggx_bounded"};
+    static const char *const even[] = {"disk", "concentric", "sphere", "hemisphere", "cosine", "cone"};
+    static const struct {
+        const char *row;
+        float a, b;
+    } halves[] = {{"ward_gmd", 1, 1}, {"beckmann", 3, 3},  {"ggx", 1, 1},       {"ggx", 0.5f, 2},
+                  {"ggx", 3, 3},      {"ashikhmin", 1, 1}, {"ashikhmin", 0, 0}, {"ashikhmin", 3, 0.5f}};
     size_t i;
     mcst_start(argc, argv);
     mcst_group("values, GGX");
@@ -274,7 +387,17 @@ int main(int argc, char **argv) {
     for (i = 0; i < 8; i++)
         if (mcst_case("%s of a wide alpha along %s", visible[i / 2], i % 2 ? "y" : "x"))
             wide_alphas(mcst_find(visible[i / 2]), i % 2 ? 1.0f : 100.0f, i % 2 ? 100.0f : 0.5f);
+    if (mcst_case("ends of alpha")) ends_of_alpha();
+    mcst_group("values, a cosine that cancels");
+    for (i = 0; i < MCST_COUNT(halves); i++)
+        if (mcst_case("%s %g %g", halves[i].row, (double)halves[i].a, (double)halves[i].b))
+            cancelling_cosines(mcst_find(halves[i].row), halves[i].a, halves[i].b);
     mcst_group("values, others");
+    for (i = 0; i < 6; i++)
+        if (mcst_case("constants of %s", even[i])) constants(even[i], i < 2 ? 0.1 : 0.15);
+    if (mcst_case("beyond the ends")) beyond_the_ends();
+    if (mcst_case("half of opposed directions")) opposed();
+    if (mcst_case("jitter")) jitter();
     if (mcst_case("Ashikhmin and Shirley: the length of h")) reflection_at_rounded_half();
     if (mcst_case("cone of a sine")) cones();
     if (mcst_case("sine and cosine of the detours")) detour_angles();
