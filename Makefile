@@ -106,11 +106,11 @@ $(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
 	@echo '$(CC) $(FLAGS) $(EXACT)' | cmp -s - $@ || echo '$(CC) $(FLAGS) $(EXACT)' > $@
 
-$(BUILD)/%: %.c mcsample.h $(wildcard tests/*.h) $(BUILD)/flags
+$(BUILD)/%: %.c mcsample.h $(wildcard tests/*.h) examples/hdr.h $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(FLAGS) $(CONTRACT) $< -o $@ $(LIBS)
 
-$(RENDER): examples/render.c mcsample.h $(BUILD)/flags
+$(RENDER): examples/render.c examples/hdr.h mcsample.h $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(FLAGS) $(OPENMP) $< -o $@ $(LIBS)
 
@@ -134,7 +134,7 @@ BENCH_TAKES = $(shell $(CC) $(1) -E -x c /dev/null >/dev/null 2>&1 && echo '$(1)
 # Rows of SLEEF, where its development files are installed.
 BENCH_SLEEF = $(shell mkdir -p $(BENCH) && printf '\043include <sleef.h>\nint main(void) { return Sleef_expf8_u10avx2 == 0; }\n' | \
 	$(CC) -mavx2 -x c - -o $(BENCH)/sleef.probe -lsleef 2>/dev/null && echo -DBENCH_SLEEF)
-BENCH_HEADERS = mcsample.h $(wildcard tests/*.h tests/bench/*.h) $(BUILD)/flags
+BENCH_HEADERS = mcsample.h $(wildcard tests/*.h tests/bench/*.h) examples/hdr.h $(BUILD)/flags
 BENCH_BINS = $(BENCH)/throughput $(BENCH)/tables $(BENCH)/clock $(BENCH)/convergence
 
 bench: bench-binaries ## run time against error: CSV files and plots in build/bench, tables here; some minutes

@@ -18,8 +18,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+#include "hdr.h"
 #include "mcsample.h"
 
 #ifdef _OPENMP
@@ -61,42 +63,20 @@ static int complain(const char *what, const char *format, ...) {
 
 /* ---- Environment: a map of radiance, row 0 around +z, and the table of mcsample.h that samples it ---- */
 
-#define MAX_SIDE 32768u
-#define MAX_TEXELS (1u << 27)
-#define MAX_EXPONENT 188 /* radiance up to 2^60; from there on a product with a sharp lobe could leave the range of a float */
-
 #define TILES 16u /* rows of tiles of product sampling */
 
 typedef struct {
-    unsigned char rgb[3], exponent; /* as in the file: at 4 bytes a texel most lookups find theirs in the cache */
-} rgbe;
-
-typedef struct {
-    unsigned w, h;
-    rgbe *texel;
-    float unit[256]; /* what 1 in rgb stands for, by exponent */
+    hdr_picture map; /* at 4 bytes a texel most look-ups find theirs in the cache */
     mcs_env *table;
     mcs_tiles *tiles; /* for product sampling */
     float irradiance; /* luminance of the irradiance on level ground with nothing in the way */
     float main_light; /* azimuth */
 } environment;
 
-static rgbe rgbe_make(vec3 c) {
-    rgbe p = {{0, 0, 0}, 0};
-    float top = fmaxf(c.x, fmaxf(c.y, c.z));
-    if (top > 1e-32f) {
-        int exponent;
-        float scaled = frexpf(top, &exponent) * 256 / top;
-        p.rgb[0] = (unsigned char)(c.x * scaled), p.rgb[1] = (unsigned char)(c.y * scaled),
-        p.rgb[2] = (unsigned char)(c.z * scaled);
-        p.exponent = (unsigned char)(exponent + 128);
-    }
-    return p;
-}
-
 static vec3 radiance_at(const environment *e, unsigned col, unsigned row) {
-    rgbe p = e->texel[(size_t)row * e->w + col];
-    return scale(e->unit[p.exponent], vec(p.rgb[0], p.rgb[1], p.rgb[2]));
+    float c[3];
+    hdr_color(&e->map, (size_t)row * e->map.w + col, c);
+    return vec(c[0], c[1], c[2]);
 }
 
 static vec3 radiance(const environment *e, vec3 w) {
@@ -104,97 +84,14 @@ static vec3 radiance(const environment *e, vec3 w) {
     return radiance_at(e, l.col, l.row);
 }
 
-static int map_allocate(environment *e, const char *name, unsigned w, unsigned h) {
-    int i;
-    if (w < 1 || h < 1 || w > MAX_SIDE || h > MAX_SIDE || (uint64_t)w * h > MAX_TEXELS)
-        return complain(name, "%u x %u texels: at most %u a side and %u in all are read", w, h, MAX_SIDE, MAX_TEXELS);
-    e->w = w, e->h = h;
-    for (i = 1; i < 256; i++) e->unit[i] = ldexpf(1, (i < MAX_EXPONENT ? i : MAX_EXPONENT) - 136);
-    e->texel = malloc((size_t)w * h * sizeof *e->texel);
-    return e->texel ? 1 : complain(name, "not enough memory for %u x %u texels", w, h);
-}
-
-/* One text line without its newline. Returns 0 at the end of the file and for a line that does not fit. */
-static int read_line(FILE *f, char *line, size_t size) {
-    size_t n = 0;
-    int c;
-    while ((c = getc(f)) != EOF && c != '\n' && n + 1 < size) line[n++] = (char)c;
-    line[n] = 0;
-    return c == '\n';
-}
-
-/* Header of a Radiance picture (Ward, "Real Pixels", Graphics Gems II, 1991). EXPOSURE lines are skipped: the scale of the map is
- * free here, since the picture gets its exposure from the map. */
-static int hdr_header(FILE *f, const char *name, unsigned *w, unsigned *h) {
-    char line[2048], more;
-    if (!read_line(f, line, sizeof line) || strncmp(line, "#?", 2) != 0) {
-        if (ferror(f)) return complain(name, "%s", strerror(errno));
-        return complain(name, feof(f) && !line[0] ? "the file is empty" : "not a Radiance .hdr file");
-    }
-    do {
-        if (!read_line(f, line, sizeof line)) return complain(name, "the header has no end");
-        if (!strncmp(line, "FORMAT=", 7) && strcmp(line + 7, "32-bit_rle_rgbe") != 0)
-            return complain(name, "the FORMAT is not 32-bit_rle_rgbe, the only one that is read");
-    } while (line[0]);
-    if (read_line(f, line, sizeof line) && sscanf(line, "-Y %9u +X %9u%c", h, w, &more) == 2) return 1;
-    return complain(name, "the resolution line is not '-Y height +X width', the only orientation that is read");
-}
-
-/* One scan line of w RGBE pixels, whichever of the three codings it has. Returns NULL or what is wrong with it. */
-static const char *hdr_scanline(FILE *f, rgbe *line, uint32_t w) {
-    static const char truncated[] = "the file is truncated", overrun[] = "a run of wrong length";
-    unsigned char p[4];
-    uint32_t i, channel, shift = 0;
-    if (fread(p, 1, 4, f) != 4) return truncated;
-    if (p[0] == 2 && p[1] == 2 && p[2] < 128 && w >= 8 && w < 32768) { /* each channel run-length coded by itself */
-        if (((uint32_t)p[2] << 8 | p[3]) != w) return "it is coded for another width";
-        for (channel = 0; channel < 4; channel++) {
-            for (i = 0; i < w;) {
-                int code = getc(f), run = code > 128, value = run ? getc(f) : 0;
-                uint32_t n = (uint32_t)(run ? code - 128 : code);
-                if (code == EOF) return truncated;
-                if (n < 1 || n > w - i) return overrun;
-                for (; n > 0; n--, i++) {
-                    if (!run) value = getc(f);
-                    if (value == EOF) return truncated;
-                    *(channel < 3 ? &line[i].rgb[channel] : &line[i].exponent) = (unsigned char)value;
-                }
-            }
-        }
-        return NULL;
-    }
-    for (i = 0;;) { /* flat; (1, 1, 1, n) repeats the pixel before n times, and a series of those holds the bytes of n, low first */
-        if (p[0] == 1 && p[1] == 1 && p[2] == 1) {
-            uint64_t n = (uint64_t)p[3] << shift;
-            if (i < 1 || n > w - i || shift > 24) return overrun;
-            for (; n > 0; n--, i++) line[i] = line[i - 1];
-            shift += 8;
-        } else {
-            memcpy(&line[i++], p, 4);
-            shift = 0;
-        }
-        if (i == w) return NULL;
-        if (fread(p, 1, 4, f) != 4) return truncated;
-    }
-}
-
-static int map_read(environment *e, const char *name) {
-    FILE *f = fopen(name, "rb");
-    const char *fault;
-    unsigned w, h, y;
-    int ok;
-    if (!f) return complain(name, "%s", strerror(errno));
-    ok = hdr_header(f, name, &w, &h) && map_allocate(e, name, w, h);
-    for (y = 0; ok && y < h; y++)
-        if ((fault = hdr_scanline(f, e->texel + (size_t)y * w, w)) != NULL)
-            ok = complain(name, "scan line %u of %u: %s", y + 1, h, fault);
-    fclose(f);
-    return ok;
+static hdr_pixel encode(vec3 c) {
+    const float rgb[3] = {c.x, c.y, c.z};
+    return hdr_encode(rgb);
 }
 
 /* In the map's own axes. */
 static vec3 texel_direction(const environment *e, uint32_t x, uint32_t y) {
-    float theta = PI * ((float)y + 0.5f) / (float)e->h, phi = 2 * PI * ((float)x + 0.5f) / (float)e->w;
+    float theta = PI * ((float)y + 0.5f) / (float)e->map.h, phi = 2 * PI * ((float)x + 0.5f) / (float)e->map.w;
     return vec(sinf(theta) * cosf(phi), sinf(theta) * sinf(phi), cosf(theta));
 }
 
@@ -205,9 +102,13 @@ static int map_sky(environment *e, const char *name) {
     const vec3 sun = {1500, 1180, 800}, haze = {2.2f, 1.5f, 0.8f}, to_sun = unit(vec(1, 0, 0.70f));
     const float sun_cos = cosf(2 * PI / 180), edge = 0.3f * (1 - sun_cos);
     uint32_t x, y;
-    if (!map_allocate(e, name, 512, 256)) return 0;
-    for (y = 0; y < e->h; y++) {
-        for (x = 0; x < e->w; x++) {
+    hdr_start(&e->map);
+    e->map.w = 512;
+    e->map.h = 256;
+    e->map.pixel = malloc(512 * 256 * sizeof *e->map.pixel);
+    if (!e->map.pixel) return complain(name, "not enough memory");
+    for (y = 0; y < e->map.h; y++) {
+        for (x = 0; x < e->map.w; x++) {
             vec3 d = texel_direction(e, x, y), c;
             float near_sun = dot(d, to_sun), disc = fminf(fmaxf((near_sun - sun_cos) / edge, 0), 1);
             if (d.z > 0) {
@@ -216,7 +117,7 @@ static int map_sky(environment *e, const char *name) {
             } else {
                 c = mix(expf(30 * d.z), soil, scale(0.6f, horizon));
             }
-            e->texel[(size_t)y * e->w + x] = rgbe_make(add(c, scale(disc, sun)));
+            e->map.pixel[(size_t)y * e->map.w + x] = encode(add(c, scale(disc, sun)));
         }
     }
     return 1;
@@ -227,9 +128,10 @@ static int map_sky(environment *e, const char *name) {
 static void map_survey(environment *e) {
     double lx = 0, ly = 0, irradiance = 0;
     unsigned x, y;
-    for (y = 0; y < e->h / 2; y++) {
-        float area = 2 * PI / (float)e->w * (cosf(PI * (float)y / (float)e->h) - cosf(PI * (float)(y + 1) / (float)e->h));
-        for (x = 0; x < e->w; x++) {
+    for (y = 0; y < e->map.h / 2; y++) {
+        float area =
+            2 * PI / (float)e->map.w * (cosf(PI * (float)y / (float)e->map.h) - cosf(PI * (float)(y + 1) / (float)e->map.h));
+        for (x = 0; x < e->map.w; x++) {
             vec3 d = mcs_to_world(&e->table->frame, texel_direction(e, x, y));
             double l = luminance(radiance_at(e, x, y));
             lx += l * l * area * d.x, ly += l * l * area * d.y;
@@ -241,17 +143,22 @@ static void map_survey(environment *e) {
 
 static int environment_make(environment *e, const char *map) {
     const char *name = map ? map : "built-in sky";
+    unsigned w, h;
     size_t bytes, i;
     float *pixel;
     mcs_image image;
     int status;
-    if (!(map ? map_read(e, name) : map_sky(e, name))) return 0;
-    bytes = mcs_env_bytes(e->w, e->h);
+    if (!map && !map_sky(e, name)) return 0;
+    if (map && !hdr_read(&e->map, map)) return complain(name, "%s", e->map.fault);
+    w = e->map.w;
+    h = e->map.h;
+    bytes = mcs_env_bytes(w, h);
+    if (bytes == 0) return complain(name, "%u x %u texels are more than a sampling table takes", w, h);
     e->table = malloc(bytes);
-    pixel = malloc((size_t)e->w * e->h * sizeof *pixel);
+    pixel = malloc((size_t)w * h * sizeof *pixel);
     if (!e->table || !pixel) return free(pixel), complain(name, "not enough memory for the sampling table");
-    for (i = 0; i < (size_t)e->w * e->h; i++) pixel[i] = luminance(radiance_at(e, (unsigned)(i % e->w), (unsigned)(i / e->w)));
-    image = mcs_image_make(pixel, e->w, e->h, 1);
+    for (i = 0; i < (size_t)w * h; i++) pixel[i] = luminance(radiance_at(e, (unsigned)(i % w), (unsigned)(i / w)));
+    image = mcs_image_make(pixel, w, h, 1);
     status = mcs_env_build(e->table, bytes, &image);
     free(pixel);
     if (status == MCS_UNIFORM) return complain(name, "the map is black: there is nothing to light the scene with");
@@ -611,7 +518,7 @@ typedef struct {
 typedef struct {
     unsigned spp;
     double samples, wall, cpu; /* light samples; seconds on the clock, and of all threads together */
-    double mean, error;        /* of the luminance of the picture; the standard error of that mean */
+    double mean, error;        /* of the luminance of the picture; the standard error of that mean, INFINITY: unknown */
     double mse[SPHERES + 1];   /* mean squared error of a pixel, by object */
 } outcome;
 
@@ -673,7 +580,7 @@ static void picture_statistics(const pixel *p, size_t n, outcome *r) {
     }
     for (k = 0; k <= SPHERES; k++) r->mse[k] /= fmax(count[k], 1);
     r->mean /= (double)n;
-    r->error = sqrt(variance) / (double)n;
+    r->error = r->spp > 1 ? sqrt(variance) / (double)n : INFINITY; /* one sample tells nothing of its error */
 }
 
 /* Every pixel has its own stream, seeded from (seed, pixel, strategy), and owns all that it
@@ -725,10 +632,10 @@ static int hdr_write(const char *name, const pixel *image, unsigned w, unsigned 
     FILE *f = fopen(name, "wb");
     size_t i;
     if (!f) return complain(name, "%s", strerror(errno));
-    fprintf(f, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %u +X %u\n", h, w);
+    hdr_write_header(f, w, h);
     for (i = 0; i < (size_t)w * h; i++) {
-        rgbe p = rgbe_make(pixel_color(&image[i]));
-        fwrite(&p, 1, 4, f);
+        hdr_pixel p = encode(pixel_color(&image[i]));
+        fwrite(p.c, 1, 4, f);
     }
     return file_close(f, name);
 }
@@ -846,49 +753,91 @@ static float exposure_for(const options *o, const environment *e) {
     return (e->irradiance > 0 ? 0.9f * PI / e->irradiance : 1) * exp2f(o->stops);
 }
 
-static int write_pictures(const options *o, strategy how, const environment *e, const pixel *image) {
-    size_t size = strlen(o->out) + 16;
+/* The caller frees the name. Returns NULL after a complaint. */
+static char *picture_name(const options *o, strategy how, const char *extension) {
+    size_t size = strlen(o->out) + strlen(strategy_name[how]) + strlen(extension) + 2;
     char *name = malloc(size);
-    int ok;
-    if (!name) return complain(o->out, "not enough memory");
-    snprintf(name, size, "%s-%s.png", o->out, strategy_name[how]);
-    ok = png_write(name, image, o->w, o->h, exposure_for(o, e));
-    snprintf(name, size, "%s-%s.hdr", o->out, strategy_name[how]);
-    ok = ok && hdr_write(name, image, o->w, o->h);
-    free(name);
+    if (name) snprintf(name, size, "%s-%s%s", o->out, strategy_name[how], extension);
+    else complain(o->out, "not enough memory");
+    return name;
+}
+
+static int write_pictures(const options *o, strategy how, const environment *e, const pixel *image) {
+    char *png = picture_name(o, how, ".png"), *hdr = picture_name(o, how, ".hdr");
+    int ok = png && hdr && png_write(png, image, o->w, o->h, exposure_for(o, e)) && hdr_write(hdr, image, o->w, o->h);
+    free(png);
+    free(hdr);
+    return ok;
+}
+
+/* Whether a file can be written, asked before the time is spent on what goes into it. What was in it stays for now. */
+static int can_write(const char *name) {
+    struct stat status;
+    int exists = stat(name, &status) == 0;
+    FILE *f;
+    if (exists && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) return 1; /* a device or a pipe */
+    f = fopen(name, "ab");
+    if (!f) return complain(name, "cannot write: %s", strerror(errno));
+    fclose(f);
+    if (!exists) remove(name);
+    return 1;
+}
+
+static int can_write_pictures(const options *o) {
+    int i, ok = !o->stack || can_write(o->stack);
+    for (i = 0; ok && i < STRATEGIES; i++) {
+        char *png, *hdr;
+        if (!o->wanted[i]) continue;
+        png = picture_name(o, (strategy)i, ".png");
+        hdr = picture_name(o, (strategy)i, ".hdr");
+        ok = png && hdr && can_write(png) && can_write(hdr);
+        free(png);
+        free(hdr);
+    }
     return ok;
 }
 
 /* ---- The command ---- */
 
-static int usage(void) {
-    return fputs("usage: render [options] [map.hdr]\n"
-                 "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
-                 "  --strategy LIST    uniform, cosine, brdf, env, mis, product, several with commas, or all (mis)\n"
-                 "  --spp N            samples per pixel, 2 or more (64; with --error or --seconds: at most N, 16384)\n"
-                 "  --lights N         estimates of the light at each point that a sample sees (1)\n"
-                 "  --seconds T        stop each strategy after T seconds of processor time: pictures of equal cost\n"
-                 "  --error E          stop when the standard error of the mean of the picture is E times the mean\n"
-                 "  --size WxH         size of the picture (960x320)\n"
-                 "  --stops X          brighten the PNG by X stops from what suits the map (0)\n"
-                 "  --out PREFIX       write PREFIX-STRATEGY.png and PREFIX-STRATEGY.hdr (render)\n"
-                 "  --stack FILE       write all pictures into one PNG too, one below the other\n"
-                 "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on it\n"
-                 "  --seed N           another set of random numbers (1)\n"
-                 "  -h, --help         this text\n"
-                 "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
-                 "EXPOSURE lines of a map are ignored. The camera has the main light of the map behind it at the left.\n"
-                 "examples/product.png: render --strategy mis,product --lights 16 --seconds 2 --size 480x160 --threads 1\n"
-                 "    --out build/product --stack examples/product.png\n",
-                 stdout) < 0;
+/* Sends what has been printed on its way: to a file or a pipe nothing would go before the end, and nothing at all after Ctrl-C. */
+static int flush_output(void) {
+    if (fflush(stdout) != 0 || ferror(stdout)) return complain("standard output", "cannot write: %s", strerror(errno));
+    return 1;
 }
 
-static int parse_number(const char *name, const char *text, double low, double high, int whole, double *value) {
-    char *end;
-    errno = 0;
-    *value = strtod(text, &end);
-    if (end == text || *end || errno || !(*value >= low && *value <= high) || (whole && *value != floor(*value)))
-        return complain(name, "'%s' is not a %s from %g to %g", text, whole ? "whole number" : "number", low, high);
+static void usage(void) {
+    fputs("usage: render [options] [map.hdr]     (--option value or --option=value)\n"
+          "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
+          "  --strategy LIST    uniform, cosine, brdf, env, mis, product, several with commas, or all (mis)\n"
+          "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384); 1 leaves the error unknown\n"
+          "  --lights N         estimates of the light at each point that a sample sees (1)\n"
+          "  --seconds T        stop each strategy after T seconds of processor time: pictures of equal cost\n"
+          "  --error E          stop when the standard error of the mean of the picture is E times the mean\n"
+          "  --size WxH         size of the picture (960x320)\n"
+          "  --stops X          brighten the PNG by X stops from what suits the map (0)\n"
+          "  --out PREFIX       write PREFIX-STRATEGY.png and PREFIX-STRATEGY.hdr (render)\n"
+          "  --stack FILE       write all pictures into one PNG too, one below the other\n"
+          "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on it\n"
+          "  --seed N           another set of random numbers (1)\n"
+          "  -h, --help         this text\n"
+          "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
+          "The camera has the main light of the map behind it at the left.\n"
+          "examples/product.png: render --strategy mis,product --lights 16 --seconds 2 --size 480x160 --threads 1\n"
+          "    --out build/product --stack examples/product.png\n",
+          stdout);
+}
+
+/* The shortest decimal text of a number without an exponent. */
+static const char *plain(double v, char text[64]) {
+    int digits = 0;
+    do snprintf(text, 64, "%.*f", digits, v);
+    while (strtod(text, NULL) != v && digits++ < 20);
+    return text;
+}
+
+static int parse_name(const char *name, const char *text, const char **value) {
+    if (!*text) return complain(name, "the name is empty");
+    *value = text;
     return 1;
 }
 
@@ -913,20 +862,67 @@ static int parse_strategies(const char *list, options *o) {
     }
 }
 
-static int parse_option(const char *name, const char *value, options *o) {
+typedef enum {
+    O_STRATEGY,
+    O_SIZE,
+    O_OUT,
+    O_STACK,
+    O_SPP,
+    O_LIGHTS,
+    O_SECONDS,
+    O_ERROR,
+    O_STOPS,
+    O_THREADS,
+    O_SEED,
+    OPTIONS
+} option;
+static const struct {
+    const char *name;
+    double low, high; /* of numbers */
+    int whole;
+} option_table[OPTIONS] = {{"--strategy", 0, 0, 0}, {"--size", 0, 0, 0},       {"--out", 0, 0, 0},          {"--stack", 0, 0, 0},
+                           {"--spp", 1, 1e6, 1},    {"--lights", 1, 4096, 1},  {"--seconds", 1e-3, 1e6, 0}, {"--error", 1e-7, 1, 0},
+                           {"--stops", -20, 20, 0}, {"--threads", 1, 1024, 1}, {"--seed", 0, 9e15, 1}};
+
+static int parse_number(option which, const char *text, double *value) {
+    const double low = option_table[which].low, high = option_table[which].high;
+    const int whole = option_table[which].whole;
+    char *end, from[64], to[64];
+    errno = 0;
+    *value = strtod(text, &end);
+    if (end != text && !*end && !errno && *value >= low && *value <= high && (!whole || *value == floor(*value))) return 1;
+    return complain(option_table[which].name, "'%s' is not a %s from %s to %s", text, whole ? "whole number" : "number",
+                    plain(low, from), plain(high, to));
+}
+
+static int parse_value(option which, const char *text, options *o) {
     double v;
-    if (!strcmp(name, "--strategy")) return parse_strategies(value, o);
-    if (!strcmp(name, "--size")) return parse_size(value, o);
-    if (!strcmp(name, "--out")) return o->out = value, 1;
-    if (!strcmp(name, "--spp")) return parse_number(name, value, 2, 1e6, 1, &v) && (o->spp = (uint32_t)v, 1);
-    if (!strcmp(name, "--stack")) return o->stack = value, 1;
-    if (!strcmp(name, "--lights")) return parse_number(name, value, 1, 4096, 1, &v) && (o->lights = (uint32_t)v, 1);
-    if (!strcmp(name, "--seconds")) return parse_number(name, value, 1e-3, 1e6, 0, &v) && (o->seconds = v, 1);
-    if (!strcmp(name, "--error")) return parse_number(name, value, 1e-7, 1, 0, &v) && (o->error = v, 1);
-    if (!strcmp(name, "--stops")) return parse_number(name, value, -20, 20, 0, &v) && (o->stops = (float)v, 1);
-    if (!strcmp(name, "--threads")) return parse_number(name, value, 1, 1024, 1, &v) && (o->threads = (int)v, 1);
-    if (!strcmp(name, "--seed")) return parse_number(name, value, 0, 9e15, 1, &v) && (o->seed = (uint64_t)v, 1);
-    return complain(name, "unknown option; --help lists them");
+    switch (which) {
+    case O_STRATEGY: return parse_strategies(text, o);
+    case O_SIZE: return parse_size(text, o);
+    case O_OUT: return parse_name(option_table[which].name, text, &o->out);
+    case O_STACK: return parse_name(option_table[which].name, text, &o->stack);
+    default: break;
+    }
+    if (!parse_number(which, text, &v)) return 0;
+    switch (which) {
+    case O_SPP: o->spp = (uint32_t)v; break;
+    case O_LIGHTS: o->lights = (uint32_t)v; break;
+    case O_SECONDS: o->seconds = v; break;
+    case O_ERROR: o->error = v; break;
+    case O_STOPS: o->stops = (float)v; break;
+    case O_THREADS: o->threads = (int)v; break;
+    default: o->seed = (uint64_t)v;
+    }
+    return 1;
+}
+
+/* The option that an argument names, alone or with =value. OPTIONS: none. */
+static option find_option(const char *argument) {
+    size_t n = strcspn(argument, "=");
+    int i = 0;
+    while (i < OPTIONS && !(strlen(option_table[i].name) == n && !strncmp(argument, option_table[i].name, n))) i++;
+    return (option)i;
 }
 
 /* Returns 0 for a wrong argument. */
@@ -935,17 +931,17 @@ static int parse_arguments(int argc, char **argv, options *o) {
     memset(o, 0, sizeof *o);
     o->w = 960, o->h = 320, o->seed = 1, o->lights = 1, o->wanted[MIS] = 1, o->out = "render";
     for (i = 1; i < argc; i++) {
+        option which = find_option(argv[i]);
+        const char *text = strchr(argv[i], '=');
         if (!strcmp(argv[i], "-h") || !strcmp(argv[i], "--help")) return o->help = 1;
         if (argv[i][0] != '-') {
             if (o->map) return complain(argv[i], "only one map can be given");
-            o->map = argv[i];
-        } else if (i + 1 == argc) {
-            return complain(argv[i], "unknown option, or its value is missing; --help lists them");
-        } else if (!parse_option(argv[i], argv[i + 1], o)) {
-            return 0;
-        } else {
-            i++;
+            if (!parse_name("map", argv[i], &o->map)) return 0;
+            continue;
         }
+        if (which == OPTIONS) return complain(argv[i], "unknown option; --help lists them");
+        if (!text && i + 1 == argc) return complain(argv[i], "its value is missing");
+        if (!parse_value(which, text ? text + 1 : argv[++i], o)) return 0;
     }
     if (!o->spp) o->spp = o->error > 0 || o->seconds > 0 ? 16384 : 64;
 #ifdef _OPENMP
@@ -956,32 +952,35 @@ static int parse_arguments(int argc, char **argv, options *o) {
     return 1;
 }
 
-static void print_table(const options *o, const outcome *result) {
-    double efficiency[STRATEGIES], most = 0;
+static double efficiency(const outcome *r) { return r->error > 0 && r->cpu > 0 ? 1 / (r->error * r->error * r->cpu) : 0; }
+
+static void print_head(void) { puts("strategy  spp     samples    wall s   cpu s       mean  std error  efficiency"); }
+
+static void print_row(strategy how, const outcome *r) {
+    printf("%-8s%5u  %10.0f  %8.2f  %6.2f  %9.6g", strategy_name[how], r->spp, r->samples, r->wall, r->cpu, r->mean);
+    if (r->spp > 1) printf("  %9.3g  %10.4g\n", r->error, efficiency(r));
+    else printf("  %9s  %10s\n", "unknown", "unknown");
+}
+
+static void print_comparison(const options *o, const outcome *result) {
     int i, best = -1;
+    for (i = 0; i < STRATEGIES; i++)
+        if (o->wanted[i] && (best < 0 || efficiency(&result[i]) > efficiency(&result[best]))) best = i;
+    puts("\nstrategy  of best  deviation");
     for (i = 0; i < STRATEGIES; i++) {
-        const outcome *r = &result[i];
+        const outcome *r = &result[i], *b = &result[best];
         if (!o->wanted[i]) continue;
-        efficiency[i] = r->error > 0 && r->cpu > 0 ? 1 / (r->error * r->error * r->cpu) : 0;
-        if (best < 0 || efficiency[i] > most) most = efficiency[best = i];
+        printf("%-8s  %7.3f  %9.2f\n", strategy_name[i], efficiency(b) > 0 ? efficiency(r) / efficiency(b) : 1,
+               i != best ? (r->mean - b->mean) / fmax(hypot(r->error, b->error), 1e-300) : 0);
     }
-    printf("strategy  spp    samples    wall s   cpu s       mean  std error  efficiency  of best  deviation\n");
-    for (i = 0; i < STRATEGIES; i++) {
-        const outcome *r = &result[i];
-        if (!o->wanted[i]) continue;
-        printf("%-8s%5u  %9.3g  %8.2f  %6.2f  %9.6g  %9.3g  %10.4g  %7.3f  %9.2f\n", strategy_name[i], r->spp, r->samples, r->wall,
-               r->cpu, r->mean, r->error, efficiency[i], most > 0 ? efficiency[i] / most : 1,
-               i != best ? (r->mean - result[best].mean) / fmax(hypot(r->error, result[best].error), 1e-300) : 0);
-    }
-    printf("samples: light samples; efficiency: 1 / (std error^2 x cpu s);\n"
-           "deviation: from the mean of the most efficient, in standard errors of the difference\n");
+    puts("of best: efficiency over the highest;\n"
+         "deviation: from the mean of the most efficient, in standard errors of the difference");
 }
 
 /* Over the pixels that show nothing but that object. */
 static void print_objects(const options *o, const outcome *result) {
     static const char *const name[] = {"matte", "Phong", "Ward.18", "Ward ani", "GGX.06", "GGX.12", "GGX.40", "A.-S.", "ground"};
     int i, k;
-    if (!o->wanted[MIS]) return;
     printf("\nmean squared error of a pixel x cpu s, over that of mis\nstrategy");
     for (k = 0; k <= SPHERES; k++) printf(" %9s", name[k]);
     putchar('\n');
@@ -1004,28 +1003,40 @@ int main(int argc, char **argv) {
     scene s;
     size_t pixels;
     unsigned shown = 0, count = 0;
+    char error[64];
     int i, ok;
     if (!parse_arguments(argc, argv, &o)) return 2;
-    if (o.help) return usage();
+    if (o.help) {
+        usage();
+        return flush_output() ? 0 : 1;
+    }
+    if (!can_write_pictures(&o)) return 1;
     memset(&e, 0, sizeof e);
     for (i = 0; i < STRATEGIES; i++) count += o.wanted[i] != 0;
     pixels = (size_t)o.w * o.h;
     image = malloc((o.stack ? count : 1) * pixels * sizeof *image); /* a stack needs all of them at once */
     ok = image ? environment_make(&e, o.map) : complain("--size", "not enough memory for the picture");
     s = scene_make(o.w, o.h, e.main_light);
-    if (ok)
-        printf("%s %u x %u, picture %u x %u, %d thread%s\n", o.map ? o.map : "built-in sky", e.w, e.h, o.w, o.h, o.threads,
+    if (ok) {
+        printf("%s %u x %u, picture %u x %u, %d thread%s\n", o.map ? o.map : "built-in sky", e.map.w, e.map.h, o.w, o.h, o.threads,
                o.threads > 1 ? "s" : "");
+        print_head();
+        ok = flush_output();
+    }
     for (i = 0; ok && i < STRATEGIES; i++) {
         if (!o.wanted[i]) continue;
         result[i] = render(&o, &s, &e, (strategy)i, image + (o.stack ? shown : 0) * pixels);
-        ok = write_pictures(&o, (strategy)i, &e, image + (o.stack ? shown++ : 0) * pixels);
+        print_row((strategy)i, &result[i]);
+        ok = flush_output() && write_pictures(&o, (strategy)i, &e, image + (o.stack ? shown++ : 0) * pixels);
     }
-    if (ok && o.stack) ok = png_write(o.stack, image, o.w, shown * o.h, exposure_for(&o, &e));
-    if (ok) print_table(&o, result), print_objects(&o, result);
+    if (ok) puts("samples: light samples; efficiency: 1 / (std error^2 x cpu s)");
+    if (ok && count > 1 && o.spp > 1) print_comparison(&o, result);
+    if (ok && count > 1 && o.spp > 1 && o.wanted[MIS]) print_objects(&o, result);
+    ok = ok && flush_output() && (!o.stack || png_write(o.stack, image, o.w, shown * o.h, exposure_for(&o, &e)));
     for (i = 0; ok && i < STRATEGIES; i++)
         if (o.wanted[i] && o.error > 0 && !(result[i].error <= o.error * result[i].mean))
-            ok = complain(strategy_name[i], "error %g not reached with %u samples per pixel", o.error, result[i].spp);
-    free(image), free(e.texel), free(e.table), free(e.tiles);
+            ok = complain(strategy_name[i], "error %s not reached with %u sample%s per pixel", plain(o.error, error), result[i].spp,
+                          result[i].spp > 1 ? "s" : "");
+    free(image), free(e.map.pixel), free(e.table), free(e.tiles);
     return ok ? 0 : 1;
 }
