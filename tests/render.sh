@@ -1,45 +1,159 @@
 #!/bin/sh
-# The renderer of the examples, $1: every strategy has the same mean within its error, and a file that is no picture is refused in
-# one line with exit status 1 and no picture. $2: a folder for what it writes. Run by `make examples`.
+# The renderer of the examples, $1: every strategy has the same mean within its error, maps are read, what is wrong is said in one
+# line before any time is spent, results are not lost. $2: a folder for what it writes. Run by `make examples`.
 render=$1 dir=$2
 passed=0 failed=0
 check() { # status, what
     if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)) && echo "FAIL $2"; fi
 }
-mkdir -p "$dir" && rm -f "$dir"/*
+mkdir -p "$dir" && rm -rf "${dir:?}"/*
 
 # Deviations are in standard errors of the difference to the most efficient strategy: one of five beyond 4 in 3000 runs. With 64
 # samples the few that hit the mirrored sun leave the error of `uniform` anywhere from 0.008 to 0.036; with 256 it is known.
 "$render" --strategy all --size 240x80 --spp 256 --out "$dir/all" >"$dir/all.txt"
 check $? "render: every strategy"
-awk '/^mean squared/ { exit } /^(uniform|cosine|brdf|env|mis|product) / { n++; if (NF != 10 || $10 > 4 || $10 < -4) print }
+awk '/^mean squared/ { exit } /^(uniform|cosine|brdf|env|mis|product) / && NF == 3 { n++; if ($3 > 4 || $3 < -4) print }
     END { if (n != 6) print n + 0, "strategies" }' "$dir/all.txt" >"$dir/off.txt"
 [ ! -s "$dir/off.txt" ]
 check $? "render: means differ: $(cat "$dir/off.txt")"
+[ "$(grep -c '^strategy' "$dir/all.txt")" = 3 ]
+check $? "render: three tables"
 
-refused() { # file, what is wrong with it
+# --- arguments
+
+short() { # options: a small picture is rendered
+    "$render" --size 30x10 --out "$dir/some" "$@" >"$dir/out.txt" 2>"$dir/err.txt"
+    check $? "render: $*: $(cat "$dir/err.txt")"
+}
+wrong() { # part of the message, options: refused with status 2 in one line that has it, and no number with an exponent
+    said=$1
+    shift
+    "$render" "$@" >"$dir/out.txt" 2>"$dir/err.txt"
+    [ $? = 2 ] && [ "$(wc -l <"$dir/err.txt")" = 1 ] && [ ! -s "$dir/out.txt" ] && grep -qF -e "$said" "$dir/err.txt" &&
+        ! grep -q '[0-9]e[-+]*[0-9]' "$dir/err.txt"
+    check $? "render: $*: $(cat "$dir/err.txt")"
+}
+wrong 'from 1 to 1000000' --spp 0
+wrong 'from 1 to 1000000' --spp=2.5
+wrong 'from 1 to 4096' --lights none
+wrong 'from 0.001 to 1000000' --seconds 0
+wrong 'from 0.0000001 to 1' --error 2
+wrong 'from -20 to 20' --stops 21
+wrong 'from 1 to 1024' --threads=
+wrong 'from 0 to 9000000000000000' --seed -1
+wrong 'at most 33554432' --size 16384x16384
+wrong 'WIDTHxHEIGHT' --size=60
+wrong 'is none of' --strategy mis,
+wrong 'name is empty' --out ''
+wrong 'name is empty' --out=
+wrong 'name is empty' --stack ''
+wrong 'name is empty' ''
+wrong 'value is missing' --spp
+wrong 'unknown option' --bounces
+wrong 'unknown option' --help=all
+wrong 'only one map' a.hdr b.hdr
+
+short --size=60x20 --strategy=brdf --spp=3
+grep -q 'picture 60 x 20,' "$dir/out.txt" && [ "$(grep -c '^strategy' "$dir/out.txt")" = 1 ]
+check $? "render: --size=60x20, one table for one strategy: $(cat "$dir/out.txt")"
+short --spp 1 --strategy mis,env --stack "$dir/stack.png"
+grep -q '^mis  *1 .*unknown  *unknown$' "$dir/out.txt" && [ "$(grep -c '^strategy' "$dir/out.txt")" = 1 ]
+check $? "render: one sample tells no error: $(cat "$dir/out.txt")"
+short --seconds 0.01 --error 0.9 # one sample has no error that could be small enough
+awk '/^mis / { exit !($2 > 1 && $7 > 0) }' "$dir/out.txt"
+check $? "render: --seconds and --error: $(cat "$dir/out.txt")"
+
+# --- maps
+
+header='#?RADIANCE\nFORMAT=32-bit_rle_%s\n\n'
+four='\200\100\040\201\100\200\040\202\040\100\200\203\200\200\200\200' # pixels
+# shellcheck disable=SC2059
+printf "$header-Y 2 +X 2\n$four" rgbe >"$dir/plain.hdr"
+printf '#?RGBE\r\n# made by hand\r\n\r\n-Y 2 +X 2\r\n%b' "$(echo "$four" | sed 's/\\/\\0/g')" >"$dir/crlf.hdr"
+short --seed 2 "$dir/plain.hdr"
+mv "$dir/some-mis.hdr" "$dir/plain-mis.hdr"
+short --seed 2 "$dir/crlf.hdr"
+cmp -s "$dir/some-mis.hdr" "$dir/plain-mis.hdr"
+check $? "render: line ends change the picture"
+short "$dir/all-mis.hdr" # what was written is read
+
+refused() { # file, what is wrong with it, part of the message: status 1, one line, no picture, old ones untouched
+    echo old >"$dir/none-mis.png"
     "$render" --size 30x10 --out "$dir/none" "$dir/$1" >"$dir/out.txt" 2>"$dir/err.txt"
-    [ $? = 1 ] && [ "$(wc -l <"$dir/err.txt")" = 1 ] && ! ls "$dir"/none* 2>/dev/null
+    [ $? = 1 ] && [ "$(wc -l <"$dir/err.txt")" = 1 ] && grep -qF -e "$3" "$dir/err.txt" && [ ! -e "$dir/none-mis.hdr" ] &&
+        [ "$(cat "$dir/none-mis.png")" = old ]
     check $? "render: $2: $(cat "$dir/err.txt")"
 }
-header='#?RADIANCE\nFORMAT=32-bit_rle_%s\n\n'
 : >"$dir/empty.hdr"
 printf 'nothing of the kind\n' >"$dir/other.hdr"
 # shellcheck disable=SC2059
-printf "$header-Y 4 +X 8\n" xyze >"$dir/xyze.hdr"
+printf "$header-Y 2 +X 2\n$four" hsv >"$dir/hsv.hdr"
 # shellcheck disable=SC2059
 printf "$header-Y 4 +X 8\n\001\002" rgbe >"$dir/short.hdr"
 # shellcheck disable=SC2059
 printf "$header-Y 999999999 +X 999999999\n" rgbe >"$dir/huge.hdr"
 # shellcheck disable=SC2059
 printf "$header-Y -4 +X 0\n" rgbe >"$dir/sizes.hdr"
-refused empty.hdr "an empty file"
-refused other.hdr "another kind of file"
-refused xyze.hdr "other colours"
-refused short.hdr "a truncated file"
-refused huge.hdr "a size beyond memory"
-refused sizes.hdr "sizes below 1"
-refused missing.hdr "no file"
+# shellcheck disable=SC2059
+printf "$header-Y 1 +X 70000\n\200\200\200\201\001\001\001\157\001\001\001\021\001\001\001\001" rgbe >"$dir/wide.hdr"
+# shellcheck disable=SC2059
+printf "$header-Y 1 +X 2\n\0\0\0\0\0\0\0\0" rgbe >"$dir/black.hdr"
+refused empty.hdr "an empty file" 'the file is empty'
+refused other.hdr "another kind of file" 'no Radiance picture'
+refused hsv.hdr "other colours" "'32-bit_rle_hsv'"
+refused short.hdr "a truncated file" 'the file ends in scan line 1 of 4'
+refused huge.hdr "a size beyond memory" 'more than the'
+refused sizes.hdr "sizes below 1" 'two positive numbers'
+refused wide.hdr "too wide for a table" 'more than a sampling table takes'
+refused black.hdr "a black map" 'the map is black'
+refused missing.hdr "no file" 'No such file'
+refused . "a folder" 'directory'
+
+# --- output
+
+lost() { # what, options: status 1 and one line before anything is rendered
+    what=$1
+    shift
+    "$render" --size 30x10 "$@" >"$dir/out.txt" 2>"$dir/err.txt"
+    [ $? = 1 ] && [ "$(wc -l <"$dir/err.txt")" = 1 ] && [ ! -s "$dir/out.txt" ]
+    check $? "render: $what: $(cat "$dir/err.txt")"
+}
+mkdir "$dir/taken-env.hdr"
+lost "--out in no folder" --out "$dir/no/such"
+lost "--out where a folder is" --strategy mis,env --out "$dir/taken"
+lost "--stack in no folder" --stack "$dir/no/such.png"
+[ ! -e "$dir/taken-mis.png" ]
+check $? "render: a file is left behind that was only tried"
+
+if [ -c /dev/full ]; then
+    full() { # what, standard output, options
+        what=$1 output=$2
+        shift 2
+        "$render" --size 30x10 --spp 2 --out "$dir/full" "$@" >"$output" 2>"$dir/err.txt"
+        [ $? = 1 ] && [ "$(wc -l <"$dir/err.txt")" = 1 ] && grep -q 'cannot write' "$dir/err.txt"
+        check $? "render: $what on a full device: $(cat "$dir/err.txt")"
+    }
+    full results /dev/full
+    full help /dev/full --help
+    full "the stack" "$dir/out.txt" --stack /dev/full
+    ln -sf /dev/full "$dir/full-mis.hdr"
+    full "a picture" "$dir/out.txt"
+else
+    echo "SKIPPED: no /dev/full"
+fi
+
+# Under a constant map BRDF sampling reaches the error a hundred times sooner than the map's, during which the run is ended.
+printf '#?RADIANCE\n\n-Y 1 +X 1\n\200\200\200\201' >"$dir/white.hdr"
+"$render" --strategy brdf,env --spp 1000000 --error 0.001 --size 30x10 --out "$dir/cut" "$dir/white.hdr" >"$dir/cut.txt" 2>&1 &
+cut=$! tries=0
+until grep -q '^brdf ' "$dir/cut.txt" || [ $tries = 600 ]; do
+    sleep 0.05
+    tries=$((tries + 1))
+done
+kill $cut 2>/dev/null
+wait $cut 2>/dev/null
+[ $? = 143 ] && [ "$(grep -c '^brdf ' "$dir/cut.txt")" = 1 ]
+check $? "render: what is done is not printed before all is: $(cat "$dir/cut.txt")"
 
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

@@ -4,7 +4,7 @@
 #include <float.h>
 #include <math.h>
 #include "arena.h"
-#include "hdr.h"
+#include "latlong.h"
 #include "mcs_test.h"
 #include "mcsample.h"
 

@@ -6,7 +6,8 @@ static int asserted; /* how often a condition of the header did not hold */
 #include <float.h>
 #include <math.h>
 #include "arena.h"
-#include "hdr.h"
+#include "../examples/hdr.h"
+#include "latlong.h"
 #include "mcs_test.h"
 #include "mcsample.h"
 #include "stats.h"
@@ -148,21 +149,26 @@ static void each_map(void (*check)(const picture *p, const mcs_image *image)) {
     int used;
     for (; at && sscanf(at, "%1023s%n", name, &used) == 1; at += used) {
         hdr_picture in;
-        const char *fault = hdr_read(&in, name);
+        const int ok = hdr_read(&in, name);
         picture p;
         mcs_image image;
+        float *rgb;
         size_t i;
-        CHECK(!fault, "%s %s", name, fault ? fault : "");
-        if (fault) continue;
+        CHECK(ok, "%s: %s", name, in.fault);
+        if (!ok) continue;
         p = blank(name, in.w, in.h);
+        rgb = (float *)get((size_t)in.w * in.h * 3 * sizeof *rgb);
         for (i = 0; i < (size_t)in.w * in.h; i++) {
-            const float *c = in.rgb + 3 * i;
+            float *c = rgb + 3 * i;
+            hdr_color(&in, i, c);
             p.prob[i] = 0.2126L * c[0] + 0.7152L * c[1] + 0.0722L * c[2], p.lum[i] = (float)p.prob[i];
         }
         normalise(&p);
-        image = mcs_image_make(in.rgb, in.w, in.h, 3);
+        image = mcs_image_make(rgb, in.w, in.h, 3);
         check(&p, &image);
-        discard(&p), free(in.rgb);
+        discard(&p);
+        free(rgb);
+        free(in.pixel);
     }
 }
 

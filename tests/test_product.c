@@ -6,7 +6,8 @@
 #include <float.h>
 #include <math.h>
 #include "arena.h"
-#include "hdr.h"
+#include "../examples/hdr.h"
+#include "latlong.h"
 #include "mcs_test.h"
 #include "mcsample.h"
 #include "stats.h"
@@ -2030,16 +2031,19 @@ static void test_variance(void) {
         memcpy(names, list, strlen(list) + 1);
         for (name = strtok(names, " "); name; name = strtok(NULL, " ")) {
             hdr_picture p;
-            const char *why = hdr_read(&p, name);
+            const int ok = hdr_read(&p, name);
             scene m;
             float *light;
             size_t i;
-            CHECK(!why, "%s %s", name, why);
-            if (why) continue;
+            CHECK(ok, "%s: %s", name, p.fault);
+            if (!ok) continue;
             light = (float *)memory((size_t)p.w * p.h * sizeof *light);
-            for (i = 0; i < (size_t)p.w * p.h; i++)
-                light[i] = 0.2126f * p.rgb[3 * i] + 0.7152f * p.rgb[3 * i + 1] + 0.0722f * p.rgb[3 * i + 2];
-            free(p.rgb);
+            for (i = 0; i < (size_t)p.w * p.h; i++) {
+                float c[3];
+                hdr_color(&p, i, c);
+                light[i] = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+            }
+            free(p.pixel);
             m = scene_from(name, p.w, p.h, light, 16);
             add_map(&m, MCS_PROFILE_GGX, sum, n);
             scene_free(&m);

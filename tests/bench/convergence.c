@@ -14,6 +14,7 @@
  * The truth is a quadrature in double over the texels of the map, with its own formulas (reference_at). It shares with the measured
  * estimates only the map, and is compared with them at the end. */
 #define _POSIX_C_SOURCE 200809L
+#include "../../examples/hdr.h"
 #include "mcsample.h"
 #include "bench.h"
 #include "svg.h"
@@ -92,54 +93,23 @@ static int map_make(map *m, const char *name, double (*light)(const double w[3],
     return map_table(m);
 }
 
-/* A scan line of a Radiance picture, run-length coded by channel or plain (Ward 1991, "Real Pixels"). */
-static int hdr_line(FILE *f, unsigned char *line, uint32_t w) {
-    uint32_t c, i;
-    if (fread(line, 1, 4, f) != 4) return 0;
-    if (line[0] != 2 || line[1] != 2 || line[2] > 127) return fread(line + 4, 4, w - 1, f) == w - 1;
-    for (c = 0; c < 4; c++) {
-        for (i = 0; i < w;) {
-            int code = getc(f), run = code > 128, value = run ? getc(f) : 0;
-            uint32_t n = (uint32_t)(run ? code - 128 : code);
-            if (code < 1 || n > w - i) return 0;
-            for (; n > 0; n--, i++) {
-                if (!run) value = getc(f);
-                if (value < 0) return 0;
-                line[4 * i + c] = (unsigned char)value;
-            }
-        }
-    }
-    return 1;
-}
-
+/* The luminance of a Radiance picture by the weights of Rec. 709. */
 static int map_read(map *m, const char *file) {
     const char *base = strrchr(file, '/');
-    FILE *f = fopen(file, "rb");
-    unsigned char *line = NULL;
-    char text[512];
-    uint32_t x = 0, y = 0;
-    int ok = f != NULL;
+    hdr_picture picture;
+    if (!hdr_read(&picture, file)) return fprintf(stderr, "%s: %s\n", file, picture.fault), 0;
     snprintf(m->name, sizeof m->name, "%s", base ? base + 1 : file);
     if (strchr(m->name, '.')) *strchr(m->name, '.') = 0;
-    while (ok && (ok = fgets(text, sizeof text, f) != NULL) && text[0] != '\n') {}
-    ok = ok && fscanf(f, "-Y %u +X %u", &m->h, &m->w) == 2 && getc(f) == '\n' && m->w >= 8 && m->w < 32768 && m->h - 1 < 32768;
-    if (ok) {
-        m->light = malloc((size_t)m->w * m->h * sizeof *m->light);
-        line = malloc(4 * (size_t)m->w);
-        ok = m->light && line;
+    m->w = picture.w;
+    m->h = picture.h;
+    m->light = malloc((size_t)m->w * m->h * sizeof *m->light);
+    for (size_t i = 0; m->light && i < (size_t)m->w * m->h; i++) {
+        float c[3];
+        hdr_color(&picture, i, c);
+        m->light[i] = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
     }
-    for (; ok && y < m->h; y++) {
-        ok = hdr_line(f, line, m->w);
-        for (x = 0; ok && x < m->w; x++) {
-            const unsigned char *p = line + 4 * x;
-            double l = 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]; /* Rec. 709 */
-            m->light[(size_t)y * m->w + x] = p[3] ? (float)ldexp(l, p[3] - 136) : 0;
-        }
-    }
-    if (f) fclose(f);
-    free(line);
-    if (!ok) fprintf(stderr, "%s: no Radiance map of the kind -Y height +X width\n", file);
-    return ok && map_table(m);
+    free(picture.pixel);
+    return m->light ? map_table(m) : (fprintf(stderr, "%s: not enough memory\n", file), 0);
 }
 
 /* ---- Materials: reflectance 1, no Fresnel factor ---- */

@@ -7,7 +7,7 @@
  * arithmetic in double; single and array forms give the same bits; directions are unit, densities finite, those of a draw more than
  * 0 and its texel that of its direction; nothing is written outside of the memory. --filter takes an image or a mode;
  * MCS_TEST_SCALE scales the draws, and below 1 the largest image is 1024 x 512. */
-#include "hdr.h"
+#include "latlong.h"
 #include "stress.h"
 
 static const double eps = 0x1p-24; /* rounding of a float, relative */
