@@ -1925,7 +1925,7 @@ MCSI_SAMPLE MCS_(brdf) MCS_(phong_sample)(const MCS_(phong) * m, MCS_(vec3) wo, 
     wo = MCSI_(above)(wo, &ok);
     f = MCS_(frame_make)(MCSI_(vec3)(-wo.x, -wo.y, wo.z));
     l = MCS_(phong_lobe_sample)(m, u1, u2);
-    l.w = MCS_(to_world)(&f, l.w);
+    l.w = MCSI_(to_unit)(MCSI_(to_world)(&f, l.w)); /* the frame is as far from orthonormal as wo is from unit, and 5 roundings */
     return MCSI_(brdf)(ok, l.w, l.pdf, m->gain * l.w.z);
 }
 /* tan^2 of the angle between wi and R: |R x wi|^2 / (R.wi)^2 with R x wi = R x (wi - R), whose difference is exact nearby. */

@@ -706,6 +706,54 @@ static void test_widths(void) {
 }
 #endif
 
+/* ---- Phong's direction ---- */
+
+/* Its lobe is turned by a frame, which keeps lengths only to several roundings. |w|^2 is rounded by 3 eps of itself and the factor
+ * that mends w by half of that, its own rounding and that of the product: 3.5 eps. */
+static void check_phong_length(float n, mcs_vec3 wo, float u1, float u2) {
+    enum { MANY = 21 }; /* one round of the widest unit, and a rest */
+    const mcs_phong m = mcs_phong_make(n);
+    const mcs_vec3 wi = mcs_phong_sample(&m, wo, u1, u2).wi;
+    float a[MANY], b[MANY], x[MANY], y[MANY], z[MANY];
+    double off = fabs(sqrt(dot(wi, wi)) - 1);
+    int i;
+    CHECK(off <= 3.5 * eps, "n %a, wo %a %a %a, u %a %a: length off by %g of 2^-24", (double)n, (double)wo.x, (double)wo.y,
+          (double)wo.z, (double)u1, (double)u2, off / eps);
+    for (i = 0; i < MANY; i++) a[i] = u1, b[i] = u2;
+    mcs_phong_sample_n(&m, wo, MANY, a, b, x, y, z, NULL, NULL);
+    for (i = 0; i < MANY; i++) {
+        const mcs_vec3 w = {x[i], y[i], z[i]};
+        off = fabs(sqrt(dot(w, w)) - 1);
+        CHECK(off <= 3.5 * eps, "array, entry %d: length off by %g of 2^-24", i, off / eps);
+    }
+#ifndef MCS_NO_WIDE
+    {
+        const mcs8_phong wide = mcs8_phong_make(mcs8_set(n));
+        const mcs8_vec3 eye = {mcs8_set(wo.x), mcs8_set(wo.y), mcs8_set(wo.z)};
+        const mcs8_brdf s = mcs8_phong_sample(&wide, eye, mcs8_set(u1), mcs8_set(u2));
+        for (i = 0; i < 8; i++) {
+            const mcs_vec3 w = {s.wi.x[i], s.wi.y[i], s.wi.z[i]};
+            off = fabs(sqrt(dot(w, w)) - 1);
+            CHECK(off <= 3.5 * eps, "lane %d: length off by %g of 2^-24", i, off / eps);
+        }
+    }
+#endif
+}
+
+static void test_phong_length(void) {
+    static const float exponents[] = {0, 0.01f, 0.5f, 1, 10, 1e3f, 1e9f};
+    const mcs_vec3 bad = {-0x1.999998p-1f, 0x1.333332p-1f, 0x1.76231p-11f};
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 151);
+    int i;
+    check_phong_length(0.01f, bad, 0x1.b443e8p-2f, 0x1.9a40d8p-2f);
+    for (i = 0; i < 100000; i++) {
+        const double z = i & 1 ? pow(10, -6.0 * mcs_pcg32_float(&r)) : 1 - (double)mcs_pcg32_float(&r),
+                     phi = 6.283185307179586 * mcs_pcg32_float(&r), s = sqrt((1 - z) * (1 + z));
+        const float u1 = mcs_pcg32_float(&r), u2 = mcs_pcg32_float(&r);
+        check_phong_length(exponents[i % 7], unit(s * cos(phi), s * sin(phi), z), u1, u2);
+    }
+}
+
 int main(int argc, char **argv) {
     static const float cones[] = {0.5f, 0.01f, 1e-5f, 1e-8f};
     int i;
@@ -718,6 +766,8 @@ int main(int argc, char **argv) {
         if (mcst_case("rim of k = %g", (double)cones[i])) test_cone_rim(cones[i]);
     mcst_group("microfacet");
     test_microfacet();
+    mcst_group("phong");
+    if (mcst_case("directions of unit length")) test_phong_length();
     mcst_group("one dimension");
     if (mcst_case("linear: subnormal weights, tiny u")) test_linear_tiny();
     mcst_group("mis");
