@@ -32,8 +32,8 @@
  *   bad input   never crashes and never gives NaN: pdf 0, weight 0 and a finite point. Bad are u outside [0,1), NaN anywhere,
  *               directions whose squared length is not within (1/4, 4), wo below the surface, parameters out of range. Densities
  *               above FLT_MAX are returned as FLT_MAX.
- *   unit        a direction between 1/2 and 2 long is not refused but taken as it is, and then densities are wrong by up to a factor
- *               of 2: normalise what was interpolated or scaled.
+ *   unit        a direction between 1/2 and 2 long is not refused but taken as it is, and then densities are wrong by up to a
+ *               factor of 2: normalise what was interpolated or scaled.
  *   mistakes    where MCS_ASSERT is defined (as assert, say), scalar functions tell parameters out of range, u outside [0,1), and
  *               directions whose squared length is not within 0.001 of 1; array forms tell such a wo.
  *   widths      every function marked w in the index exists for 4, 8 and 16 lanes too: mcs8_ggx_pdf takes and returns mcs8_f and
@@ -923,10 +923,10 @@ MCSI_CORE MCSI_F MCSI_(dot)(MCS_(vec3) a, MCS_(vec3) b) { return a.x * b.x + a.y
 MCSI_CORE MCSI_F MCSI_(exact_dot)(MCS_(vec3) a, MCS_(vec3) b) {
     return MCSI_NARROW(MCSI_WIDEN(a.x) * MCSI_WIDEN(b.x) + MCSI_WIDEN(a.y) * MCSI_WIDEN(b.y) + MCSI_WIDEN(a.z) * MCSI_WIDEN(b.z));
 }
-/* What MCS_ASSERT takes for a unit vector. A careful caller normalises in float, which leaves |w|^2 within 2^-21 of 1, and turns the
- * vector by float frames. A frame is orthonormal to 4 ulp (12 x 2^-24 in |w|^2) and the sums of three products round (6 x 2^-24): each
- * moves |w|^2 by less than 2^-19, 100 of them by 2e-4. A reciprocal root of 12 bits, as processors have it, leaves 2^-10.4. All of
- * these pass. */
+/* What MCS_ASSERT takes for a unit vector. A careful caller normalises in float, which leaves |w|^2 within 2^-21 of 1, and turns
+ * the vector by float frames. A frame is orthonormal to 4 ulp (12 x 2^-24 in |w|^2) and the sums of three products round (6 x
+ * 2^-24): each moves |w|^2 by less than 2^-19, 100 of them by 2e-4. A reciprocal root of 12 bits, as processors have it, leaves
+ * 2^-10.4. All of these pass. */
 #define MCSI_IS_UNIT(length2) ((length2) >= 0.999f && (length2) <= 1.001f)
 /* A direction made safe: bad ones (not about unit length, NaN) become +z and leave *ok. */
 MCSI_CORE MCS_(vec3) MCSI_(direction)(MCS_(vec3) w, MCSI_I *ok) {
@@ -1184,14 +1184,14 @@ MCS_FN float mcsi_jitter(uint32_t i, uint32_t n, uint32_t bits) {
 }
 /* The place of i in a random permutation of 0 .. n-1: bijections of the next power of two, repeated until the result is below n. */
 MCS_FN uint32_t mcsi_permute(uint32_t i, uint32_t n, uint32_t seed) {
-    uint32_t mask = n - 1, half, k, r;
+    uint32_t mask = n - 1, shift, k, r;
     for (k = 1; k < 32; k *= 2) mask |= mask >> k;
-    for (half = 1; mask >> (2 * half); half++) {}
+    for (shift = 1; mask >> (2 * shift); shift++) {}
     do
         for (r = 0; r < 12; r++) {
             const uint32_t h = mcs_hash(r, seed);
             i = (i * (h | 1u) + (h >> 7)) & mask;
-            i ^= i >> half;
+            i ^= i >> shift;
         }
     while (i >= n);
     return i;
@@ -1246,9 +1246,9 @@ MCSI_CORE MCS_(sample1) MCSI_(sample1)(MCSI_I ok, MCSI_F x, MCSI_F pdf) {
 MCSI_CORE MCSI_I MCSI_(linear_ends)(MCSI_F *a, MCSI_F *b) {
     MCSI_F top = MCSI_(max)(*a, *b), one, other;
     MCSI_I ok = (*a >= 0.0f) & (*b >= 0.0f) & (top > 0.0f) & (top <= FLT_MAX);
-    MCSI_I power = 0x5d800000 - (MCSI_(bits)(top) & 0x7f800000), half = (power >> 1) & -0x800000;
+    MCSI_I power = 0x5d800000 - (MCSI_(bits)(top) & 0x7f800000), first = (power >> 1) & -0x800000;
     MCSI_REQUIRE(ok);
-    one = MCSI_(from_bits)(half + 0x3f800000), other = MCSI_(from_bits)(power - half + 0x3f800000);
+    one = MCSI_(from_bits)(first + 0x3f800000), other = MCSI_(from_bits)(power - first + 0x3f800000);
     *a = *a * one * other, *b = *b * one * other;
     return ok;
 }
@@ -1294,9 +1294,9 @@ MCSI_FN MCSI_F MCS_(tent_pdf)(MCSI_F r, MCSI_F x) {
 }
 MCSI_FN MCSI_F MCS_(tent_invert)(MCSI_F r, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(r);
-    MCSI_F t = MCSI_(max)((r - MCSI_(abs)(x)) / r, MCS_(set)(0.0f)), half = 0.5f * t * t;
+    MCSI_F t = MCSI_(max)((r - MCSI_(abs)(x)) / r, MCS_(set)(0.0f)), below = 0.5f * t * t;
     MCSI_REQUIRE(ok);
-    return MCSI_(u_of)(ok & (x == x), MCSI_(sel)(x < 0.0f, half, 1.0f - half));
+    return MCSI_(u_of)(ok & (x == x), MCSI_(sel)(x < 0.0f, below, 1.0f - below));
 }
 
 MCSI_SAMPLE MCS_(sample1) MCS_(exponential_sample)(MCSI_F rate, MCSI_F u) {
@@ -1431,11 +1431,11 @@ MCSI_SAMPLE MCS_(sample1) MCS_(evenpower_sample)(MCSI_F n, MCSI_F u) {
 MCSI_FN MCSI_F MCS_(evenpower_pdf)(MCSI_F n, MCSI_F x) { return 0.5f * MCS_(power_pdf)(n, MCSI_(abs)(x)); }
 MCSI_FN MCSI_F MCS_(evenpower_invert)(MCSI_F n, MCSI_F x) {
     MCSI_I ok = MCSI_(exponent_ok)(n);
-    MCSI_F half;
+    MCSI_F beside;
     MCSI_REQUIRE(ok);
     ok = ok & (x == x), n = MCSI_(within)(ok, n, 0.0f, 1e9f);
-    half = 0.5f * MCSI_(power)(n, 1.0, MCSI_(within)(ok, MCSI_(abs)(x), 0.0f, 1.0f));
-    return MCSI_(u_of)(ok, MCSI_(sel)(x < 0.0f, 0.5f - half, 0.5f + half));
+    beside = 0.5f * MCSI_(power)(n, 1.0, MCSI_(within)(ok, MCSI_(abs)(x), 0.0f, 1.0f));
+    return MCSI_(u_of)(ok, MCSI_(sel)(x < 0.0f, 0.5f - beside, 0.5f + beside));
 }
 
 #ifndef MCS_NO_BATCH
@@ -1525,10 +1525,10 @@ MCSI_FN MCS_(vec2) MCS_(concentric_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
     MCSI_I wide = MCSI_(abs)(p) > MCSI_(abs)(q);
     MCSI_F along = MCSI_(sel)(wide, p, q), across = MCSI_(sel)(wide, q, p); /* the nearer axis, and the other one */
     MCSI_F eighths = 8.0f * MCSI_(atan2_turns)(MCSI_(abs)(across), MCSI_(abs)(along));
-    MCSI_F major = MCSI_(with_sign)(r, along), minor = MCSI_(with_sign)(r * eighths, across);
+    MCSI_F longer = MCSI_(with_sign)(r, along), shorter = MCSI_(with_sign)(r * eighths, across);
     MCSI_REQUIRE(MCSI_(scale_ok)(R));
-    return MCSI_(uv)(MCSI_(scale_ok)(R) & (r2 < 4.0f), 0.5f + 0.5f * MCSI_(sel)(wide, major, minor),
-                     0.5f + 0.5f * MCSI_(sel)(wide, minor, major));
+    return MCSI_(uv)(MCSI_(scale_ok)(R) & (r2 < 4.0f), 0.5f + 0.5f * MCSI_(sel)(wide, longer, shorter),
+                     0.5f + 0.5f * MCSI_(sel)(wide, shorter, longer));
 }
 
 /* ==== [sphere] [hemisphere] [cosine] [cone] directions about +z ================================================================
@@ -4383,8 +4383,8 @@ MCSI_CORE uint32_t mcsi_shares(uint32_t *cum, const float *weight, uint32_t n) {
 }
 /* The last of n (a power of two) cumulative sums, `stride` apart, that is not above U. */
 MCSI_CORE uint32_t mcsi_shares_find(const uint32_t *cum, uint32_t n, uint32_t stride, uint32_t U) {
-    uint32_t i = 0, half;
-    for (half = n / 2; half; half /= 2) i += (uint32_t)(cum[(i + half) * stride] <= U) * half;
+    uint32_t i = 0, step;
+    for (step = n / 2; step; step /= 2) i += (uint32_t)(cum[(i + step) * stride] <= U) * step;
     return i;
 }
 /* The place of U in [0, 2^31) within a share that begins at `begin` of `total`. */
