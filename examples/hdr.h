@@ -6,9 +6,9 @@
  *     hdr_color(&p, (size_t)row * p.w + col, rgb);
  *     free(p.pixel);
  *
- * A pixel has three mantissas of 8 bits and one exponent (Ward, "Real Pixels", Graphics Gems II, 1991). Writers truncate the
- * mantissas, Radiance's own and most others, and Radiance's reader adds one half: then the mean error of a channel is zero, while
- * either of them alone would darken pictures by up to half a step, a whole step being 1 in 128 to 255 of the brightest channel.
+ * A pixel has three mantissas of 8 bits and one exponent (Ward, "Real Pixels", Graphics Gems II, 1991). Radiance's writer truncates
+ * the mantissas, as most others do, and its reader adds one half to them. So it is here: the mean error of a channel is zero.
+ * Without the half it would be half a step, and a step is 1 in 128 to 256 of the brightest channel of the pixel.
  *
  * The reader takes what Radiance's own takes (its common/header.c, resolu.c and color.c have the rules):
  *
@@ -141,7 +141,7 @@ static inline void hdr_apply(const hdr_matrix *a, const double v[3], double out[
     for (int i = 0; i < 3; i++) out[i] = a->m[i][0] * v[0] + a->m[i][1] * v[1] + a->m[i][2] * v[2];
 }
 
-/* By cofactors. A matrix without an inverse gives infinities or NaN. */
+/* By cofactors, for matrices that have one. */
 static inline hdr_matrix hdr_inverse(hdr_matrix a) {
     hdr_matrix inverse;
     for (int i = 0; i < 3; i++) {
@@ -163,10 +163,13 @@ static inline void hdr_white(const double xy[2], double out[3]) {
     out[2] = (1 - xy[0] - xy[1]) / xy[1];
 }
 
-/* From RGB to XYZ: each primary as strong as it takes to make (1, 1, 1) white. A strength that is not positive tells that white
- * lies outside of the triangle of the primaries, or that they span none; then this returns 0. */
+/* From RGB to XYZ: each primary as strong as it takes to make (1, 1, 1) white. Returns 0 where the primaries span no triangle that
+ * their four or so digits could tell from a line, and where white lies outside of it: then a strength is not positive. */
 static inline int hdr_to_xyz(const double chroma[8], hdr_matrix *out) {
+    const double *r = chroma, *g = chroma + 2, *b = chroma + 4;
+    const double twice_area = (g[0] - r[0]) * (b[1] - r[1]) - (b[0] - r[0]) * (g[1] - r[1]);
     double white[3], strength[3];
+    if (!(fabs(twice_area) > 1e-6)) return 0;
     for (int k = 0; k < 3; k++) {
         out->m[0][k] = chroma[2 * k];
         out->m[1][k] = chroma[2 * k + 1];

@@ -773,9 +773,9 @@ static int write_pictures(const options *o, strategy how, const environment *e, 
 /* Whether a file can be written, asked before the time is spent on what goes into it. What was in it stays for now. */
 static int can_write(const char *name) {
     struct stat status;
-    int exists = stat(name, &status) == 0;
+    int exists = lstat(name, &status) == 0; /* if only as a link to nothing */
     FILE *f;
-    if (exists && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) return 1; /* a device or a pipe */
+    if (stat(name, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) return 1; /* a device or a pipe */
     f = fopen(name, "ab");
     if (!f) return complain(name, "cannot write: %s", strerror(errno));
     fclose(f);

@@ -28,7 +28,7 @@ short() { # options: a small picture is rendered
 wrong() { # part of the message, options: refused with status 2 in one line that has it, and no number with an exponent
     said=$1
     shift
-    "$render" "$@" >"$dir/out.txt" 2>"$dir/err.txt"
+    "$render" --size 30x10 --out "$dir/wrong" "$@" >"$dir/out.txt" 2>"$dir/err.txt"
     [ $? = 2 ] && [ "$(wc -l <"$dir/err.txt")" = 1 ] && [ ! -s "$dir/out.txt" ] && grep -qF -e "$said" "$dir/err.txt" &&
         ! grep -q '[0-9]e[-+]*[0-9]' "$dir/err.txt"
     check $? "render: $*: $(cat "$dir/err.txt")"

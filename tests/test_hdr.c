@@ -140,7 +140,7 @@ static void test_bias(void) {
 }
 
 static void test_pixels(void) {
-    static const float nothing[][3] = {{0, 0, 0}, {-1, -0.0f, 0}, {NAN, -INFINITY, 0}, {1e-32f, 1e-33f, FLT_MIN / 8}};
+    static const float nothing[][3] = {{0, 0, 0}, {-1, -0.0f, 0}, {NAN, -INFINITY, 0}, {0x1p-107f, 1e-33f, FLT_MIN / 8}};
     static const float most[][3] = {{FLT_MAX, 0, 1}, {1, INFINITY, NAN}, {0x1.fffffep126f, -INFINITY, 0x1p126f}};
     float c[3];
     mcst_group("pixels");
@@ -204,17 +204,18 @@ static void test_headers(void) {
     };
     static const char *const bad[][2] = {
         {"#?RADIANCE\nFORMAT=32-bit_rle_rgb\n", "FORMAT is '32-bit_rle_rgb';"},
+        {"#?RADIANCE\nFORMAT=32-bit_rle_xyzee\n", "FORMAT is '32-bit_rle_xyzee';"},
         {"#?RADIANCE\nFORMAT=Radiance_spectra\r\n", "FORMAT is 'Radiance_spectra';"},
         {"#?RADIANCE\nFORMAT=\033[31m\177\200\n", "FORMAT is '\?[31m\?\?';"},
-        {"#?RADIANCE\nEXPOSURE=0\n", "EXPOSURE"},
-        {"#?RADIANCE\nEXPOSURE=-1\n", "EXPOSURE"},
-        {"#?RADIANCE\nEXPOSURE=bright\n", "EXPOSURE"},
-        {"#?RADIANCE\nEXPOSURE=nan\n", "EXPOSURE"},
-        {"#?RADIANCE\nEXPOSURE=1e999\n", "EXPOSURE"},
+        {"#?RADIANCE\nEXPOSURE=0\n", "an EXPOSURE line has no positive number"},
+        {"#?RADIANCE\nEXPOSURE=-1\n", "an EXPOSURE line has no positive number"},
+        {"#?RADIANCE\nEXPOSURE=bright\n", "an EXPOSURE line has no positive number"},
+        {"#?RADIANCE\nEXPOSURE=nan\n", "an EXPOSURE line has no positive number"},
+        {"#?RADIANCE\nEXPOSURE=1e999\n", "an EXPOSURE line has no positive number"},
         {"#?RADIANCE\nEXPOSURE=1e20\nEXPOSURE=1e20\n", "EXPOSURE and COLORCORR lines multiply to 1e+40"},
         {"#?RADIANCE\nCOLORCORR=1 1e-200 1\nCOLORCORR=1 1e-200 1\n", "EXPOSURE and COLORCORR lines multiply to 0"},
-        {"#?RADIANCE\nCOLORCORR=1 1\n", "COLORCORR"},
-        {"#?RADIANCE\nCOLORCORR=1 1 0\n", "COLORCORR"},
+        {"#?RADIANCE\nCOLORCORR=1 1\n", "a COLORCORR line does not have three positive numbers"},
+        {"#?RADIANCE\nCOLORCORR=1 1 0\n", "a COLORCORR line does not have three positive numbers"},
         {"#?RADIANCE\nPRIMARIES=.64 .33 .3 .6 .15 .06 .3127\n", "PRIMARIES line does not have eight numbers"},
         {"#?RADIANCE\nPRIMARIES=0 0 0 0 0 0 0 0\n", "PRIMARIES are no triangle"},
         {"#?RADIANCE\nPRIMARIES=.1 .1 .2 .2 .3 .3 .25 .25\n", "PRIMARIES are no triangle"},
@@ -251,6 +252,12 @@ static void test_headers(void) {
         begin(&file, good[0], resolution[i]);
         for (int k = 0; k < 6; k++) put_numbered(&file, k);
         put_text(&file, "something that follows");
+        expect_numbered(&file, 3, 2);
+    }
+    if (mcst_case("all lines end with CRLF")) {
+        file.n = 0;
+        put_text(&file, "#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 2 +X 3\r\n");
+        for (int k = 0; k < 6; k++) put_numbered(&file, k);
         expect_numbered(&file, 3, 2);
     }
     if (mcst_case("long lines")) {
@@ -432,6 +439,18 @@ static void test_scanlines(void) {
         }
         free(p.pixel);
     }
+    if (mcst_case("each run has its own bytes")) {
+        static const int red[6] = {150, 150, 150, 160, 160, 170};
+        begin(&file, "#?RADIANCE\n", "-Y 1 +X 6");
+        put_pixel(&file, 150, 1, 2, 129);
+        put_run(&file, 2);
+        put_pixel(&file, 160, 1, 2, 129);
+        put_run(&file, 1);
+        put_pixel(&file, 170, 1, 2, 129);
+        CHECK(load(&p, &file), "%s", p.fault);
+        for (int k = 0; p.pixel && k < 6; k++) CHECK(same(p.pixel[k], red[k], 1, 2, 129), "pixel %d", k);
+        free(p.pixel);
+    }
     if (mcst_case("runs of pixels beyond the line, and of none")) { /* as Radiance: the rest of the run is dropped */
         begin(&file, "#?RADIANCE\n", "-Y 2 +X 9");
         put_pixel(&file, 150, 1, 2, 129);
@@ -526,6 +545,11 @@ static void test_colours(void) {
         expect_matrix("#?RADIANCE\nPRIMARIES=.64 .33 .3 .6 .15 .06 .3127 .329\n", as_is, 1e-12);
     if (mcst_case("PRIMARIES of Rec. 2020"))
         expect_matrix("#?RADIANCE\nPRIMARIES= 0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.3290\n", from2020, 0.6e-4);
+    if (mcst_case("COLORCORR goes before PRIMARIES")) {
+        static const double corrected[3][3] = {
+            {1.6605 / 2, -0.5876 / 4, -0.0728 * 2}, {-0.1246 / 2, 1.1329 / 4, -0.0083 * 2}, {-0.0182 / 2, -0.1006 / 4, 1.1187 * 2}};
+        expect_matrix("#?RADIANCE\nPRIMARIES= .708 .292 .170 .797 .131 .046 .3127 .329\nCOLORCORR=2 4 .5\n", corrected, 1.2e-4);
+    }
     if (mcst_case("the last PRIMARIES count"))
         expect_matrix("#?RGBE\nPRIMARIES=.5 .3 .2 .6 .2 .1 .3 .3\nPRIMARIES=.64 .33 .3 .6 .15 .06 .3127 .329\n", as_is, 1e-12);
     if (mcst_case("XYZ with a white of D65"))
