@@ -2669,7 +2669,8 @@ MCSI_FN MCSI_F MCS_(mix_pdf)(MCSI_F c, MCSI_F pf, MCSI_F pg) {
  * Built once into memory of the caller's (8-byte aligned, mcs_x_bytes(n) bytes), then constant; no pointers inside, so a table may
  * be copied, written to a file or shared. Probabilities are integers that add up to exactly 2^31: sample, pdf and pmf agree
  * exactly, every entry that is not zero has a share (a u of 24 bits may miss it below 2^-24), and zero entries are never drawn.
- * Negative, NaN and infinite entries count as 0. The x of pwc and pwl is a float: beyond 2^24 cells it cannot tell them apart.
+ * Bad entries are counted (t->bad): negative ones and NaN count as 0, +infinity counts as FLT_MAX. The x of pwc and pwl is a float:
+ * beyond 2^24 cells it cannot tell them apart. The same list makes the same bytes, all mcs_x_bytes(n) of them.
  *
  *   pwc        piecewise constant density on [0,1], n cells           mcs_pwc_build from n samples, _build_fn from a function
  *              (4-point Gauss per cell); mcs_pwc_sample(t, u) -> {x, pdf, cell}, _pdf(t, x), _invert(t, x)
@@ -2704,10 +2705,11 @@ typedef struct {
     mcs_pwc cells;
 } mcs_pwl; /* then cdf[n + 1], guide[], vertex[n + 1] */
 
+/* What a number counts as: itself, +infinity as FLT_MAX, what is negative or NaN as 0. */
 MCSI_CORE float mcsi_clean(float x, uint32_t *bad) {
-    int good = x >= 0.0f && x <= FLT_MAX;
-    *bad += !good;
-    return good ? x : 0.0f;
+    if (x >= 0.0f && x <= FLT_MAX) return x;
+    ++*bad;
+    return x > 0.0f ? FLT_MAX : 0.0f;
 }
 /* A weight on its way to becoming a cumulative sum in the same place. */
 MCSI_CORE float mcsi_word_weight(const uint32_t *word) {
@@ -3121,8 +3123,12 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  * Tables are exact as in [tables]: texel probabilities are integers over 2^31 by row and by column; a texel that is not black can
  * be drawn, black ones never are, and texel and pdf of the returned float direction are those of the sample, as samples keep a
  * rounding error off the borders of their texel (with the axes as frame; the rounding of another frame takes up to 2 % of the
- * samples near the poles of a map of 4096 columns to the next texel). Bad texels count as black (e->bad). e->total is the luminance
- * integrated over the sphere. Maps are monotone: stratified u stay stratified.
+ * samples near the poles of a map of 4096 columns to the next texel). e->total is the luminance integrated over the sphere. Maps
+ * are monotone: stratified u stay stratified.
+ * Channels are bad one by one, and e->bad counts the texels that have any. A negative channel, as colours outside the gamut have,
+ * counts as 0, and so does NaN; the luminance is that of the others, so that a lamp of such a colour is drawn. +infinity, which a
+ * sun in halves may be, counts as FLT_MAX. mcs_env_mean does the same; whoever looks radiance up has to.
+ * The same image makes the same bytes, all mcs_env_bytes(w, h) of them, whatever the memory held; so do windows, tiles, products.
  * Bilinear: weights are the texels filtered by (1 2 1)/4 along rows and columns, at least a quarter of what a filtered look-up
  * finds anywhere in the texel: L/pdf is at most 4 times the filtered total.
  * MIS compensation (Karlik et al. 2019): with image.floor = mcs_env_mean(&image), what is darker than the mean is left to the other
@@ -3353,12 +3359,15 @@ MCS_FN mcs_status mcsi_env_refuse(const mcs_env *e, size_t bytes, const mcs_imag
     return bytes < mcs_env_bytes(im->w, im->h) ? MCS_ERR_MEMORY : MCS_OK;
 }
 
-MCSI_CORE float mcsi_luminance(const float *p, uint32_t *bad) {
-    uint32_t b = 0;
-    float r = mcsi_clean(p[0], &b), g = mcsi_clean(p[1], &b), l = mcsi_clean(p[2], &b);
-    *bad += b != 0;
-    l = 0.2126f * r + 0.7152f * g + 0.0722f * l;
-    return b ? 0.0f : mcsi_min(l, FLT_MAX);
+/* The factors add up to 1, so that three FLT_MAX do not overflow. */
+MCSI_CORE float mcsi_luminance(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
+MCSI_CORE float mcsi_pixel(const float *p, uint32_t *bad) {
+    uint32_t channels = 0;
+    float r, g, b, plain = mcsi_luminance(p[0], p[1], p[2]);
+    if (mcsi_min(mcsi_min(p[0], p[1]), p[2]) >= 0.0f && plain <= FLT_MAX) return plain; /* which NaN and infinity never are */
+    r = mcsi_clean(p[0], &channels), g = mcsi_clean(p[1], &channels), b = mcsi_clean(p[2], &channels);
+    *bad += channels != 0;
+    return mcsi_luminance(r, g, b);
 }
 /* Texels [x, x + n) of a row. */
 MCS_FN void mcsi_image_texels(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
@@ -3366,7 +3375,7 @@ MCS_FN void mcsi_image_texels(const mcs_image *im, uint32_t y, uint32_t x, uint3
     const float *p = im->pixels + (ptrdiff_t)y * (im->row_stride ? im->row_stride : step * (ptrdiff_t)im->w) + (ptrdiff_t)x * step;
     uint32_t k;
     if (im->channels >= 3)
-        for (k = 0; k < n; k++, p += step) v[k] = mcsi_luminance(p, bad);
+        for (k = 0; k < n; k++, p += step) v[k] = mcsi_pixel(p, bad);
     else
         for (k = 0; k < n; k++, p += step) v[k] = mcsi_clean(*p, bad);
 }

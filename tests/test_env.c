@@ -489,47 +489,118 @@ static void test_refused_strides(void) {
     }
 }
 
-static void test_bad_pixels(void) {
+/* Each bad channel is 0, but +infinity is FLT_MAX: mean, total and draws are those of a picture that says so, as it is, bilinear and
+ * with a floor; `way` 0: whole texels are bad, 1: channels of them, 2: and some of these infinite. */
+static void check_bad_pixels(uint32_t channels, int way, int mode) {
     enum { W = 24, H = 12 };
-    const float bad[5] = {NAN, -1.0f, INFINITY, -INFINITY, -FLT_MIN};
+    const float bad[5] = {NAN, -1.0f, -INFINITY, -FLT_MAX, -FLT_MIN};
     static float in[W * H * 3], clean[W * H * 3];
+    arena a = arena_make(mcs_env_bytes(W, H)), b = arena_make(mcs_env_bytes(W, H));
+    mcs_image broken = mcs_image_make(in, W, H, channels), right = mcs_image_make(clean, W, H, channels);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 67);
+    uint32_t i, j, count = 0;
+    int rc;
+    for (i = 0; i < W * H; i++) {
+        int some = 0;
+        for (j = 0; j < channels; j++) {
+            const uint32_t k = i * channels + j;
+            const int here = i % 3 == 1 && (way == 0 || channels == 1 || (i / 3 + j) % 2), sun = way == 2 && here && i % 5 == 0;
+            in[k] = sun ? INFINITY : here ? bad[i / 3 % 5] : 0.1f + hash01(k);
+            clean[k] = sun ? FLT_MAX : here ? 0.0f : 0.1f + hash01(k);
+            some |= here;
+        }
+        count += (uint32_t)some;
+    }
+    broken.bilinear = right.bilinear = mode == 1;
+    if (mode == 2) broken.floor = mcs_env_mean(&broken), right.floor = mcs_env_mean(&right);
+    CHECK(mcs_env_mean(&broken) == mcs_env_mean(&right) && mcs_env_mean(&right) <= FLT_MAX, "mean %g, not %g",
+          (double)mcs_env_mean(&broken), (double)mcs_env_mean(&right));
+    rc = mcs_env_build(env_in(&a), a.bytes, &broken);
+    CHECK(rc == MCS_OK && env_in(&a)->bad == count && arena_intact(&a), "%u channels: returns %d, %llu bad, not %u", channels, rc,
+          (unsigned long long)env_in(&a)->bad, count);
+    rc = mcs_env_build(env_in(&b), b.bytes, &right);
+    CHECK(rc == MCS_OK && env_in(&b)->bad == 0 && env_in(&a)->total == env_in(&b)->total && env_in(&b)->total <= DBL_MAX,
+          "%u channels: total %g, not %g", channels, env_in(&a)->total, env_in(&b)->total);
+    CHECK(mcs_env_check(env_in(&a), a.bytes) == MCS_OK, "no table");
+    for (i = 0; i < 20000; i++) {
+        const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+        const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2), t = mcs_env_sample(env_in(&b), u1, u2);
+        CHECK(s.w.x == t.w.x && s.w.y == t.w.y && s.w.z == t.w.z && s.pdf == t.pdf && s.col == t.col && s.row == t.row,
+              "u = %a, %a: not as with clean pixels", (double)u1, (double)u2);
+    }
+    arena_free(&a), arena_free(&b);
+}
+static void test_bad_pixels(void) {
     uint32_t channels;
-    for (channels = 1; channels <= 3; channels += 2) {
-        arena a = arena_make(mcs_env_bytes(W, H)), b = arena_make(mcs_env_bytes(W, H));
-        mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 67);
-        uint32_t i, j, count = 0;
-        int rc;
-        for (i = 0; i < W * H; i++) {
-            const int broken = i % 3 == 1;
-            for (j = 0; j < channels; j++) {
-                in[i * channels + j] = broken ? bad[i / 3 % 5] : 0.1f + hash01(i);
-                clean[i * channels + j] = broken ? 0.0f : 0.1f + hash01(i);
-            }
-            count += (uint32_t)broken;
-        }
-        rc = build_from(env_in(&a), a.bytes, in, W, H, channels, 0);
-        CHECK(rc == MCS_OK && env_in(&a)->bad == count && arena_intact(&a), "%u channels: returns %d, %llu bad, not %u", channels,
-              rc, (unsigned long long)env_in(&a)->bad, count);
-        rc = build_from(env_in(&b), b.bytes, clean, W, H, channels, 0);
-        CHECK(rc == MCS_OK && env_in(&b)->bad == 0 && env_in(&a)->total == env_in(&b)->total, "%u channels: total %g, not %g",
-              channels, env_in(&a)->total, env_in(&b)->total);
-        for (i = 0; i < 20000; i++) {
-            const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
-            const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2), t = mcs_env_sample(env_in(&b), u1, u2);
-            CHECK(s.w.x == t.w.x && s.w.y == t.w.y && s.w.z == t.w.z && s.pdf == t.pdf && s.col == t.col && s.row == t.row,
-                  "u = %a, %a: not as with zeros", (double)u1, (double)u2);
-        }
-        arena_free(&a);
-        arena_free(&b);
+    int way, mode;
+    for (channels = 1; channels <= 3; channels += 2)
+        for (way = 0; way < 3; way++)
+            for (mode = 0; mode < 3; mode++) check_bad_pixels(channels, way, mode);
+}
+
+/* Texels of one row, so that probability is luminance: what bad channels leave of it, by hand. */
+static void test_bad_channels(void) {
+    enum { W = 9 };
+    static const float in[W][3] = {{-150, 1000, 100}, {1, 1, 1},           {1, NAN, 1},         {-5, -1, 3},      {-1, -2, -3},
+                                   {NAN, NAN, NAN},   {0, 2, -1000},       {-1e30f, 1e-3f, 0},  {-0.0f, -0.0f, 0}};
+    static const double want[W] = {0.7152 * 1000 + 0.0722 * 100, 1, 0.2126 + 0.0722, 0.0722 * 3, 0, 0, 0.7152 * 2, 0.7152e-3, 0};
+    static const float suns[4][3] = {{INFINITY, 0, 0}, {FLT_MAX, FLT_MAX, FLT_MAX}, {INFINITY, -INFINITY, NAN}, {1e30f, 0, 0}};
+    static const double sun_want[4] = {0.2126, 1, 0.2126, 0.2126 * 1e30 / FLT_MAX};
+    arena a = arena_make(mcs_env_bytes(W, 1));
+    mcs_image image = mcs_image_make(&in[0][0], W, 1, 3);
+    double sum = 0;
+    uint32_t i;
+    int mode;
+    for (i = 0; i < W; i++) sum += want[i];
+    CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == 7, "%u bad", env_in(&a)->bad);
+    CHECK(fabs(env_in(&a)->total / (sum * 4 * pi / W) - 1) <= 4 * eps, "total %g, not %g", env_in(&a)->total, sum * 4 * pi / W);
+    CHECK(fabs(mcs_env_mean(&image) / (sum / W) - 1) <= 4 * eps, "mean %g, not %g", (double)mcs_env_mean(&image), sum / W);
+    for (i = 0; i < W; i++) {
+        const double p = mcs_env_pdf(env_in(&a), point(W, 1, i, 0, 0.5, 0.5)) * 4 * pi / W, due = want[i] / sum;
+        CHECK((p > 0) == (due > 0) && fabs(p - due) <= 5 * eps * due + (2 + W * due) * quantum, "texel %u: probability %g, not %g", i,
+              p, due);
     }
-    if (mcst.open) { /* one bad channel makes the texel bad */
-        arena a = arena_make(mcs_env_bytes(2, 1));
-        const float two[6] = {1, 1, 1, 1, NAN, 1};
-        const int rc = build_from(env_in(&a), a.bytes, two, 2, 1, 3, 0);
-        CHECK(rc == MCS_OK && env_in(&a)->bad == 1, "returns %d, %llu bad", rc, (unsigned long long)env_in(&a)->bad);
-        CHECK(fabs(mcs_env_sample(env_in(&a), 0.9f, 0.5f).pdf * 2 * pi - 1) <= 4 * eps, "density of the other half");
-        arena_free(&a);
+    /* an overflowed half is a sun; nothing overflows with it */
+    image = mcs_image_make(&suns[0][0], 4, 1, 3);
+    for (i = 0, sum = 0; i < 4; i++) sum += sun_want[i];
+    for (mode = 0; mode < 2; mode++) {
+        const double whole = sum * FLT_MAX * pi;
+        image.bilinear = mode;
+        CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == 2, "suns: %u bad", env_in(&a)->bad);
+        CHECK(fabs(env_in(&a)->total / whole - 1) <= 5 * eps, "suns: total %g, not %g", env_in(&a)->total, whole);
+        CHECK(fabs(mcs_env_mean(&image) / (whole / (4 * pi)) - 1) <= 5 * eps, "suns: mean %g", (double)mcs_env_mean(&image));
+        for (i = 0; i < 4; i++) {
+            const double p = mcs_env_pdf(env_in(&a), point(4, 1, i, 0, 0.5, 0.5)) * pi, before = sun_want[(i + 3) % 4],
+                         here = sun_want[i], after = sun_want[(i + 1) % 4],
+                         due = (mode ? 0.25 * before + 0.5 * here + 0.25 * after : here) / sum;
+            CHECK(p > 0 && fabs(p - due) <= 8 * eps * due + (2 + 4 * due) * quantum, "suns, texel %u: probability %g, not %g", i, p,
+                  due);
+        }
     }
+    arena_free(&a);
+}
+/* Nothing but FLT_MAX or infinity: an even map whose sums are finite. */
+static void test_all_infinite(void) {
+    enum { W = 37, H = 19 };
+    static float in[W * H * 3];
+    int k, mode;
+    for (k = 0; k < 4; k++)
+        for (mode = 0; mode < 2; mode++) {
+            const float fill = k & 1 ? INFINITY : FLT_MAX;
+            arena a = arena_make(mcs_env_bytes(W, H));
+            mcs_image image = mcs_image_make(in, W, H, k & 2 ? 3 : 1);
+            int i;
+            for (i = 0; i < W * H * 3; i++) in[i] = fill;
+            image.bilinear = mode;
+            CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == (k & 1 ? W * H : 0), "%u bad",
+                  env_in(&a)->bad);
+            CHECK(env_in(&a)->uniform && fabs(env_in(&a)->total / (4 * pi * FLT_MAX) - 1) <= 4 * eps, "total %g",
+                  env_in(&a)->total);
+            CHECK(mcs_env_mean(&image) <= FLT_MAX && mcs_env_mean(&image) >= FLT_MAX * (1 - 4 * (float)eps), "mean %g",
+                  (double)mcs_env_mean(&image));
+            CHECK(fabs(mcs_env_sample(env_in(&a), 0.3f, 0.6f).pdf * 4 * pi - 1) <= 4 * eps, "density");
+            arena_free(&a);
+        }
 }
 
 static void test_black(void) {
@@ -860,6 +931,8 @@ int main(int argc, char **argv) {
     if (mcst_case("pixel and row strides")) test_strides();
     if (mcst_case("refused strides")) test_refused_strides();
     if (mcst_case("bad pixels")) test_bad_pixels();
+    if (mcst_case("bad channels, infinite ones")) test_bad_channels();
+    if (mcst_case("all infinite")) test_all_infinite();
     if (mcst_case("black")) test_black();
     if (mcst_case("refused builds")) test_refused();
     if (mcst_case("bad u and directions")) test_bad_sampler_input();

@@ -516,7 +516,7 @@ static void test_batch(void) {
 
 static float f_square(float x, void *ctx) { return *(float *)ctx * x * x; }
 static float f_bump(float x, void *ctx) { return *(float *)ctx * expf(-50.0f * (x - 0.4f) * (x - 0.4f)); }
-static float f_bad(float x, void *ctx) { return (void)ctx, x < 0.25f ? NAN : x < 0.5f ? -1.0f : x < 0.75f ? INFINITY : 2.0f; }
+static float f_bad(float x, void *ctx) { return (void)ctx, x < 0.25f ? NAN : x < 0.5f ? -1.0f : x < 0.75f ? INFINITY : 2e38f; }
 static double exact_square(double x) { return x * x * x; }
 static double exact_bump(double x) { return sqrt(3.14159265358979323846 / 50) / 2 * erf(sqrt(50) * (x - 0.4)); }
 
@@ -550,8 +550,11 @@ static void test_build_fn(void) {
         const int rc = mcs_pwc_build_fn(t, a.bytes, f_bad, NULL, 16);
         uint32_t i;
         CHECK(rc == MCS_OK && t->bad == 12, "build returns %d, %llu bad", rc, pwc_bad(t));
-        for (i = 0; i < 16; i++)
-            CHECK(mcs_discrete_pmf(t, i) == (i < 12 ? 0.0f : 0.25f), "cell %u: %g", i, (double)mcs_discrete_pmf(t, i));
+        for (i = 0; i < 16; i++) { /* an infinite one weighs FLT_MAX; 8 cells have one integer each before the rest is shared */
+            const double w = i < 8 ? 0 : i < 12 ? (double)FLT_MAX : (double)2e38f, p = w / (4 * ((double)FLT_MAX + (double)2e38f));
+            CHECK(fabs(mcs_discrete_pmf(t, i) - p) <= eps * p + (i < 8 ? 0 : 2 + 8 * p) * quantum, "cell %u: %g, not %g", i,
+                  (double)mcs_discrete_pmf(t, i), p);
+        }
         CHECK(mcs_pwc_build_fn(t, a.bytes, NULL, NULL, 16) == MCS_ERR_ARG, "no function");
         CHECK(mcs_pwc_build_fn(NULL, a.bytes, f_bad, NULL, 16) == MCS_ERR_ARG, "no memory");
         CHECK(mcs_pwc_build_fn(t, a.bytes - 1, f_bad, NULL, 16) == MCS_ERR_MEMORY, "too little memory");
@@ -609,24 +612,40 @@ static void test_errors(const kind *k) {
     arena_free(&a);
 }
 
+/* Bad entries are 0, but +infinity is FLT_MAX: the table is that of such a list. */
 static void test_bad_weights(const kind *k) {
-    const float inf = INFINITY, nothing[5] = {NAN, -1, inf, -inf, -FLT_MIN};
+    const float inf = INFINITY, nothing[5] = {NAN, -1, -inf, -FLT_MAX, -FLT_MIN};
     const uint32_t n = 40;
-    uint32_t i, bad = 0;
+    uint32_t i, suns;
     arena a = arena_make(k->bytes(n)), b = arena_make(k->bytes(n));
     int rc, j;
     static float clean[41];
-    for (i = 0; i < n + k->extra; i++) {
-        weight[i] = clean[i] = hash01(i + 100);
-        if (i % 4 == 1) weight[i] = nothing[i / 4 % 5], clean[i] = 0, bad++;
+    for (suns = 0; suns < 2; suns++) {
+        uint32_t bad = 0;
+        for (i = 0; i < n + k->extra; i++) {
+            weight[i] = clean[i] = hash01(i + 100);
+            if (i % 4 == 1) weight[i] = nothing[i / 4 % 5], clean[i] = 0, bad++;
+            if (suns && i % 8 == 2) weight[i] = inf, clean[i] = FLT_MAX, bad++;
+        }
+        rc = k->build(a.at, a.bytes, weight, n);
+        CHECK(rc == MCS_OK && k->bad(a.at) == bad, "build returns %d, %llu bad, not %u", rc, k->bad(a.at), bad);
+        rc = k->build(b.at, b.bytes, clean, n);
+        CHECK(rc == MCS_OK && k->bad(b.at) == 0 && k->total(a.at) == k->total(b.at) && k->total(a.at) <= n * (double)FLT_MAX,
+              "build returns %d, %llu bad, total %g", rc, k->bad(b.at), k->total(a.at));
+        for (j = 0; j < US; j += 7) {
+            const draw c = k->sample(a.at, us[j]), d = k->sample(b.at, us[j]);
+            CHECK(c.i == d.i && c.x == d.x && c.pdf == d.pdf && c.rest == d.rest, "u = %a: not as with clean entries",
+                  (double)us[j]);
+        }
     }
+    for (i = 0; i < n + k->extra; i++) weight[i] = inf;
     rc = k->build(a.at, a.bytes, weight, n);
-    CHECK(rc == MCS_OK && k->bad(a.at) == bad, "build returns %d, %llu bad, not %u", rc, k->bad(a.at), bad);
-    rc = k->build(b.at, b.bytes, clean, n);
-    CHECK(rc == MCS_OK && k->bad(b.at) == 0 && k->total(a.at) == k->total(b.at), "build returns %d, %llu bad", rc, k->bad(b.at));
-    for (j = 0; j < US; j += 7) {
-        const draw c = k->sample(a.at, us[j]), d = k->sample(b.at, us[j]);
-        CHECK(c.i == d.i && c.x == d.x && c.pdf == d.pdf && c.rest == d.rest, "u = %a: not as with zeros", (double)us[j]);
+    CHECK(rc == MCS_OK && k->bad(a.at) == n + k->extra && fabs(k->total(a.at) / (n * (double)FLT_MAX) - 1) <= 1e-12,
+          "all infinite: build returns %d, %llu bad, total %g", rc, k->bad(a.at), k->total(a.at));
+    for (i = 0; i < 1 << 12; i++) {
+        const draw d = k->sample(a.at, (float)i * 0x1p-12f);
+        const double want = k == &kinds[DISCRETE] || k == &kinds[ALIAS] ? 1.0 / n : 1.0;
+        CHECK(fabs(d.pdf - want) <= (2 * eps + 2 * n * quantum) * want, "all infinite: u = %u/2^12: density %g", i, (double)d.pdf);
     }
     for (j = 0; j < 3; j++) {
         const float fill[3] = {0, -0.0f, NAN};

@@ -345,7 +345,10 @@ static mcs_status table_build(int kind, arena *m, size_t bytes, const float *f, 
     return (mcs_status)mcs_pwc_build((mcs_pwc *)at, bytes, f, n);
 }
 
-/* Entries of one of six styles, zeros among them; how many of them are bad and the sum of the others come back. */
+/* What a bad entry or channel is to the header: +infinity FLT_MAX, anything else 0. */
+static float counted_as(float x) { return x > FLT_MAX ? FLT_MAX : x > 0 ? x : 0; }
+
+/* Entries of one of six styles, zeros among them; how many of them are bad and the sum of all as they count come back. */
 static void make_entries(float *f, uint32_t n, uint64_t *state, uint32_t *bad, long double *sum, uint32_t *some) {
     const uint64_t style = mcst_mix(state) % 6, giant = mcst_mix(state) % n;
     uint32_t i;
@@ -360,11 +363,11 @@ static void make_entries(float *f, uint32_t n, uint64_t *state, uint32_t *bad, l
         case 4: f[i] = st_float((uint32_t)(z >> 32) & 0x007fffffu); break;
         default: f[i] = z & 1 ? FLT_MAX : 0x1p-149f; break;
         }
-        if (!(f[i] >= 0 && f[i] <= FLT_MAX)) ++*bad;
-        else *sum += (long double)f[i], *some += f[i] > 0;
+        *bad += !(f[i] >= 0 && f[i] <= FLT_MAX);
+        *sum += (long double)counted_as(f[i]), *some += f[i] > 0;
     }
 }
-static int lit(const float *f, uint32_t i) { return f[i] > 0 && f[i] <= FLT_MAX; }
+static int lit(const float *f, uint32_t i) { return f[i] > 0; }
 
 static void check_draws(int kind, const arena *m, const float *f, uint32_t n, int uniform, uint64_t *state, tally *t) {
     const mcs_pwc *pwc = (const mcs_pwc *)(const void *)m->at;
@@ -434,8 +437,8 @@ static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
         const double total = kind == ALIAS ? alias->total : head->total;
         const uint32_t counted = kind == ALIAS ? alias->bad : head->bad;
         /* of vertices the sum over cells of the means; n additions round, each by 2^-53 of the sum */
-        const long double first = lit(f, 0) ? (long double)f[0] : 0, last = lit(f, n) ? (long double)f[n] : 0;
-        const long double want = kind == PWL ? sum - 0.5L * (first + last) : sum;
+        const long double ends = kind == PWL ? (long double)counted_as(f[0]) + (long double)counted_as(f[n]) : 0;
+        const long double want = sum - 0.5L * ends;
         CHECK(e == (some ? MCS_OK : MCS_UNIFORM), "%u entries, %u not zero: status %d", (unsigned)n, (unsigned)some, (int)e);
         CHECK(counted == bad, "%u bad entries, counted %u", (unsigned)bad, (unsigned)counted);
         CHECK(fabsl((long double)total - want) <= (long double)n * 0x1p-53L * want, "total %g, sum %Lg", total, want);
@@ -487,10 +490,10 @@ static const float *texel_at(const mcs_image *im, uint32_t x, uint32_t y) {
 static double luminance(const mcs_image *im, uint32_t x, uint32_t y, int *bad) {
     const float *p = texel_at(im, x, y);
     const int n = im->channels > 1 ? 3 : 1;
+    double c[3];
     int i;
-    for (*bad = i = 0; i < n; i++) *bad |= !(p[i] >= 0 && p[i] <= FLT_MAX);
-    if (*bad) return 0;
-    return n == 1 ? (double)p[0] : 0.2126 * (double)p[0] + 0.7152 * (double)p[1] + 0.0722 * (double)p[2];
+    for (*bad = i = 0; i < n; i++) *bad |= !(p[i] >= 0 && p[i] <= FLT_MAX), c[i] = (double)counted_as(p[i]);
+    return n == 1 ? c[0] : 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
 }
 /* Weight of a texel: 1 lit, 0 black, -1 where rounding decides. Of a weight that is a sum of up to 27 floats each step rounds by
  * 2^-24 of it or, where it is subnormal, by 2^-150. */
