@@ -95,10 +95,10 @@
  *              mcs_ashikhmin_sample_n mcs_ashikhmin_pdf_n mcs_ashikhmin_eval_n
  * [mis]        mcs_mis_balance mcs_mis_power mcs_mix_pdf w
  * [tables]     per length on [0,1], or probability per entry; memory of the caller
- *              mcs_cell mcs_pick mcs_pwc mcs_pwc_bytes mcs_pwc_build mcs_pwc_build_fn mcs_pwc_sample mcs_pwc_pdf mcs_pwc_invert
- *              mcs_pwc_sample_n mcs_discrete_sample mcs_discrete_pmf mcs_pwl mcs_pwl_bytes mcs_pwl_build mcs_pwl_sample mcs_pwl_pdf
- *              mcs_pwl_invert mcs_pwl_sample_n mcs_alias mcs_alias_bytes mcs_alias_build mcs_alias_sample
- *              mcs_alias_sample_bits mcs_alias_pmf
+ *              mcs_cell mcs_pick mcs_pwc mcs_pwc_bytes mcs_pwc_build mcs_pwc_build_fn mcs_pwc_sample mcs_pwc_sample_bits
+ *              mcs_pwc_pdf mcs_pwc_invert mcs_pwc_sample_n mcs_discrete_sample mcs_discrete_sample_bits mcs_discrete_pmf mcs_pwl
+ *              mcs_pwl_bytes mcs_pwl_build mcs_pwl_sample mcs_pwl_sample_bits mcs_pwl_pdf mcs_pwl_invert mcs_pwl_sample_n
+ *              mcs_alias mcs_alias_bytes mcs_alias_build mcs_alias_sample mcs_alias_sample_bits mcs_alias_pmf
  * [env]        directions per solid angle; memory of the caller
  *              mcs_image mcs_image_make mcs_env mcs_texel mcs_env_bytes mcs_env_build mcs_env_build_rows mcs_env_finish
  *              mcs_env_check mcs_env_mean mcs_env_sample mcs_env_sample_bits mcs_env_pdf mcs_env_invert mcs_env_texel
@@ -2677,9 +2677,11 @@ MCSI_FN MCSI_F MCS_(mix_pdf)(MCSI_F c, MCSI_F pf, MCSI_F pg) {
  *   discrete   the same table as n probabilities                      mcs_discrete_sample(t, u) -> {i, pmf, u rescaled for reuse}
  *   pwl        piecewise linear density on [0,1], n cells, n+1 vertices
  *   alias      n probabilities by the alias method                    one look-up, but the map jumps about: stratified u are lost.
- *              For independent u and tables much larger than the cache only. mcs_alias_sample(t, u) -> {i, pmf, u} finds a
- *              column and the place in it by the 24 bits of one u: frequencies are off by up to n 2^-24 of 1/n. Beyond some
- *              thousand entries use mcs_alias_sample_bits(t, b1, b2), 32 random bits each
+ *              For independent u and tables much larger than the cache only. mcs_alias_sample(t, u) -> {i, pmf, u}
+ *   by bits    mcs_pwc_sample_bits, mcs_discrete_sample_bits, mcs_pwl_sample_bits, mcs_alias_sample_bits(t, b1, b2): the same from
+ *              64 random bits, b1 the upper 32. The 24 bits of one float u find both the entry and the place in it (x, or the u to
+ *              reuse): frequencies are off by up to n 2^-24 of 1/n, and 4 bits are left for the place in one of a million entries.
+ *              Beyond some thousand entries use bits: at least 33 are left for the place (alias: 32 in a column)
  *
  * _build returns MCS_OK, MCS_UNIFORM (all entries zero: a uniform table was made), MCS_ERR_ARG (NULL or misaligned), MCS_ERR_SIZE
  * (n is 0 or too large), MCS_ERR_MEMORY (too few bytes). After an error nothing was written. t->bad counts bad entries, t->total is
@@ -2867,15 +2869,34 @@ MCS_FN mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x,
     }
     return mcsi_pwc_fill(t, n, bad);
 }
-/* The cell of u, with the place of u in it. */
-MCS_FN uint32_t mcsi_pwc_find(const mcs_pwc *t, float u, double *place, uint32_t *mass) {
-    const uint32_t *cdf = mcsi_cdf(t);
+/* A draw: the cell, its share, and the place in it, in [0,1). */
+typedef struct {
+    double place;
+    uint32_t i, mass;
+} mcsi_pwc_place;
+MCSI_CORE uint32_t mcsi_pwc_find(const mcs_pwc *t, uint32_t U) {
+    const uint32_t *guide = mcsi_guide(t) + (U >> t->shift);
+    return mcsi_cdf_search(mcsi_cdf(t), t->n, guide[0], guide[1], U);
+}
+MCS_FN mcsi_pwc_place mcsi_pwc_draw(const mcs_pwc *t, float u) {
     double U = (double)u * MCSI_ONE;
-    const uint32_t *guide = mcsi_guide(t) + ((uint32_t)U >> t->shift);
-    uint32_t i = mcsi_cdf_search(cdf, t->n, guide[0], guide[1], (uint32_t)U);
-    *mass = cdf[i + 1] - cdf[i];
-    *place = (U - cdf[i]) / *mass;
-    return i;
+    uint32_t i = mcsi_pwc_find(t, (uint32_t)U);
+    const uint32_t *cdf = mcsi_cdf(t) + i;
+    mcsi_pwc_place p;
+    p.i = i, p.mass = cdf[1] - cdf[0];
+    p.place = (U - cdf[0]) / p.mass;
+    return p;
+}
+/* All 64 bits count: 31 find the cell, and with what those leave the others are its place, exact until it is divided. */
+MCS_FN mcsi_pwc_place mcsi_pwc_draw_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
+    uint64_t U = (uint64_t)b1 << 32 | b2; /* 2^33 times that of a float u */
+    uint32_t i = mcsi_pwc_find(t, (uint32_t)(U >> 33));
+    const uint32_t *cdf = mcsi_cdf(t) + i;
+    mcsi_pwc_place p;
+    p.i = i, p.mass = cdf[1] - cdf[0];
+    p.place = (double)(U - ((uint64_t)cdf[0] << 33)) / ((double)p.mass * 8589934592.0);
+    p.place = p.place < 1.0 ? p.place : 1.0 - 0.5 * DBL_EPSILON;
+    return p;
 }
 /* The cell of x, with the place of x in it; ok when x is in [0,1]. */
 MCS_FN uint32_t mcsi_pwc_cell(const mcs_pwc *t, float x, double *place, int *ok) {
@@ -2887,16 +2908,19 @@ MCS_FN uint32_t mcsi_pwc_cell(const mcs_pwc *t, float x, double *place, int *ok)
     *place = v - i;
     return i;
 }
-MCS_FN mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u) {
+MCSI_CORE mcs_cell mcsi_pwc_cell_at(const mcs_pwc *t, mcsi_pwc_place p, int ok) {
     mcs_cell c;
-    double place;
-    uint32_t mass;
+    c.i = p.i, c.x = mcsi_in_cell(p.i, p.place, t->n);
+    c.pdf = ok ? (float)((double)p.mass / MCSI_ONE * t->n) : 0.0f;
+    return c;
+}
+MCS_FN mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u) {
     int32_t ok = 1;
     u = mcsi_unit(u, &ok);
-    c.i = mcsi_pwc_find(t, u, &place, &mass);
-    c.x = mcsi_in_cell(c.i, place, t->n);
-    c.pdf = ok ? (float)((double)mass / MCSI_ONE * t->n) : 0.0f;
-    return c;
+    return mcsi_pwc_cell_at(t, mcsi_pwc_draw(t, u), ok);
+}
+MCS_FN mcs_cell mcs_pwc_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
+    return mcsi_pwc_cell_at(t, mcsi_pwc_draw_bits(t, b1, b2), 1);
 }
 MCS_FN float mcs_pwc_pdf(const mcs_pwc *t, float x) {
     double place;
@@ -2920,16 +2944,19 @@ MCS_FN void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *
     }
 }
 #endif
-MCS_FN mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u) {
+MCSI_CORE mcs_pick mcsi_discrete_pick(mcsi_pwc_place p, int ok) {
     mcs_pick c;
-    double place;
-    uint32_t mass;
+    c.i = p.i, c.u = mcsi_below_one(p.place);
+    c.pmf = ok ? (float)((double)p.mass / MCSI_ONE) : 0.0f;
+    return c;
+}
+MCS_FN mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u) {
     int32_t ok = 1;
     u = mcsi_unit(u, &ok);
-    c.i = mcsi_pwc_find(t, u, &place, &mass);
-    c.pmf = ok ? (float)((double)mass / MCSI_ONE) : 0.0f;
-    c.u = mcsi_below_one(place);
-    return c;
+    return mcsi_discrete_pick(mcsi_pwc_draw(t, u), ok);
+}
+MCS_FN mcs_pick mcs_discrete_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
+    return mcsi_discrete_pick(mcsi_pwc_draw_bits(t, b1, b2), 1);
 }
 MCS_FN float mcs_discrete_pmf(const mcs_pwc *t, uint32_t i) {
     return i < t->n ? (float)((double)(mcsi_cdf(t)[i + 1] - mcsi_cdf(t)[i]) / MCSI_ONE) : 0.0f;
@@ -2961,19 +2988,22 @@ MCS_FN const float *mcsi_pwl_vertices(const mcs_pwl *t) {
     return (const float *)(const void *)(t + 1) + mcsi_pwc_words(t->cells.n);
 }
 /* Within cell i the density is mass * n times a linear density on [0,1]. */
-MCS_FN mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u) {
+MCSI_CORE mcs_cell mcsi_pwl_cell_at(const mcs_pwl *t, mcsi_pwc_place p, int ok) {
     mcs_cell c;
-    double place, a, b, r;
-    uint32_t mass;
+    double a = (double)mcsi_pwl_vertices(t)[p.i], b = (double)mcsi_pwl_vertices(t)[p.i + 1], r = a + b;
+    a /= r, b /= r;
+    r = mcsi_sqrt_d((1.0 - p.place) * a * a + p.place * b * b);
+    c.i = p.i, c.x = mcsi_in_cell(p.i, r > 0.0 ? p.place / (a + r) : 0.0, t->cells.n);
+    c.pdf = ok ? (float)((double)p.mass / MCSI_ONE * t->cells.n * 2.0 * r) : 0.0f;
+    return c;
+}
+MCS_FN mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u) {
     int32_t ok = 1;
     u = mcsi_unit(u, &ok);
-    c.i = mcsi_pwc_find(&t->cells, u, &place, &mass);
-    a = (double)mcsi_pwl_vertices(t)[c.i], b = (double)mcsi_pwl_vertices(t)[c.i + 1];
-    r = a + b, a /= r, b /= r;
-    r = mcsi_sqrt_d((1.0 - place) * a * a + place * b * b);
-    c.x = mcsi_in_cell(c.i, r > 0.0 ? place / (a + r) : 0.0, t->cells.n);
-    c.pdf = ok ? (float)((double)mass / MCSI_ONE * t->cells.n * 2.0 * r) : 0.0f;
-    return c;
+    return mcsi_pwl_cell_at(t, mcsi_pwc_draw(&t->cells, u), ok);
+}
+MCS_FN mcs_cell mcs_pwl_sample_bits(const mcs_pwl *t, uint32_t b1, uint32_t b2) {
+    return mcsi_pwl_cell_at(t, mcsi_pwc_draw_bits(&t->cells, b1, b2), 1);
 }
 MCS_FN float mcs_pwl_pdf(const mcs_pwl *t, float x) {
     const float *v = mcsi_pwl_vertices(t);

@@ -19,8 +19,9 @@
 #define BITS_WORDS(X) X(hash) X(sobol_bits)
 #define BITS_SCALAR(X) \
     X(pcg32_for) X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n) \
-    X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) \
-    X(discrete_sample) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) \
+    X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) \
+    X(pwc_invert) X(pwc_sample_n) X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(pwl_bytes) X(pwl_build) \
+    X(pwl_sample) X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) \
     X(alias_bytes) X(alias_build) X(alias_sample) X(alias_sample_bits) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) \
     X(stat_error) X(stat_ci)
 #define BITS_MAPPED(X) \
@@ -259,6 +260,20 @@ FN(discrete_pmf) {
     TABLE(pwc);
     PUT(0, mcs_discrete_pmf(t, WORD(13) % BITS_CELLS));
 }
+FN(discrete_sample_bits) {
+    TABLE(pwc);
+    const mcs_pick c = mcs_discrete_sample_bits(t, WORD(11), WORD(12));
+    PUT_WORD(0, c.i), PUT(1, c.pmf), PUT(2, c.u);
+}
+#define TABLE_BITS(kind)                                                    \
+    FN(kind##_sample_bits) {                                                \
+        TABLE(kind);                                                        \
+        const mcs_cell c = mcs_##kind##_sample_bits(t, WORD(11), WORD(12)); \
+        PUT(0, c.x), PUT(1, c.pdf), PUT_WORD(2, c.i);                       \
+    }
+TABLE_BITS(pwc)
+TABLE_BITS(pwl)
+#undef TABLE_BITS
 FN(pwl_bytes) { PUT_WORD(0, (uint32_t)mcs_pwl_bytes(WORD(11) >> (WORD(12) & 31))); }
 FN(pwl_build) {
     TABLE(pwl);

@@ -740,29 +740,166 @@ static void test_alias_bits(uint32_t n) {
     arena_free(&a);
 }
 
+/* The table's integers, of entries below 2^-7, where a float pmf holds them exactly. */
+static void load_integers(const mcs_pwc *t, uint32_t n, uint32_t *cdf) {
+    uint32_t i;
+    for (i = 0, cdf[0] = 0; i < n; i++) cdf[i + 1] = cdf[i] + (uint32_t)(mcs_discrete_pmf(t, i) * 0x1p31f);
+    CHECK(cdf[n] == 1u << 31, "pmf adds up to %u of 2^31", cdf[n]);
+}
+static uint32_t *integers_of(uint32_t n) {
+    uint32_t *const cdf = malloc((n + 1) * sizeof *cdf);
+    if (!cdf) exit(puts("no memory"));
+    return cdf;
+}
+
+/* 64 bits over 2^33 are a place among 2^31 shares: found by bisection, and the rest within the entry, in long double, whose 64 digits
+ * hold the difference. Half the bits lie at a border of entries. The rest is rounded twice, as double and as float. x of pwc is
+ * (i + rest)/n, rounded to double and to float and moved by a float into its cell. */
+static void test_discrete_bits(uint32_t n) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 163);
+    arena a = arena_make(mcs_pwc_bytes(n)), b = arena_make(mcs_pwl_bytes(n));
+    const mcs_pwc *t = (const mcs_pwc *)a.at;
+    const mcs_pwl *l = (const mcs_pwl *)b.at;
+    uint32_t *const cdf = integers_of(n), i, k;
+    for (i = 0; i <= n; i++) weight[i] = i % 5 ? 0.1f + hash01(i) : 0;
+    CHECK(mcs_pwc_build((mcs_pwc *)a.at, a.bytes, weight, n) == MCS_OK && mcs_pwl_build((mcs_pwl *)b.at, b.bytes, weight, n) == MCS_OK,
+          "build");
+    load_integers(t, n, cdf);
+    for (i = 0; i < 100000; i++) {
+        const uint32_t r1 = mcs_pcg32_next(&r), r2 = mcs_pcg32_next(&r);
+        const uint64_t v = i & 1 ? ((uint64_t)cdf[r1 % (n + 1)] << 33) + r2 % 5 - 2 : (uint64_t)r1 << 32 | r2;
+        const mcs_pick d = mcs_discrete_sample_bits(t, (uint32_t)(v >> 32), (uint32_t)v);
+        const mcs_cell c = mcs_pwc_sample_bits(t, (uint32_t)(v >> 32), (uint32_t)v);
+        uint32_t lo = 0, hi = n;
+        ld rest, x;
+        while (hi - lo > 1) {
+            k = lo + (hi - lo) / 2;
+            if (cdf[k] <= v >> 33) lo = k;
+            else hi = k;
+        }
+        rest = (ld)(v - ((uint64_t)cdf[lo] << 33)) / ((cdf[lo + 1] - cdf[lo]) * 0x1p33L), x = (lo + rest) / n;
+        CHECK(d.i == lo && c.i == lo, "n = %u, bits %016llx: entries %u and %u, not %u", n, (unsigned long long)v, d.i, c.i, lo);
+        CHECK(d.pmf == mcs_discrete_pmf(t, lo) && c.pdf == mcs_pwc_pdf(t, c.x) && weight[lo] > 0,
+              "n = %u, bits %016llx: pmf %g, pdf %g", n, (unsigned long long)v, (double)d.pmf, (double)c.pdf);
+        CHECK(d.u >= 0 && d.u < 1 && fabs((double)(d.u - rest)) <= 1.0001 * eps * (double)rest, "n = %u, bits %016llx: rest %a, not %a",
+              n, (unsigned long long)v, (double)d.u, (double)rest);
+        CHECK(c.x >= 0 && c.x < 1 && fabs((double)(c.x - x)) <= 2.0001 * eps * (double)x, "n = %u, bits %016llx: x %a, not %a", n,
+              (unsigned long long)v, (double)c.x, (double)x);
+    }
+    for (i = 0; i < 100000; i++) { /* the forms with a float, of which test_pwc and test_pwl know more, are those of its bits */
+        const uint32_t b1 = mcs_pcg32_next(&r) & 0xffffff00u >> (i & 7);
+        const float u = (float)(b1 >> 1) * 0x1p-31f;
+        const mcs_pick d = mcs_discrete_sample(t, u), e = mcs_discrete_sample_bits(t, b1, 0);
+        const mcs_cell c = mcs_pwc_sample(t, u), f = mcs_pwc_sample_bits(t, b1, 0), g = mcs_pwl_sample(l, u),
+                       h = mcs_pwl_sample_bits(l, b1, 0);
+        CHECK(d.i == e.i && d.u == e.u && d.pmf == e.pmf && c.i == f.i && c.x == f.x && c.pdf == f.pdf && g.i == h.i && g.x == h.x &&
+                  g.pdf == h.pdf,
+              "n = %u, u = %a: other draws by bits", n, (double)u);
+    }
+    for (k = 0; k < 2; k++) { /* one entry that holds all 2^64, up to the last; of pwl, with no density there */
+        const float one[2] = {1, k ? 0.0f : 1.0f};
+        const mcs_cell c = (CHECK(mcs_pwl_build((mcs_pwl *)b.at, b.bytes, one, 1) == MCS_OK, "build"),
+                            mcs_pwl_sample_bits(l, 0xffffffffu, 0xffffffffu));
+        CHECK(c.x == 0x0.ffffffp0f && c.pdf >= 0, "the last bits: x %a, pdf %g", (double)c.x, (double)c.pdf);
+    }
+    CHECK(mcs_pwc_build((mcs_pwc *)a.at, a.bytes, weight + 1, 1) == MCS_OK, "build");
+    CHECK(mcs_discrete_sample_bits(t, 0xffffffffu, 0xffffffffu).u == 0x0.ffffffp0f, "the last bits: rest");
+    CHECK(mcs_pwc_sample_bits(t, 0xffffffffu, 0xffffffffu).x == 0x0.ffffffp0f, "the last bits: x");
+    arena_free(&a), arena_free(&b), free(cdf);
+}
+
+/* The u to reuse has its digits at a million entries: of draws from one entry, 64 cells of it, and 64 cells of what is behind the
+ * 14th digit, are alike; hardly any number comes twice: of 2^14 floats of [0,1) 5 pairs do, by chance, 40 of them never. With the 24
+ * bits of a float u an entry has 16 numbers. */
+static void test_reused_digits(void) {
+    enum { N = 1000000, DRAWS = 1 << 14, ENTRIES = 20 };
+    static float rest[DRAWS];
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 167);
+    arena a = arena_make(mcs_pwc_bytes(N));
+    const mcs_pwc *t = (const mcs_pwc *)a.at;
+    uint32_t *const cdf = integers_of(N), i, j, k, equal;
+    for (i = 0; i < N; i++) weight[i] = 0.1f + hash01(i);
+    CHECK(mcs_pwc_build((mcs_pwc *)a.at, a.bytes, weight, N) == MCS_OK, "build");
+    load_integers(t, N, cdf);
+    for (j = 0; j < ENTRIES; j++) {
+        double cells[64] = {0}, digits[64] = {0}, expected[64], p, q;
+        i = mcs_pcg32_next(&r) % N, equal = 0;
+        for (k = 0; k < DRAWS; k++) {
+            const uint64_t place = (uint64_t)mcs_pcg32_next(&r) << 32 | mcs_pcg32_next(&r);
+            const uint64_t v = ((uint64_t)cdf[i] << 33) + (uint64_t)((ld)place * 0x1p-64L * ((cdf[i + 1] - cdf[i]) * 0x1p33L));
+            const mcs_pick d = mcs_discrete_sample_bits(t, (uint32_t)(v >> 32), (uint32_t)v);
+            const double fine = (double)d.u * 0x1p14;
+            CHECK(d.i == i, "entry %u drawn, not %u", d.i, i);
+            cells[(int)((double)d.u * 64)] += 1, digits[(int)((fine - floor(fine)) * 64)] += 1, rest[k] = d.u;
+        }
+        qsort(rest, DRAWS, sizeof *rest, by_value);
+        for (k = 1; k < DRAWS; k++) equal += rest[k] == rest[k - 1];
+        for (k = 0; k < 64; k++) expected[k] = DRAWS / 64;
+        p = chi2_test(cells, expected, 64, NULL, NULL), q = chi2_test(digits, expected, 64, NULL, NULL);
+        CHECK(p >= level && q >= level, "entry %u: chi-square of the rest p = %g, of its last digits %g", i, p, q);
+        CHECK(equal <= 40, "entry %u: %u of %d numbers come again", i, equal, DRAWS);
+    }
+    arena_free(&a), free(cdf);
+}
+
+/* The same bytes whatever the memory held, for every number of entries up to 70 and some others, dark lists among them. */
+static void test_same_bytes(const kind *k) {
+    const uint32_t many[] = {127, 128, 129, 1000, 4095, 4096, 4097, 65537};
+    uint32_t c, i;
+    for (c = 0; c < 70 + sizeof many / sizeof *many; c++) {
+        const uint32_t n = c < 70 ? c + 1 : many[c - 70];
+        int style;
+        for (style = 0; style < 3; style++) {
+            arena a[ARENA_PASTS];
+            int past;
+            for (i = 0; i < n + k->extra; i++) weight[i] = style == 0 ? hash01(i) : style == 1 && i % 3 == 0 ? 1e30f : 0;
+            if (style == 1) weight[n / 2] = NAN;
+            for (past = 0; past < ARENA_PASTS; past++) {
+                int rc;
+                a[past] = arena_make(k->bytes(n)), arena_past(&a[past], past);
+                rc = k->build(a[past].at, a[past].bytes, weight, n);
+                CHECK(rc >= 0 && arena_intact(&a[past]), "n = %u: build returns %d", n, rc);
+                CHECK(arena_differ(&a[0], &a[past]) == a[0].bytes, "n = %u, list %d: byte %zu of %zu is another one", n, style,
+                      arena_differ(&a[0], &a[past]), a[0].bytes);
+            }
+            for (past = 0; past < ARENA_PASTS; past++) arena_free(&a[past]);
+        }
+    }
+}
+static int from_curve(void *t, size_t bytes, const float *w, uint32_t n) {
+    float scale = 2 + w[0];
+    return mcs_pwc_build_fn((mcs_pwc *)t, bytes, f_square, &scale, n);
+}
+static const kind curve = {"pwc from a function", 0, pwc_bytes, from_curve, pwc_sample, pwc_total, pwc_bad};
+
 /* Tables of more entries than a float u can tell apart: the mean of 1/(n pmf) over draws is 1 when frequencies are the pmf. Half
  * the weights are 0.01, half 1.99: the variance of one draw is 0.5/0.01 + 0.5/1.99 - 1 = 49.3. Four standard errors. */
-static void test_long_alias(uint32_t n) {
+static void test_long(const kind *k, uint32_t n) {
     enum { DRAWS = 1 << 20 };
-    const size_t bytes = mcs_alias_bytes(n);
+    const size_t bytes = k->bytes(n);
     float *const w = malloc(n * sizeof *w);
-    mcs_alias *const t = malloc(bytes);
+    void *const t = malloc(bytes);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 151);
     double total = 0;
     uint32_t i;
     int wrong = 0;
     if (!w || !t) exit(puts("no memory"));
     for (i = 0; i < n; i++) w[i] = i & 1 ? 1.99f : 0.01f;
-    CHECK(mcs_alias_build(t, bytes, w, n) == MCS_OK, "build");
-    for (i = 0; i < DRAWS; i++) {
-        const uint32_t b1 = mcs_pcg32_next(&rng), b2 = mcs_pcg32_next(&rng);
-        const mcs_pick c = mcs_alias_sample_bits(t, b1, b2);
-        total += 1 / ((double)n * (double)c.pmf);
-        wrong += !(c.i < n && c.u >= 0 && c.u < 1 && c.pmf == mcs_alias_pmf(t, c.i));
+    CHECK(k->build(t, bytes, w, n) == MCS_OK, "build");
+    for (i = 0; i <= DRAWS; i++) {
+        const uint32_t b1 = i < DRAWS ? mcs_pcg32_next(&rng) : 0xffffffffu, b2 = i < DRAWS ? mcs_pcg32_next(&rng) : 0xffffffffu;
+        const mcs_pick c = k == &kinds[ALIAS] ? mcs_alias_sample_bits((const mcs_alias *)t, b1, b2)
+                                              : mcs_discrete_sample_bits((const mcs_pwc *)t, b1, b2);
+        const float pmf = k == &kinds[ALIAS] ? mcs_alias_pmf((const mcs_alias *)t, c.i) : mcs_discrete_pmf((const mcs_pwc *)t, c.i);
+        if (i < DRAWS) total += 1 / ((double)n * (double)c.pmf);
+        wrong += !(c.i < n && c.u >= 0 && c.u < 1 && c.pmf == pmf);
+        if (k == &kinds[PWC]) {
+            const mcs_cell cell = mcs_pwc_sample_bits((const mcs_pwc *)t, b1, b2);
+            wrong += !(cell.i == c.i && cell.pdf == mcs_pwc_pdf((const mcs_pwc *)t, cell.x));
+        }
     }
     CHECK(wrong == 0, "%d wrong picks", wrong);
     CHECK(fabs(total / DRAWS - 1) <= 4 * sqrt(49.3 / DRAWS), "n = %u: mean of 1/(n pmf) is %g", n, total / DRAWS);
-    CHECK(mcs_alias_sample_bits(t, 0xffffffffu, 0xffffffffu).i < n, "the last column");
     free(w), free(t);
 }
 /* n 2^31 above 2^54, where the room for shares, n 2^31 - n, rounds up as double: shares must still add up. */
@@ -788,6 +925,11 @@ int main(int argc, char **argv) {
     mcst_group("pwc and discrete");
     test_pwc();
     if (mcst_case("rest of u")) test_rest(&kinds[DISCRETE]);
+    if (mcst_case("1000 entries by 64 bits, exactly")) test_discrete_bits(1000);
+    if (mcst_case("a million entries by 64 bits, exactly")) test_discrete_bits(1000000);
+    if (mcst_case("discrete, 1000001 entries by 64 bits")) test_long(&kinds[DISCRETE], 1000001);
+    if (mcst_case("pwc, 1000001 cells by 64 bits")) test_long(&kinds[PWC], 1000001);
+    if (mcst_case("digits of the rest at a million entries")) test_reused_digits();
     mcst_group("pwl");
     test_pwl();
     mcst_group("alias");
@@ -795,8 +937,8 @@ int main(int argc, char **argv) {
     if (mcst_case("rest of u")) test_rest(&kinds[ALIAS]);
     if (mcst_case("3 entries by 64 bits, exactly")) test_alias_bits(3);
     if (mcst_case("1000 entries by 64 bits, exactly")) test_alias_bits(1000);
-    if (mcst_case("2^18 entries by 64 bits")) test_long_alias(1u << 18);
-    if (mcst_case("1000001 entries by 64 bits")) test_long_alias(1000001);
+    if (mcst_case("2^18 entries by 64 bits")) test_long(&kinds[ALIAS], 1u << 18);
+    if (mcst_case("1000001 entries by 64 bits")) test_long(&kinds[ALIAS], 1000001);
     if (mcst_case("8388610 entries")) test_huge_alias();
     if (mcst_case("last of more cells than floats")) CHECK(mcsi_in_cell((1u << 25) - 1, 0.9, 1u << 25) < 1, "x is 1");
     mcst_group("table batches");

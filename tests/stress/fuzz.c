@@ -216,20 +216,30 @@ static size_t size_of(int kind, uint32_t n) {
     return kind == PWL ? mcs_pwl_bytes(n) : kind == ALIAS ? mcs_alias_bytes(n) : mcs_pwc_bytes(n);
 }
 
+static uint32_t bits_of(float x) {
+    uint32_t b;
+    memcpy(&b, &x, sizeof b);
+    return b;
+}
 static void draw_table(int kind, const void *t, uint32_t n, float u, float x, uint32_t i) {
     const int good = u >= 0 && u < 1;
+    const uint32_t b1 = bits_of(u), b2 = bits_of(x);
     if (kind == PWL) {
-        const mcs_cell c = mcs_pwl_sample((const mcs_pwl *)t, u);
+        const mcs_cell c = mcs_pwl_sample((const mcs_pwl *)t, u), s = mcs_pwl_sample_bits((const mcs_pwl *)t, b1, b2);
+        MUST(below_one(s.x) && proper(s.pdf) && s.i < n);
         MUST(below_one(c.x) && proper(c.pdf) && c.i < n && (good || c.pdf == 0));
         MUST(proper(mcs_pwl_pdf((const mcs_pwl *)t, x)) && below_one(mcs_pwl_invert((const mcs_pwl *)t, x)));
     } else if (kind == ALIAS) {
-        const mcs_pick c = mcs_alias_sample((const mcs_alias *)t, u);
+        const mcs_pick c = mcs_alias_sample((const mcs_alias *)t, u), s = mcs_alias_sample_bits((const mcs_alias *)t, b1, b2);
+        MUST(below_one(s.u) && s.i < n && s.pmf > 0 && s.pmf <= 1);
         MUST(below_one(c.u) && c.pmf <= 1 && c.i < n && (good ? c.pmf > 0 : c.pmf == 0));
         MUST(proper(mcs_alias_pmf((const mcs_alias *)t, i)) && (!good || mcs_alias_pmf((const mcs_alias *)t, c.i) == c.pmf));
     } else {
         const mcs_pwc *pwc = (const mcs_pwc *)t;
-        const mcs_cell c = mcs_pwc_sample(pwc, u);
-        const mcs_pick d = mcs_discrete_sample(pwc, u);
+        const mcs_cell c = mcs_pwc_sample(pwc, u), s = mcs_pwc_sample_bits(pwc, b1, b2);
+        const mcs_pick d = mcs_discrete_sample(pwc, u), p = mcs_discrete_sample_bits(pwc, b1, b2);
+        MUST(below_one(s.x) && s.i < n && s.pdf > 0 && mcs_pwc_pdf(pwc, s.x) == s.pdf);
+        MUST(below_one(p.u) && p.i == s.i && p.pmf > 0 && mcs_discrete_pmf(pwc, p.i) == p.pmf);
         MUST(below_one(c.x) && proper(c.pdf) && c.i < n && (good ? c.pdf > 0 : c.pdf == 0));
         MUST(below_one(d.u) && d.i == c.i && d.pmf <= 1 && (good ? d.pmf > 0 : d.pmf == 0));
         MUST(!good || (mcs_pwc_pdf(pwc, c.x) == c.pdf && mcs_discrete_pmf(pwc, d.i) == d.pmf));
@@ -415,7 +425,8 @@ static void fuzz_env(int products, bytes *b) {
     free(other);
 }
 
-/* A table as it comes from a file: the input itself, or a map of the input's size with bytes of it changed. */
+/* A table as it comes from a file: the input itself, or a map of the input's size with bytes of it changed; half of them with
+ * checksums that fit, as they would hide from everything else that is checked. */
 static void fuzz_file(bytes *b) {
     const uint32_t raw = take_u8(b) & 1, w = 1 + take_u8(b) % 20, h = 1 + take_u8(b) % 12, changes = take_u8(b) % 4;
     const size_t table = mcs_env_bytes(w, h), size = raw ? b->left : table, less = take_u32(b);
