@@ -2838,6 +2838,10 @@ MCS_FN mcs_status mcsi_table_check(const void *t, size_t bytes, const void *sour
 enum { MCSI_CELLS_MAX = 1 << 28 };
 MCS_FN const uint32_t *mcsi_cdf(const mcs_pwc *t) { return (const uint32_t *)(const void *)(t + 1); }
 MCS_FN const uint32_t *mcsi_guide(const mcs_pwc *t) { return mcsi_cdf(t) + t->n + 1; }
+/* Tables end at a multiple of 8 bytes. */
+MCSI_CORE void mcsi_words_end(uint32_t *words, size_t n) {
+    if (n & 1) words[n] = 0;
+}
 MCS_FN size_t mcsi_pwc_words(uint32_t n) { return (size_t)n + 2 + (MCSI_ONE >> mcsi_guide_shift(n, 1)); }
 
 MCS_FN size_t mcs_pwc_bytes(uint32_t n) {
@@ -2854,19 +2858,25 @@ MCS_FN mcs_status mcsi_pwc_fill(mcs_pwc *t, uint32_t n, uint32_t bad) {
 }
 MCS_FN mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n) {
     mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwc_bytes(n));
-    return e ? e : mcsi_pwc_fill(t, n, mcsi_weights_in((uint32_t *)(void *)(t + 1), f, n));
+    uint32_t *words, bad;
+    if (e) return e;
+    words = (uint32_t *)(void *)(t + 1), bad = mcsi_weights_in(words, f, n);
+    mcsi_words_end(words, mcsi_pwc_words(n));
+    return mcsi_pwc_fill(t, n, bad);
 }
 MCS_FN mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context, uint32_t n) {
     mcs_status e = mcsi_table_check(t, bytes, f ? (const void *)t : NULL, mcs_pwc_bytes(n));
-    uint32_t i, bad = 0;
+    uint32_t *words, i, bad = 0;
     if (e) return e;
+    words = (uint32_t *)(void *)(t + 1);
     for (i = 0; i < n; i++) {
         double a = 0.34785484513745385 * ((double)f((float)((i + 0.069431844202973712) / n), context) +
                                           (double)f((float)((i + 0.93056815579702629) / n), context));
         double b = 0.65214515486254614 * ((double)f((float)((i + 0.33000947820757187) / n), context) +
                                           (double)f((float)((i + 0.66999052179242813) / n), context));
-        mcsi_put_weight((uint32_t *)(void *)(t + 1) + i, mcsi_clean((float)(0.5 * (a + b)), &bad));
+        mcsi_put_weight(words + i, mcsi_clean((float)(0.5 * (a + b)), &bad));
     }
+    mcsi_words_end(words, mcsi_pwc_words(n));
     return mcsi_pwc_fill(t, n, bad);
 }
 /* A draw: the cell, its share, and the place in it, in [0,1). */
@@ -2973,6 +2983,7 @@ MCS_FN mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32
     if (e) return e;
     words = (uint32_t *)(void *)(t + 1), vertex = words + mcsi_pwc_words(n);
     bad = mcsi_weights_in(vertex, f, n + 1);
+    mcsi_words_end(words, mcsi_pwc_words(n) + n + 1);
     for (i = 0; i <= n; i++) top = mcsi_max(top, mcsi_word_weight(vertex + i));
     for (i = 0; i < n; i++) { /* a cell weighs the sum of its vertices, or half of it where that could overflow */
         float a = mcsi_word_weight(vertex + i), b = mcsi_word_weight(vertex + i + 1), w = top > 1e38f ? 0.5f * a + 0.5f * b : a + b;
@@ -3138,9 +3149,11 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  *   mcs_env_sample_n(e, n, u1, u2, x, y, z, pdf, col, row), _texel_n(e, n, x, y, z, col, row, pdf), _pdf_n(e, n, x, y, z, pdf)
  *                                arrays, of which results may be NULL; memory is fetched ahead, so these are the fast forms for
  *                                large maps
- *   mcs_env_check(e, bytes)      whether memory (a file read or mapped) is a table: MCS_OK; MCS_ERR_MEMORY when cut short,
- *                                MCS_ERR_FORMAT when it is none, of another version or byte order, or damaged. Reads all
- *                                that samplers use
+ *   mcs_env_check(e, bytes)      whether memory (a file read or mapped) is a table: MCS_OK, else MCS_ERR_MEMORY when cut short, or
+ *                                MCS_ERR_FORMAT. MCS_OK promises that all bytes but e->frame are those of a build, by a checksum
+ *                                of 64 bits: damage to one byte never passes, other damage once in 2^64 times; that e->frame,
+ *                                which is yours to change, is orthonormal to 1e-4; and that samplers keep to the table's
+ *                                memory, even if the table was forged. It reads the whole table
  *   mcs_env_mean(&image)         mean luminance over the sphere
  *   mcs_env_weight(e, pdf)       1/pdf, for an estimator without other strategies: 0 and MCS_ASSERT for a map with a floor
  *   mcs_env_window_*             the same for a rectangle of texels: `rows` rows from `row`, `cols` columns from `col`, across the
@@ -3164,8 +3177,8 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  * MIS compensation (Karlik et al. 2019): with image.floor = mcs_env_mean(&image), what is darker than the mean is left to the other
  * strategy. Such a table is incomplete (e->incomplete): its density is 0 where the map is not black.
  * Skipped: a constant map is the uniform sphere and its rows are never read; an all-black one likewise, build returns MCS_UNIFORM;
- * rows without light are not written, texels outside rows [row0, row1) and columns [col0, col1) not read.
- * Cost: two cache misses; 4.3 bytes a texel from 1024 x 512 on, 5.2 at 64 x 32. Source: Pharr, Jakob, Humphreys 2023, section
+ * rows without light are zeros; texels outside rows [row0, row1) and columns [col0, col1) are not read.
+ * Cost: two cache misses; 4.3 bytes a texel from 1024 x 512 on, 5.3 at 64 x 32. Source: Pharr, Jakob, Humphreys 2023, section
  * 12.5. */
 
 #ifndef MCS_NO_TABLES
@@ -3271,6 +3284,7 @@ typedef struct {
     uint32_t w, h, bad, row0, row1, col0, col1, uniform, incomplete;
     float turn, inner; /* mcsi_env_direction */
     mcs_frame frame;
+    uint64_t sum; /* mcsi_env_sum */
 } mcs_env;
 typedef struct {
     uint32_t row, rows, col, cols, shift, uniform;
@@ -3290,9 +3304,11 @@ typedef struct {
 typedef struct {
     uint32_t begin, mass;
 } mcsi_env_span;
-/* What build_rows leaves to finish: the weight of the row; the weight of its texels if they are all alike, else -1. */
+/* What build_rows leaves to finish: the weight of the row; the weight of its texels if they are all alike, else -1. For check:
+ * mcsi_env_row_sum. */
 typedef struct {
     double power;
+    uint64_t sum;
     float level;
     uint32_t bad, col0, col1;
 } mcsi_env_info;
@@ -3305,7 +3321,7 @@ typedef struct {
     uint32_t row, count, col, cols, shift, uniform;
 } mcsi_env_view;
 
-enum { MCSI_ENV_MAX = 1 << 16, MCSI_ENV_VERSION = 3, MCSI_ENV_CELLS = 8, MCSI_ENV_CHUNK = 64 };
+enum { MCSI_ENV_MAX = 1 << 16, MCSI_ENV_VERSION = 4, MCSI_ENV_CELLS = 8, MCSI_ENV_CHUNK = 64 };
 #define MCSI_ENV_MAGIC 0x4553434du /* "MCSE" in a little-endian file */
 
 MCS_FN uint64_t mcsi_up8(uint64_t bytes) { return (bytes + 7) / 8 * 8; }
@@ -3335,6 +3351,44 @@ MCSI_CORE mcsi_env_view mcsi_env_whole(const mcs_env *e) {
     v.line = (const mcsi_env_line *)(const void *)((const char *)e + e->at.line), v.span = NULL;
     v.row = 0, v.count = e->h, v.col = 0, v.cols = e->w, v.shift = e->at.row_shift, v.uniform = e->uniform;
     return v;
+}
+/* Checksums: words of 8 bytes are mixed, each one-to-one, into one of eight sums, and these into one. So a change within one word
+ * changes the sum, whatever else there is; of changes without aim one in 2^64 does not. Zeros leave 0. */
+MCSI_CORE uint64_t mcsi_check_mix(uint64_t sum, uint64_t word) {
+    sum = (sum ^ word) * 0x9e3779b97f4a7c15u;
+    return sum ^ sum >> 32;
+}
+MCSI_CORE uint64_t mcsi_check_word(const char *at, size_t bytes) {
+    uint64_t word = 0;
+    memcpy(&word, at, bytes);
+    return word;
+}
+MCS_FN uint64_t mcsi_checksum(uint64_t before, const void *memory, size_t bytes) {
+    const char *at = (const char *)memory;
+    uint64_t sum[8] = {0};
+    int k;
+    sum[0] = before;
+    for (; bytes >= 64; at += 64, bytes -= 64) {
+        MCSI_UNROLL
+        for (k = 0; k < 8; k++) sum[k] = mcsi_check_mix(sum[k], mcsi_check_word(at + 8 * k, 8));
+    }
+    for (; bytes >= 8; at += 8, bytes -= 8) sum[0] = mcsi_check_mix(sum[0], mcsi_check_word(at, 8));
+    if (bytes) sum[0] = mcsi_check_mix(sum[0], mcsi_check_word(at, bytes));
+    for (k = 1; k < 8; k++) sum[0] = mcsi_check_mix(sum[0], sum[k]);
+    return sum[0];
+}
+/* Of a row's cumulative sums and its guide; 0 of a black row. */
+MCSI_CORE uint64_t mcsi_env_row_sum(const uint32_t *cdf, uint32_t w, const uint16_t *guide, uint32_t guides) {
+    return mcsi_checksum(mcsi_checksum(0, cdf, ((size_t)w + 1) * sizeof *cdf), guide, guides * sizeof *guide);
+}
+/* Where the last row's guide ends. */
+MCSI_CORE uint64_t mcsi_env_end(const mcs_env *e) { return e->at.col_guide + (uint64_t)e->at.guides * e->h * sizeof(uint16_t); }
+/* Of the whole table but the frame, which may change; rows count by their own sums. */
+MCS_FN uint64_t mcsi_env_sum(const mcs_env *e) {
+    const char *at = (const char *)e;
+    uint64_t sum = mcsi_checksum(0, at, offsetof(mcs_env, frame));
+    sum = mcsi_checksum(sum, at + e->at.edge, (size_t)(e->at.cdf - e->at.edge));
+    return mcsi_checksum(sum, at + mcsi_env_end(e), (size_t)(e->at.bytes - mcsi_env_end(e)));
 }
 /* 1 - cos(pi x), x in [0,1], without libm so that tables are the same everywhere: 2 sin^2(pi x/2) by Taylor to x^17. */
 MCS_FN double mcsi_one_minus_cos_pi(double x) {
@@ -3451,16 +3505,17 @@ MCS_FN float mcs_env_mean(const mcs_image *im) {
 
 MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, uint16_t *guide, uint32_t shift,
                                mcsi_env_info *info) {
-    uint32_t x, k, n, first = im->w, last = 0, same = 0;
+    uint32_t x, n, first = im->w, last = 0, same = 0, guides = (MCSI_ONE >> shift) + 1;
     float v[MCSI_ENV_CHUNK], level = 0.0f;
     info->bad = 0;
     for (x = 0; x < im->w; x += n) {
-        uint32_t lit = 0;
+        uint32_t lit;
         n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : (uint32_t)MCSI_ENV_CHUNK;
         mcsi_image_weights(im, y, x, n, v, &info->bad);
         level = x ? level : v[0];
-        for (k = 0; k < n; k++) lit = v[k] > 0.0f ? k + 1 : lit, same += v[k] == level;
-        if (lit) { /* a row is written from its first light on */
+        while (same < x + n && same >= x && v[same - x] == level) same++;
+        for (lit = same == x + n && !(level > 0.0f) ? 0 : n; lit > 0 && !(v[lit - 1] > 0.0f);) lit--;
+        if (lit) { /* weights are kept from the first light on */
             if (!last) {
                 memset(cdf, 0, x * sizeof *cdf);
                 for (first = x; !(v[first - x] > 0.0f);) first++;
@@ -3469,10 +3524,16 @@ MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, u
         }
         if (last) memcpy(cdf + x, v, n * sizeof *v);
     }
-    info->power = 0.0, info->level = same == im->w ? level : -1.0f, info->col0 = first, info->col1 = last;
-    if (!last) return;
+    info->power = 0.0, info->sum = 0;
+    info->level = same == im->w ? level : -1.0f, info->col0 = first, info->col1 = last;
+    if (!last) {
+        memset(cdf, 0, ((size_t)im->w + 1) * sizeof *cdf);
+        memset(guide, 0, guides * sizeof *guide);
+        return;
+    }
     info->power = mcsi_cdf_build(cdf, im->w) * mcsi_env_height(y, im->h);
     MCSI_GUIDE_BUILD(guide, uint16_t, shift, cdf, im->w);
+    info->sum = mcsi_env_row_sum(cdf, im->w, guide, guides);
 }
 MCS_FN mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1) {
     mcs_status status = mcsi_env_refuse(e, bytes, im);
@@ -3503,6 +3564,8 @@ MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) 
     edge = (double *)(void *)((char *)e + e->at.edge), line = (mcsi_env_line *)(void *)((char *)e + e->at.line);
     info = (const mcsi_env_info *)(const void *)((const char *)e + e->at.info);
     rows = (uint32_t *)(void *)((char *)e + e->at.rows), guide = (uint16_t *)(void *)((char *)e + e->at.row_guide);
+    memset(rows, 0, (size_t)(e->at.cdf - e->at.rows)); /* this list and its guide do not always fill their parts */
+    memset((char *)e + mcsi_env_end(e), 0, (size_t)(e->at.bytes - mcsi_env_end(e)));
     for (y = 0; y <= (e->h + 1) / 2; y++) edge[y] = mcsi_one_minus_cos_pi((double)y / e->h);
     for (y = 0; y < e->h; y++) {
         e->bad += info[y].bad, e->total += info[y].power * (6.2831853071795865 / e->w);
@@ -3519,6 +3582,7 @@ MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) 
     mcsi_cdf_build(rows, e->h);
     MCSI_GUIDE_BUILD(guide, uint16_t, e->at.row_shift, rows, e->h);
     for (y = 0; y < e->h; y++) mcsi_env_set_line(&line[y], y, e->w, e->h);
+    e->sum = mcsi_env_sum(e);
     return top > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 MCS_FN mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im) {
@@ -3541,7 +3605,16 @@ MCS_FN int mcsi_same(double a, double b, double relative) {
     double slack = relative * (b < 0.0 ? -b : b);
     return a - b <= slack && b - a <= slack;
 }
-MCS_FN int mcsi_finite_vec3(mcs_vec3 v) { return mcsi_abs(v.x) <= FLT_MAX && mcsi_abs(v.y) <= FLT_MAX && mcsi_abs(v.z) <= FLT_MAX; }
+/* Whether a frame is orthonormal to 1e-4. Its nine numbers may be a product of rotations: with floats each of them leaves 3 * 2^-24
+ * in every number, thus 2 sqrt(3) times as much in the dot product of two columns, 1e-4 after 160 of them. */
+MCSI_CORE int mcsi_dot_is(mcs_vec3 a, mcs_vec3 b, double want) {
+    double off = (double)a.x * (double)b.x + (double)a.y * (double)b.y + (double)a.z * (double)b.z - want;
+    return off <= 1e-4 && off >= -1e-4;
+}
+MCS_FN int mcsi_frame_ok(const mcs_frame *f) {
+    return mcsi_dot_is(f->s, f->s, 1.0) && mcsi_dot_is(f->t, f->t, 1.0) && mcsi_dot_is(f->n, f->n, 1.0) &&
+           mcsi_dot_is(f->s, f->t, 0.0) && mcsi_dot_is(f->t, f->n, 0.0) && mcsi_dot_is(f->n, f->s, 0.0);
+}
 /* Whether light fills just these rows and columns. */
 MCS_FN int mcsi_env_holds(const mcs_env *e, uint32_t row0, uint32_t row1, uint32_t col0, uint32_t col1) {
     return e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1;
@@ -3550,6 +3623,7 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     mcsi_env_parts at;
     mcsi_env_view v;
     mcs_env turns;
+    const mcsi_env_info *info;
     const uint32_t *cdf;
     uint32_t y, row0, row1 = 0, col0, col1 = 0;
     size_t i;
@@ -3560,8 +3634,12 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     for (i = 0; i < sizeof at; i++) /* memcmp, which kernels do not have */
         if (((const char *)&at)[i] != ((const char *)&e->at)[i]) return MCS_ERR_FORMAT;
     if (e->uniform > 1 || e->incomplete > 1 || !(e->total >= 0.0 && e->total <= DBL_MAX)) return MCS_ERR_FORMAT;
-    if (!mcsi_finite_vec3(e->frame.s) || !mcsi_finite_vec3(e->frame.t) || !mcsi_finite_vec3(e->frame.n)) return MCS_ERR_FORMAT;
+    if (!mcsi_frame_ok(&e->frame)) return MCS_ERR_FORMAT;
     if (bytes < at.bytes) return MCS_ERR_MEMORY;
+    if (e->sum != mcsi_env_sum(e)) return MCS_ERR_FORMAT;
+    info = (const mcsi_env_info *)(const void *)((const char *)e + at.info);
+    for (y = 0; y < e->h; y++)
+        if (info[y].sum != mcsi_env_row_sum(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), at.guides)) return MCS_ERR_FORMAT;
     v = mcsi_env_whole(e), row0 = e->h, col0 = e->w, turns.w = e->w, mcsi_env_set_turn(&turns);
     if (!mcsi_same((double)e->turn, (double)turns.turn, 1.2e-7) || !mcsi_same((double)e->inner, (double)turns.inner, 1.2e-7))
         return MCS_ERR_FORMAT;
@@ -3895,10 +3973,10 @@ MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mc
     if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
     all = mcsi_env_whole(e), span = (mcsi_env_span *)(void *)(m + 1);
     cdf = (uint32_t *)(void *)(span + rows), guide = (uint16_t *)(void *)(cdf + rows + 1);
+    memset(m, 0, mcs_env_window_bytes(rows)); /* the guide does not always fill its part */
     m->row = row, m->rows = rows, m->col = col, m->cols = cols, m->shift = mcsi_guide_shift(rows, 1);
     for (i = 0; i < rows; i++) {
         uint32_t mass = e->uniform ? 0 : all.rows[row + i + 1] - all.rows[row + i], end = col + cols;
-        span[i].begin = span[i].mass = 0;
         if (mass) {
             const uint32_t *c = mcsi_env_cdf(e, row + i);
             span[i].begin = c[col], span[i].mass = end <= e->w ? c[end] - c[col] : MCSI_ONE - c[col] + c[end - e->w];
@@ -3943,7 +4021,8 @@ MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, s
  *   prepared form, for several samples at a point: about 17 KB for 16 rows
  *     mcs_product_bytes(rows), mcs_product_build(p, bytes, t, e, &reflection); MCS_PRODUCT_BYTES(rows) is a constant, for the stack
  *     mcs_product_build_weights(p, bytes, t, e, weight)             any reflection: weight[rows * 2 rows], one per tile, to be
- *                                evaluated about mcs_tiles_direction(t, e, k); > 0 wherever the reflection may be
+ *                                evaluated about mcs_tiles_direction(t, e, k); > 0 wherever the reflection may be; bad ones as in
+ *                                [tables]
  *     mcs_product_sample(p, u1, u2) -> mcs_texel, mcs_product_pdf(p, w),
  *     mcs_product_sample_n(p, n, u1, u2, x, y, z, pdf, col, row)     results may be NULL
  *   one-shot form, for one sample at a point: no table, from 4 x 8 patches down to a tile
@@ -4358,6 +4437,7 @@ MCS_FN void mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, uint
         size_t at = (size_t)j * rows + i;
         float *around = (float *)(uintptr_t)mcsi_tiles_around(t) + 12 * at;
         for (y = p->row0; y < p->row1; y++) mcsi_patch_add_row(e, &all, y, p);
+        memset(m, 0, t->window_bytes); /* where no light is, and where windows of other tiles have one row more */
         if (p->e > 0.0) mcs_env_window_build(m, t->window_bytes, e, p->row0, p->row1 - p->row0, p->col0, p->col1 - p->col0);
         mcsi_patch_store(e, p, (float *)(uintptr_t)mcsi_tiles_fields(t) + at, n);
         mcsi_patch_nodes(e, m, p, (float *)(uintptr_t)mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * at);
@@ -4470,8 +4550,14 @@ MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_til
     if (bytes < mcs_product_bytes(t->rows)) return MCS_ERR_MEMORY;
     memset(p, 0, sizeof *p);
     p->t = t, p->e = e;
+    mcsi_product_rows(p)[t->rows + 1] = 0; /* it only aligns what follows */
     memset(mcsi_product_fine(p), 0, (size_t)t->rows * t->cols);
     return MCS_OK;
+}
+/* Memory keeps nothing of what it held before: zeros for the grids that no tile uses. */
+MCSI_CORE void mcsi_product_end_grids(mcs_product *p, uint32_t used) {
+    const size_t grid = MCSI_GRID + MCSI_NODES;
+    memset(mcsi_product_grids(p) + used * grid, 0, (MCSI_FINE - used) * grid * sizeof(float));
 }
 MCSI_CORE void mcsi_product_add_up(mcs_product *p) {
 #ifndef MCS_NO_BATCH
@@ -4561,8 +4647,8 @@ MCS_FN float mcsi_grid_make(const mcsi_facing *s, const float *node, float *v) {
     for (k = 0; k < MCSI_NODES; k++) v[MCSI_GRID + k] = sum[k] + (MCSI_NODES - 1) * least;
     return mean + least;
 }
-/* The tiles that weigh most get a grid, and weigh what that says. */
-MCS_FN void mcsi_product_refine(mcs_product *p, const mcsi_facing *s) {
+/* The tiles that weigh most get a grid, and weigh what that says. Returns how many they are. */
+MCS_FN uint32_t mcsi_product_refine(mcs_product *p, const mcsi_facing *s) {
     uint32_t tile[MCSI_FINE], count, i;
     count = mcsi_product_heaviest(p, tile);
     for (i = 0; i < count; i++) {
@@ -4570,6 +4656,7 @@ MCS_FN void mcsi_product_refine(mcs_product *p, const mcsi_facing *s) {
                                                          mcsi_product_grids(p) + i * (size_t)(MCSI_GRID + MCSI_NODES));
         mcsi_product_fine(p)[tile[i]] = (uint8_t)(i + 1);
     }
+    return count;
 }
 /* Solid angle of a lobe, that of the sphere over `cells`: 1. */
 MCSI_CORE float mcsi_lobe_width(const mcsi_facing *s, size_t cells) { return (float)cells * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z; }
@@ -4626,14 +4713,20 @@ MCSI_CORE float mcsi_own_mix(const mcsi_own_lobe *l, float share, mcs_vec3 w, fl
 MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
     mcs_status status = mcsi_product_start(p, bytes, t, e);
     mcsi_facing s;
+    uint32_t fine = 0;
     size_t n;
     if (status) return status;
-    if (!r || !mcsi_facing_make(e, r, &s)) return r ? MCS_UNIFORM : MCS_ERR_ARG;
+    if (!r) return MCS_ERR_ARG;
+    if (!mcsi_facing_make(e, r, &s)) {
+        memset(mcsi_product_units(p), 0, mcs_product_bytes(t->rows) - sizeof *p);
+        return MCS_UNIFORM;
+    }
     n = (size_t)t->rows * t->cols;
     p->own = mcsi_own_make(r, &s), p->brdf_share = mcsi_brdf_share(&s, 14 * n, 0.03f), p->warped = 1;
     mcsi_tiles_value(&s, n, mcsi_tiles_fields(t), n, mcsi_product_values(p));
     mcsi_corners_value(&s, mcsi_corners(t), mcsi_tiles_corners(t), mcsi_corners(t), mcsi_product_corners(p));
-    if (s.matte < 1.0f && mcsi_lobe_width(&s, n) < MCSI_FINE_BELOW) mcsi_product_refine(p, &s);
+    if (s.matte < 1.0f && mcsi_lobe_width(&s, n) < MCSI_FINE_BELOW) fine = mcsi_product_refine(p, &s);
+    mcsi_product_end_grids(p, fine);
     return mcsi_product_finish(p);
 }
 MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
@@ -4648,6 +4741,8 @@ MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const 
     for (k = 0; k < n; k++) value[k] = mcsi_clean(weight[k], &bad), top = mcsi_max(top, value[k]);
     for (k = 0; k < n; k++) /* of the size of reflections, and none lost to underflow */
         value[k] = value[k] > 0.0f ? mcsi_max((float)((double)value[k] / (double)top), 1e-18f) : 0.0f;
+    memset(mcsi_product_corners(p), 0, mcsi_corners(t) * sizeof(float));
+    mcsi_product_end_grids(p, 0);
     return mcsi_product_finish(p);
 }
 /* A number in [0, 2^31) as one in [0, 1], and a place as such a number. */
@@ -4733,7 +4828,7 @@ MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double 
     mcsi_env_view v = mcsi_env_part(e, mcsi_tiles_window(t, i, j));
     const uint32_t *cdf;
     uint32_t row = at->row - v.row;
-    if (!v.uniform && v.rows[row] == v.rows[row + 1]) return 0.0f; /* such a row was not written */
+    if (!v.uniform && v.rows[row] == v.rows[row + 1]) return 0.0f; /* no light in it */
     if (fine || warp) {
         float t1, t2;
         mcsi_tiled_place(e, &v, at, &t1, &t2);

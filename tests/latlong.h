@@ -1,5 +1,5 @@
-/* Latitude-longitude pictures as the environment map's tests need them: what a texel covers and where it lies, in double and long
- * double. */
+/* What the tests of environment maps share: what a texel covers and where it lies, in double and long double; tables with forged
+ * checksums. */
 #ifndef MCST_LATLONG_H
 #define MCST_LATLONG_H
 #include <math.h>
@@ -29,5 +29,14 @@ static inline void texel_of(uint32_t w, uint32_t h, mcs_vec3 v, double *col, dou
     if (turn < 0) turn += 1;
     *col = turn * w;
     *row = atan2(sqrt((double)v.x * v.x + (double)v.y * v.y), v.z) / pi * h;
+}
+
+/* Checksums that fit a damaged table, as a forger would compute them: what mcs_env_check knows without them is then all that is
+ * left. Size and layout must be those of the memory. */
+static inline void seal(mcs_env *e) {
+    mcsi_env_info *info = (mcsi_env_info *)(void *)((char *)e + e->at.info);
+    uint32_t y;
+    for (y = 0; y < e->h; y++) info[y].sum = mcsi_env_row_sum(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.guides);
+    e->sum = mcsi_env_sum(e);
 }
 #endif

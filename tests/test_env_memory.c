@@ -263,7 +263,7 @@ static void test_contrast(void) {
 
 /* ---- in parts ---- */
 
-/* Ranges that hold every row, in random order, some empty, some twice: the same bytes, also of what is not written. */
+/* Ranges that hold every row, in random order, some empty, some twice: the same bytes, in memory that held others. */
 static void test_parts(void) {
     const shade any[5] = {v_random, v_wide, v_region, v_thirds, v_black};
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 101);
@@ -275,6 +275,7 @@ static void test_parts(void) {
         arena a = arena_make(mcs_env_bytes(p.w, p.h)), b = arena_make(a.bytes);
         mcs_status whole, rc = MCS_OK;
         image.bilinear = i % 3 == 1, image.floor = i % 4 == 2 ? mcs_env_mean(&image) : 0;
+        arena_past(&b, i % ARENA_PASTS);
         whole = mcs_env_build(env_in(&a), a.bytes, &image);
         while (y < p.h) {
             const uint32_t rest = p.h - y, to = y + (i % 2 ? 1 + mcs_pcg32_next(&rng) % rest : 1);
@@ -327,6 +328,11 @@ static void poison(const arena *a, uint32_t r) {
     memset(cdf_of(a, r), 0xff, (env_in(a)->w + 1) * sizeof(uint32_t));
     memset(guide_of(a, r), 0xff, env_in(a)->at.guides * 2);
 }
+static size_t zeros(const unsigned char *p, size_t n) {
+    size_t i, count = 0;
+    for (i = 0; i < n; i++) count += p[i] == 0;
+    return count;
+}
 static size_t row_bytes(const mcs_env *e) { return (e->w + (size_t)1) * sizeof(uint32_t) + e->at.guides * (size_t)2; }
 
 enum { DRAWS = 4096 };
@@ -366,7 +372,7 @@ static void check_skips(picture p, mcs_status status, uint32_t lit, int uniform)
     const mcs_env *e = env_in(&a);
     const size_t texels = (size_t)p.w * p.h;
     float *before = (float *)malloc(2 * texels * sizeof *before), *after = before + texels;
-    size_t kept = 0, unread = 0;
+    uint32_t unread = 0;
     double first, second;
     uint32_t r, c;
     if (!before) exit(2);
@@ -374,23 +380,19 @@ static void check_skips(picture p, mcs_status status, uint32_t lit, int uniform)
     first = record(e, before);
     for (r = 0; r < p.h; r++) {
         int black = 1;
-        size_t held;
+        size_t none;
         for (c = 0; c < p.w; c++) black &= p.lum[(size_t)r * p.w + c] == 0;
-        held = filled((unsigned char *)cdf_of(&a, r), (p.w + (size_t)1) * 4) + filled(guide_of(&a, r), e->at.guides * (size_t)2);
-        if (black) {
-            kept += held;
-            CHECK(held == row_bytes(e), "%s: %zu of %zu bytes of black row %u written", p.name, row_bytes(e) - held, row_bytes(e),
-                  r);
-        }
+        none = zeros((unsigned char *)cdf_of(&a, r), (p.w + (size_t)1) * 4) + zeros(guide_of(&a, r), e->at.guides * (size_t)2);
+        CHECK(!black || none == row_bytes(e), "%s: %zu of %zu bytes of black row %u are not 0", p.name, row_bytes(e) - none,
+              row_bytes(e), r);
         if (black || uniform) poison(&a, r), unread++;
     }
-    CHECK(kept == row_bytes(e) * (p.h - lit), "%s: %zu bytes not written", p.name, kept);
-    CHECK(unread == (uniform ? p.h : p.h - lit), "%s: %zu rows spoilt", p.name, unread);
+    CHECK(unread == (uniform ? p.h : p.h - lit), "%s: %u rows spoilt", p.name, unread);
     if (uniform) memset(rows_of(&a), 0xff, e->at.cdf - e->at.rows);
     second = record(e, after);
     CHECK(first == second && memcmp(before, after, texels * sizeof *before) == 0, "%s: draws or densities read what was spoilt",
           p.name);
-    CHECK(mcs_env_check(e, a.bytes) == MCS_OK, "%s: no table any more", p.name);
+    CHECK(unread == 0 || mcs_env_check(e, a.bytes) == MCS_ERR_FORMAT, "%s: spoilt, and accepted", p.name);
     if (uniform)
         for (r = 0; r < texels; r++) CHECK(fabs(after[r] * 4 * pi - 1) <= 2 * eps, "%s: density %g", p.name, (double)after[r]);
     free(before), free(p.lum), arena_free(&a);
@@ -549,14 +551,11 @@ static mcs_env *copy_of(const void *from, size_t bytes) {
     return (mcs_env *)to;
 }
 
-/* A table that was accepted may be wrong, but draws texels of the map, with densities that are numbers and along unit directions,
- * as far as the frame, which may be changed at any time, is one. */
+/* A forged table that was accepted may be wrong, but draws texels of the map, with densities that are numbers and along unit
+ * directions: dot products of the frame are off by 1e-4 at most, thus squares of lengths by 3 times as much. */
 static void check_harmless(const mcs_env *e, const char *what, size_t at) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 113);
     enum { N = 68 };
-    const mcs_frame *f = &e->frame;
-    const int axes = f->s.x == 1 && f->t.y == 1 && f->n.z == 1 && f->s.y == 0 && f->s.z == 0 && f->t.x == 0 && f->t.z == 0 &&
-                     f->n.x == 0 && f->n.y == 0;
     float a[N], b[N], out[4][N], pdf[N];
     int i, outside = 0, no_density = 0, no_direction = 0, no_inverse = 0;
     for (i = 0; i < N; i++) a[i] = i < 4 ? (float)(i & 1) * 0x0.ffffffp0f : mcs_pcg32_float(&rng);
@@ -569,7 +568,7 @@ static void check_harmless(const mcs_env *e, const char *what, size_t at) {
         const double length = sqrt((double)s.w.x * s.w.x + (double)s.w.y * s.w.y + (double)s.w.z * s.w.z);
         outside += !(s.col < e->w && s.row < e->h && t.col < e->w && t.row < e->h);
         no_density += !(s.pdf >= 0 && s.pdf <= FLT_MAX && t.pdf >= 0 && t.pdf <= FLT_MAX && out[3][i] >= 0 && pdf[i] >= 0);
-        no_direction += axes && !(fabs(length - 1) <= 0.01);
+        no_direction += !(fabs(length - 1) <= 1.6e-4);
         no_inverse += !(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1);
     }
     CHECK(outside + no_density + no_direction + no_inverse == 0,
@@ -577,11 +576,21 @@ static void check_harmless(const mcs_env *e, const char *what, size_t at) {
           at, N, outside, no_density, no_direction, no_inverse);
 }
 
-/* Accepted or MCS_ERR_FORMAT or, where the size that the header tells is larger, MCS_ERR_MEMORY; what is accepted is harmless. */
-static int check_damaged(const mcs_env *e, size_t bytes, const char *what, size_t at) {
-    const mcs_status rc = mcs_env_check(e, bytes);
-    CHECK(rc == MCS_OK || rc == MCS_ERR_FORMAT || rc == MCS_ERR_MEMORY, "%s %zu changed: %d", what, at, rc);
-    if (rc == MCS_OK) check_harmless(e, what, at);
+static int in_frame(size_t at) { return at >= offsetof(mcs_env, frame) && at < offsetof(mcs_env, frame) + sizeof(mcs_frame); }
+
+/* Memory of a table, `was`, that now differs: refused with MCS_ERR_FORMAT or, where the size that the header tells is larger,
+ * MCS_ERR_MEMORY. A changed frame may be one, and a forged table, too: then they are harmless. Puts the table back and returns
+ * whether the forged one was refused. */
+static int check_damaged(mcs_env *e, const arena *was, const char *what, size_t at) {
+    const mcs_env *good = env_in(was);
+    mcs_status rc = mcs_env_check(e, was->bytes);
+    CHECK(rc == MCS_ERR_FORMAT || rc == MCS_ERR_MEMORY || (rc == MCS_OK && in_frame(at)), "%s %zu changed: %d", what, at, rc);
+    if (e->w == good->w && e->h == good->h && memcmp(&e->at, &good->at, sizeof e->at) == 0) {
+        seal(e), rc = mcs_env_check(e, was->bytes);
+        CHECK(rc == MCS_OK || rc == MCS_ERR_FORMAT, "%s %zu forged: %d", what, at, rc);
+        if (rc == MCS_OK) check_harmless(e, what, at);
+    }
+    memcpy(e, was->at, was->bytes);
     return rc != MCS_OK;
 }
 
@@ -599,9 +608,8 @@ static void check_file(picture p, mcs_status status) {
         const unsigned char was = byte[i];
         for (k = 0; k < 11; k++) {
             byte[i] = (unsigned char)(k < 8 ? was ^ 1u << k : k == 8 ? 0 : k == 9 ? 0xff : 0x7f);
-            if (byte[i] != was) check_damaged(e, bytes, "header byte", i);
+            if (byte[i] != was) check_damaged(e, &a, "header byte", i);
         }
-        byte[i] = was;
     }
     for (i = 0; i < sizeof *e; i += 4) { /* words to what numbers break at */
         const uint32_t odd[8] = {0, 1, 65535, 65536, 65537, 0x7f800000u, 0x80000000u, 0xffffffffu};
@@ -611,30 +619,30 @@ static void check_file(picture p, mcs_status status) {
             const uint32_t now = k < 8 ? odd[k] : k == 8 ? was + 1 : was - 1;
             memcpy(byte + i, &now, 4);
             if (now != was) {
-                const int no = check_damaged(e, bytes, "header word at", i);
+                const int no = check_damaged(e, &a, "header word at", i);
                 /* magic, version, the whole layout and both sizes are what everything else is found by */
                 if (i < offsetof(mcs_env, total) || i == offsetof(mcs_env, w) || i == offsetof(mcs_env, h) ||
                     (i >= offsetof(mcs_env, row0) && i <= offsetof(mcs_env, col1)))
                     CHECK(no, "header word at %zu: %08x accepted for %08x", i, now, was);
                 /* and words of the frame that are no numbers, sizes of a column that are off by more than rounding */
-                if (i >= offsetof(mcs_env, turn) && (now == 0x7f800000u || now == 0xffffffffu)) CHECK(no, "NaN at %zu accepted", i);
+                if ((i == offsetof(mcs_env, turn) || i == offsetof(mcs_env, inner) || in_frame(i)) &&
+                    (now == 0x7f800000u || now == 0xffffffffu))
+                    CHECK(no, "NaN at %zu accepted", i);
                 if ((i == offsetof(mcs_env, turn) || i == offsetof(mcs_env, inner)) && k < 8)
                     CHECK(no, "column of %08x turns accepted for %08x", now, was);
             }
         }
-        memcpy(byte + i, &was, 4);
     }
     for (i = 0; i < (size_t)scaled(4000); i++) {
         const size_t at = sizeof *e + mcs_pcg32_next(&rng) % (bytes - sizeof *e), n = 1 + mcs_pcg32_next(&rng) % 8;
         for (k = at; k < at + n && k < bytes; k++) byte[k] = (unsigned char)(i % 3 ? mcs_pcg32_next(&rng) : i % 2 ? 0xff : 0);
         {
             const size_t guides = env_in(&a)->at.col_guide;
-            const int changed = memcmp(e, a.at, bytes) != 0, no = check_damaged(e, bytes, "table byte", at);
-            /* guides follow from the sums: none but the right one passes; the padding at the end is nobody's */
+            const int changed = memcmp(e, a.at, bytes) != 0, no = changed && check_damaged(e, &a, "table byte", at);
+            /* guides follow from the sums: none but the right one passes, forged or not */
             if (all_lit && changed && at >= guides && at + n <= guides + (size_t)p.h * env_in(&a)->at.guides * 2)
                 guides_tried++, CHECK(no, "guide byte %zu changed, accepted", at);
         }
-        memcpy(e, a.at, bytes);
     }
     CHECK(!all_lit || guides_tried > 0, "no guide tried");
     for (i = 0; i < bytes; i += i < sizeof *e || i + 64 >= bytes ? 1 : 1 + mcs_pcg32_next(&rng) % (bytes / 64 + 1)) {
@@ -647,13 +655,13 @@ static void check_file(picture p, mcs_status status) {
         CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "bytes swapped by %zu: %d", i, mcs_env_check(e, bytes));
     }
     memcpy(e, a.at, bytes);
-    e->magic ^= 0x20202020u;
+    e->magic ^= 0x20202020u, seal(e);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "magic");
     memcpy(e, a.at, bytes);
-    e->version++;
+    e->version++, seal(e);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "a later version");
     memcpy(e, a.at, bytes);
-    e->total = -1;
+    e->total = -1, seal(e);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "negative light");
     memset(e, 0, bytes);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "zeros");
@@ -674,6 +682,241 @@ static void test_damage(void) {
     check_file(make("one texel", 1, 1, v_random), MCS_OK);
     check_file(make("constant", 9, 5, v_constant), MCS_OK);
     check_file(make("black", 9, 5, v_black), MCS_UNIFORM);
+}
+
+/* ---- what no damage passes ---- */
+
+static int orthonormal(const mcs_frame *f) {
+    const mcs_vec3 *const v[3] = {&f->s, &f->t, &f->n};
+    int i, j, ok = 1;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j <= i; j++) {
+            const ld dot = (ld)v[i]->x * v[j]->x + (ld)v[i]->y * v[j]->y + (ld)v[i]->z * v[j]->z;
+            ok &= fabsl(dot - (i == j)) <= 1e-4L;
+        }
+    return ok;
+}
+
+/* Every bit of a table: none but those of the frame may be another, and the frame only as long as it is orthonormal. */
+static void check_every_bit(picture p, mcs_status status) {
+    arena a = build(&p, status);
+    size_t bit, passed = 0;
+    for (bit = 0; bit < 8 * a.bytes; bit++) {
+        mcs_status rc;
+        a.at[bit / 8] ^= (unsigned char)(1u << bit % 8);
+        rc = mcs_env_check(env_in(&a), a.bytes), passed += rc == MCS_OK;
+        CHECK((rc == MCS_OK) == (in_frame(bit / 8) && orthonormal(&env_in(&a)->frame)), "%s: bit %zu of byte %zu of %zu: %d", p.name,
+              bit % 8, bit / 8, a.bytes, rc);
+        a.at[bit / 8] ^= (unsigned char)(1u << bit % 8);
+    }
+    CHECK(passed > 0 && mcs_env_check(env_in(&a), a.bytes) == MCS_OK, "%s: %zu frames pass", p.name, passed);
+    arena_free(&a), free(p.lum);
+}
+static void test_every_bit(void) {
+    check_every_bit(make("7 x 5", 7, 5, v_random), MCS_OK);
+    check_every_bit(make("7 x 5, every third row", 7, 5, v_thirds), MCS_OK);
+    check_every_bit(make("7 x 5, region", 7, 5, v_region), MCS_OK);
+    check_every_bit(make("7 x 5, constant", 7, 5, v_constant), MCS_OK);
+    check_every_bit(make("7 x 5, black", 7, 5, v_black), MCS_UNIFORM);
+    check_every_bit(make("1 x 1", 1, 1, v_random), MCS_OK);
+    check_every_bit(make("16 x 2", 16, 2, v_random), MCS_OK);
+}
+
+/* Damage of any kind outside the frame: single bits, two and three of them, runs of bytes, zeroed or exchanged blocks; of a row, two
+ * words exchanged, or one bit of both changed, 64 bytes or a multiple apart as sums take words together that are. */
+static void test_random_damage(void) {
+    picture p = make("sky", 64, 32, v_sky);
+    arena a = build(&p, MCS_OK);
+    mcs_env *e = copy_of(a.at, a.bytes);
+    unsigned char *byte = (unsigned char *)e;
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 137);
+    const size_t begin = offsetof(mcs_env, frame), end = begin + sizeof(mcs_frame);
+    int i, k;
+    for (i = 0; i < scaled(60000); i++) {
+        const int kind = i % 8;
+        mcs_status rc;
+        if (kind < 3) {
+            for (k = 0; k <= kind; k++) {
+                const size_t bit = mcs_pcg32_next(&rng) % (8 * a.bytes);
+                byte[bit / 8] ^= (unsigned char)(1u << bit % 8);
+            }
+        } else if (kind > 5) {
+            unsigned char *const row = byte + e->at.cdf + mcs_pcg32_next(&rng) % 32 * (65 * sizeof(uint32_t));
+            const size_t lane = mcs_pcg32_next(&rng) % 8 * 8;
+            const uint32_t first = mcs_pcg32_next(&rng) % 4, second = mcs_pcg32_next(&rng) % 4, bit = mcs_pcg32_next(&rng) % 64;
+            for (k = 0; k < 8; k++) {
+                unsigned char *const x1 = row + first * 64 + lane + k, *const x2 = row + second * 64 + lane + k, was = *x1;
+                if (kind == 6) *x1 = *x2, *x2 = was;
+                else if ((int)bit / 8 == k) *x1 ^= (unsigned char)(1u << bit % 8), *x2 ^= (unsigned char)(1u << bit % 8);
+            }
+        } else {
+            const size_t n = 1 + mcs_pcg32_next(&rng) % 256, from = mcs_pcg32_next(&rng) % (a.bytes - n),
+                         to = mcs_pcg32_next(&rng) % (a.bytes - n);
+            if (kind == 3) memset(byte + to, 0, n);
+            if (kind == 4) memcpy(byte + from, a.at + to, n), memcpy(byte + to, a.at + from, n);
+            for (k = 0; kind == 5 && k < (int)n; k++) byte[to + (size_t)k] = (unsigned char)mcs_pcg32_next(&rng);
+        }
+        memcpy(byte + begin, a.at + begin, end - begin);
+        rc = mcs_env_check(e, a.bytes);
+        CHECK((rc == MCS_OK) == (memcmp(e, a.at, a.bytes) == 0), "damage %d of kind %d: %d", i, kind, rc);
+        memcpy(e, a.at, a.bytes);
+    }
+    free(e), free(p.lum), arena_free(&a);
+}
+
+static mcs_frame turned(const mcs_frame *f, const mcs_frame *by) { /* in float, as a scene graph would */
+    mcs_frame r;
+    r.s = mcs_to_world(by, f->s), r.t = mcs_to_world(by, f->t), r.n = mcs_to_world(by, f->n);
+    return r;
+}
+/* Frames that a user may set: those of mcs_frame_make, mirrored, and products of 100 rotations; and that are none. */
+static void test_frames(void) {
+    picture p = make("7 x 5", 7, 5, v_random);
+    arena a = build(&p, MCS_OK);
+    mcs_env *e = env_in(&a);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 139);
+    int i, k;
+    for (i = 0; i < 2000; i++) {
+        const float off[6] = {1e-3f, -1e-3f, 1.0f, -0.2f, 1e30f, NAN};
+        float u = mcs_pcg32_float(&rng);
+        mcs_frame f = mcs_frame_make(mcs_sphere_sample(u, mcs_pcg32_float(&rng)).w), g;
+        float *number = &f.s.x + (i % 3) * 3 + i / 3 % 3;
+        e->frame = f;
+        CHECK(mcs_env_check(e, a.bytes) == MCS_OK, "a frame of mcs_frame_make is refused");
+        e->frame.t.x = -f.t.x, e->frame.t.y = -f.t.y, e->frame.t.z = -f.t.z;
+        CHECK(mcs_env_check(e, a.bytes) == MCS_OK, "a mirrored frame is refused");
+        for (k = 0, g = f; k < 100; k++) {
+            mcs_frame by;
+            u = mcs_pcg32_float(&rng);
+            by = mcs_frame_make(mcs_sphere_sample(u, mcs_pcg32_float(&rng)).w), g = turned(&g, &by);
+        }
+        e->frame = g;
+        CHECK(mcs_env_check(e, a.bytes) == MCS_OK, "a product of 100 rotations is refused");
+        *number += fabsf(*number) > 0.5f || i % 6 > 2 ? off[i % 6] : 0;
+        e->frame = f;
+        CHECK((mcs_env_check(e, a.bytes) == MCS_OK) == orthonormal(&f), "a frame with %g added: %d", (double)off[i % 6],
+              mcs_env_check(e, a.bytes));
+        f = g, f.n.x *= 0.8f, f.n.y *= 0.8f, f.n.z *= 0.8f, e->frame = f;
+        CHECK(mcs_env_check(e, a.bytes) == MCS_ERR_FORMAT, "a short normal is accepted");
+        for (k = 0; k < 3; k++) { /* skewed, so that one dot product alone is 1e-3 */
+            mcs_vec3 *const skewed = k == 0 ? &e->frame.s : k == 1 ? &e->frame.t : &e->frame.n;
+            const mcs_vec3 to = k == 0 ? g.t : k == 1 ? g.n : g.s;
+            e->frame = g;
+            skewed->x += 1e-3f * to.x, skewed->y += 1e-3f * to.y, skewed->z += 1e-3f * to.z;
+            CHECK(mcs_env_check(e, a.bytes) == MCS_ERR_FORMAT, "axis %d is skewed and accepted", k);
+        }
+    }
+    arena_free(&a), free(p.lum);
+}
+
+/* ---- the same bytes whatever the memory held ---- */
+
+typedef int (*builder)(void *to, size_t bytes, const void *from);
+static void check_same(size_t bytes, builder f, const void *from, const char *what, uint32_t i, uint32_t j) {
+    arena a[ARENA_PASTS];
+    int past, rc[ARENA_PASTS];
+    for (past = 0; past < ARENA_PASTS; past++) {
+        a[past] = arena_make(bytes), arena_past(&a[past], past);
+        rc[past] = f(a[past].at, bytes, from);
+        CHECK(rc[past] >= 0 && rc[past] == rc[0] && arena_intact(&a[past]), "%s (%u, %u): returns %d", what, i, j, rc[past]);
+        CHECK(arena_differ(&a[0], &a[past]) == bytes, "%s (%u, %u): byte %zu of %zu is another one", what, i, j,
+              arena_differ(&a[0], &a[past]), bytes);
+    }
+    for (past = 0; past < ARENA_PASTS; past++) arena_free(&a[past]);
+}
+static int image_builds(void *to, size_t bytes, const void *from) {
+    return mcs_env_build((mcs_env *)to, bytes, (const mcs_image *)from);
+}
+static int rows_build(void *to, size_t bytes, const void *from) {
+    const mcs_image *im = (const mcs_image *)from;
+    const int rc = mcs_env_build_rows((mcs_env *)to, bytes, im, im->h / 2, im->h);
+    return rc ? rc : mcs_env_build_rows((mcs_env *)to, bytes, im, 0, im->h / 2) ? -1 : mcs_env_finish((mcs_env *)to, bytes, im);
+}
+typedef struct {
+    const mcs_env *e;
+    const mcs_tiles *t;
+    const mcs_reflection *r;
+    const float *weight;
+    uint32_t row, rows, col, cols;
+} source;
+static int window_builds(void *to, size_t bytes, const void *from) {
+    const source *s = (const source *)from;
+    return mcs_env_window_build((mcs_env_window *)to, bytes, s->e, s->row, s->rows, s->col, s->cols);
+}
+static int tiles_build(void *to, size_t bytes, const void *from) {
+    const source *s = (const source *)from;
+    return mcs_tiles_build((mcs_tiles *)to, bytes, s->e, s->rows);
+}
+static int product_builds(void *to, size_t bytes, const void *from) {
+    const source *s = (const source *)from;
+    return s->weight ? mcs_product_build_weights((mcs_product *)to, bytes, s->t, s->e, s->weight)
+                     : mcs_product_build((mcs_product *)to, bytes, s->t, s->e, s->r);
+}
+
+static void test_same_maps(void) {
+    const shade any[6] = {v_random, v_region, v_thirds, v_black, v_constant, v_suns};
+    uint32_t w, h, i;
+    for (w = 1; w < 40; w += w < 12 ? 1 : 9)
+        for (h = 1; h < 40; h += h < 12 ? 1 : 9)
+            for (i = 0; i < 6; i++) {
+                picture p = make("map", w, h, any[i]);
+                mcs_image image = mcs_image_make(p.lum, w, h, 1);
+                image.bilinear = (w + h) % 2, image.floor = w % 3 ? 0 : mcs_env_mean(&image);
+                if ((w * h) % 5 == 0) p.lum[w * h / 2] = NAN;
+                check_same(mcs_env_bytes(w, h), image_builds, &image, "map", w, h);
+                check_same(mcs_env_bytes(w, h), rows_build, &image, "map in parts", w, h);
+                free(p.lum);
+            }
+}
+static void test_same_windows(void) {
+    const shade any[4] = {v_random, v_thirds, v_black, v_constant};
+    uint32_t i;
+    for (i = 0; i < 4; i++) {
+        picture p = make("window", 19, 23, any[i]);
+        arena a = build(&p, i == 2 ? MCS_UNIFORM : MCS_OK);
+        source s;
+        memset(&s, 0, sizeof s), s.e = env_in(&a);
+        for (s.rows = 1; s.rows <= 23; s.rows++) {
+            s.row = (5 * s.rows) % (24 - s.rows), s.col = (7 * s.rows) % 19, s.cols = 1 + (11 * s.rows) % 19;
+            check_same(mcs_env_window_bytes(s.rows), window_builds, &s, p.name, s.row, s.rows);
+        }
+        arena_free(&a), free(p.lum);
+    }
+}
+/* Maps that rows of tiles divide and do not divide, or that have fewer rows than tiles; surfaces that are matte, rough, glossy
+ * enough for fine grids, turned from every light, and seen from behind. */
+static void test_same_products(void) {
+    static const struct {
+        uint32_t w, h;
+        shade value;
+    } maps[] = {{64, 32, v_sky}, {50, 37, v_random}, {7, 5, v_thirds}, {40, 70, v_region}, {33, 30, v_black}, {32, 16, v_constant}};
+    static float weight[2 * 32 * 32];
+    mcs_status rc;
+    size_t k, i;
+    uint32_t rows;
+    for (k = 0; k < sizeof maps / sizeof *maps; k++)
+        for (rows = 16; rows <= 32; rows *= 2) {
+            picture p = make("product", maps[k].w, maps[k].h, maps[k].value);
+            arena a = build(&p, maps[k].value == v_black ? MCS_UNIFORM : MCS_OK), b = arena_make(mcs_tiles_bytes(env_in(&a), rows));
+            source s;
+            memset(&s, 0, sizeof s), s.e = env_in(&a), s.rows = rows, s.t = (const mcs_tiles *)(void *)b.at;
+            check_same(b.bytes, tiles_build, &s, "tiles", p.w, rows);
+            rc = mcs_tiles_build((mcs_tiles *)(void *)b.at, b.bytes, s.e, rows);
+            CHECK(rc == MCS_OK || rc == MCS_UNIFORM, "tiles: %d", rc);
+            for (i = 0; i < 6; i++) {
+                mcs_reflection r;
+                memset(&r, 0, sizeof r);
+                r.frame = mcs_frame_make(mcs_sphere_sample(0.3f, i == 3 ? 0.999f : 0.2f).w), r.wo.z = i == 4 ? -1.0f : 1.0f;
+                r.alpha_x = i == 2 ? 0.03f : i == 5 ? 1e-3f : 0.4f, r.alpha_y = r.alpha_x, r.matte = i == 0 ? 1.0f : 0.2f;
+                r.profile = i == 1 ? MCS_PROFILE_PHONG : i == 2 ? MCS_PROFILE_GGX : MCS_PROFILE_GAUSS;
+                s.r = &r;
+                check_same(mcs_product_bytes(rows), product_builds, &s, "product", p.w, (uint32_t)i);
+            }
+            for (i = 0; i < 2 * rows * rows; i++) weight[i] = i % 3 ? hash01((uint32_t)i) : 0;
+            s.weight = weight;
+            check_same(mcs_product_bytes(rows), product_builds, &s, "product of weights", p.w, rows);
+            arena_free(&a), arena_free(&b), free(p.lum);
+        }
 }
 
 static void test_file(void) {
@@ -721,8 +964,15 @@ int main(int argc, char **argv) {
         check_every(&p, &a, 1);
         arena_free(&a), free(p.lum);
     }
+    mcst_group("env memory of before");
+    if (mcst_case("maps")) test_same_maps();
+    if (mcst_case("windows")) test_same_windows();
+    if (mcst_case("tiles and products")) test_same_products();
     mcst_group("env files");
     if (mcst_case("damaged tables")) test_damage();
+    if (mcst_case("every bit of small tables")) test_every_bit();
+    if (mcst_case("random damage")) test_random_damage();
+    if (mcst_case("frames")) test_frames();
     if (mcst_case("written and read")) test_file();
     return mcst_finish();
 }

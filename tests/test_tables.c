@@ -952,6 +952,8 @@ int main(int argc, char **argv) {
         if (mcst_case("%s: bad and zero weights", kinds[k].name)) test_bad_weights(&kinds[k]);
         if (mcst_case("%s: u outside [0,1)", kinds[k].name)) test_bad_u(&kinds[k]);
         if (mcst_case("%s: moved by memcpy", kinds[k].name)) test_relocation(&kinds[k]);
+        if (k != DISCRETE && mcst_case("%s: the same bytes in any memory", kinds[k].name)) test_same_bytes(&kinds[k]);
     }
+    if (mcst_case("%s: the same bytes in any memory", curve.name)) test_same_bytes(&curve);
     return mcst_finish();
 }

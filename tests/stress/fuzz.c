@@ -6,6 +6,7 @@
  *
  * With -DMCS_FUZZ_MAIN and any compiler the program replays the files given to it, or, without any, a corpus made from a counter
  * (1e7 inputs times MCS_TEST_SCALE); options as in mcs_test.h. */
+#include "latlong.h"
 #include "stress.h"
 
 /* --- the input -------------------------------------------------------------------------------------------------------------- */
@@ -428,7 +429,7 @@ static void fuzz_env(int products, bytes *b) {
 /* A table as it comes from a file: the input itself, or a map of the input's size with bytes of it changed; half of them with
  * checksums that fit, as they would hide from everything else that is checked. */
 static void fuzz_file(bytes *b) {
-    const uint32_t raw = take_u8(b) & 1, w = 1 + take_u8(b) % 20, h = 1 + take_u8(b) % 12, changes = take_u8(b) % 4;
+    const uint32_t kind = take_u8(b), raw = kind & 1, forged = kind & 2, w = 1 + take_u8(b) % 20, h = 1 + take_u8(b) % 12, changes = take_u8(b) % 4;
     const size_t table = mcs_env_bytes(w, h), size = raw ? b->left : table, less = take_u32(b);
     mcs_env *e = (mcs_env *)room(size), *cut;
     mcs_status s;
@@ -447,6 +448,10 @@ static void fuzz_file(bytes *b) {
             const uint32_t at = take_u32(b);
             ((unsigned char *)e)[at % size] ^= take_u8(b);
         }
+    }
+    if (forged && size >= sizeof *e && mcs_env_bytes(e->w, e->h) == size) {
+        const mcsi_env_parts at = mcsi_env_layout(e->w, e->h);
+        if (!memcmp(&at, &e->at, sizeof at)) seal(e);
     }
     cut = (mcs_env *)room(size ? less % size : 0);
     memcpy(cut, e, size ? less % size : 0);
