@@ -2860,7 +2860,8 @@ MCS_FN mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32
     mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwc_bytes(n));
     uint32_t *words, bad;
     if (e) return e;
-    words = (uint32_t *)(void *)(t + 1), bad = mcsi_weights_in(words, f, n);
+    words = (uint32_t *)(void *)(t + 1);
+    bad = mcsi_weights_in(words, f, n);
     mcsi_words_end(words, mcsi_pwc_words(n));
     return mcsi_pwc_fill(t, n, bad);
 }
@@ -2893,7 +2894,8 @@ MCS_FN mcsi_pwc_place mcsi_pwc_draw(const mcs_pwc *t, float u) {
     uint32_t i = mcsi_pwc_find(t, (uint32_t)U);
     const uint32_t *cdf = mcsi_cdf(t) + i;
     mcsi_pwc_place p;
-    p.i = i, p.mass = cdf[1] - cdf[0];
+    p.i = i;
+    p.mass = cdf[1] - cdf[0];
     p.place = (U - cdf[0]) / p.mass;
     return p;
 }
@@ -2903,7 +2905,8 @@ MCS_FN mcsi_pwc_place mcsi_pwc_draw_bits(const mcs_pwc *t, uint32_t b1, uint32_t
     uint32_t i = mcsi_pwc_find(t, (uint32_t)(U >> 33));
     const uint32_t *cdf = mcsi_cdf(t) + i;
     mcsi_pwc_place p;
-    p.i = i, p.mass = cdf[1] - cdf[0];
+    p.i = i;
+    p.mass = cdf[1] - cdf[0];
     p.place = (double)(U - ((uint64_t)cdf[0] << 33)) / ((double)p.mass * 8589934592.0);
     p.place = p.place < 1.0 ? p.place : 1.0 - 0.5 * DBL_EPSILON;
     return p;
@@ -2920,7 +2923,8 @@ MCS_FN uint32_t mcsi_pwc_cell(const mcs_pwc *t, float x, double *place, int *ok)
 }
 MCSI_CORE mcs_cell mcsi_pwc_cell_at(const mcs_pwc *t, mcsi_pwc_place p, int ok) {
     mcs_cell c;
-    c.i = p.i, c.x = mcsi_in_cell(p.i, p.place, t->n);
+    c.i = p.i;
+    c.x = mcsi_in_cell(p.i, p.place, t->n);
     c.pdf = ok ? (float)((double)p.mass / MCSI_ONE * t->n) : 0.0f;
     return c;
 }
@@ -2956,7 +2960,8 @@ MCS_FN void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *
 #endif
 MCSI_CORE mcs_pick mcsi_discrete_pick(mcsi_pwc_place p, int ok) {
     mcs_pick c;
-    c.i = p.i, c.u = mcsi_below_one(p.place);
+    c.i = p.i;
+    c.u = mcsi_below_one(p.place);
     c.pmf = ok ? (float)((double)p.mass / MCSI_ONE) : 0.0f;
     return c;
 }
@@ -3002,9 +3007,11 @@ MCS_FN const float *mcsi_pwl_vertices(const mcs_pwl *t) {
 MCSI_CORE mcs_cell mcsi_pwl_cell_at(const mcs_pwl *t, mcsi_pwc_place p, int ok) {
     mcs_cell c;
     double a = (double)mcsi_pwl_vertices(t)[p.i], b = (double)mcsi_pwl_vertices(t)[p.i + 1], r = a + b;
-    a /= r, b /= r;
+    a /= r;
+    b /= r;
     r = mcsi_sqrt_d((1.0 - p.place) * a * a + p.place * b * b);
-    c.i = p.i, c.x = mcsi_in_cell(p.i, r > 0.0 ? p.place / (a + r) : 0.0, t->cells.n);
+    c.i = p.i;
+    c.x = mcsi_in_cell(p.i, r > 0.0 ? p.place / (a + r) : 0.0, t->cells.n);
     c.pdf = ok ? (float)((double)p.mass / MCSI_ONE * t->cells.n * 2.0 * r) : 0.0f;
     return c;
 }
@@ -3449,7 +3456,9 @@ MCSI_CORE float mcsi_pixel(const float *p, uint32_t *bad) {
     uint32_t channels = 0;
     float r, g, b, plain = mcsi_luminance(p[0], p[1], p[2]);
     if (mcsi_min(mcsi_min(p[0], p[1]), p[2]) >= 0.0f && plain <= FLT_MAX) return plain; /* which NaN and infinity never are */
-    r = mcsi_clean(p[0], &channels), g = mcsi_clean(p[1], &channels), b = mcsi_clean(p[2], &channels);
+    r = mcsi_clean(p[0], &channels);
+    g = mcsi_clean(p[1], &channels);
+    b = mcsi_clean(p[2], &channels);
     *bad += channels != 0;
     return mcsi_luminance(r, g, b);
 }
@@ -3524,8 +3533,11 @@ MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, u
         }
         if (last) memcpy(cdf + x, v, n * sizeof *v);
     }
-    info->power = 0.0, info->sum = 0;
-    info->level = same == im->w ? level : -1.0f, info->col0 = first, info->col1 = last;
+    info->power = 0.0;
+    info->sum = 0;
+    info->level = same == im->w ? level : -1.0f;
+    info->col0 = first;
+    info->col1 = last;
     if (!last) {
         memset(cdf, 0, ((size_t)im->w + 1) * sizeof *cdf);
         memset(guide, 0, guides * sizeof *guide);

@@ -541,8 +541,8 @@ static void test_bad_pixels(void) {
 /* Texels of one row, so that probability is luminance: what bad channels leave of it, by hand. */
 static void test_bad_channels(void) {
     enum { W = 9 };
-    static const float in[W][3] = {{-150, 1000, 100}, {1, 1, 1},           {1, NAN, 1},         {-5, -1, 3},      {-1, -2, -3},
-                                   {NAN, NAN, NAN},   {0, 2, -1000},       {-1e30f, 1e-3f, 0},  {-0.0f, -0.0f, 0}};
+    static const float in[W][3] = {{-150, 1000, 100}, {1, 1, 1},     {1, NAN, 1},        {-5, -1, 3},      {-1, -2, -3},
+                                   {NAN, NAN, NAN},   {0, 2, -1000}, {-1e30f, 1e-3f, 0}, {-0.0f, -0.0f, 0}};
     static const double want[W] = {0.7152 * 1000 + 0.0722 * 100, 1, 0.2126 + 0.0722, 0.0722 * 3, 0, 0, 0.7152 * 2, 0.7152e-3, 0};
     static const float suns[4][3] = {{INFINITY, 0, 0}, {FLT_MAX, FLT_MAX, FLT_MAX}, {INFINITY, -INFINITY, NAN}, {1e30f, 0, 0}};
     static const double sun_want[4] = {0.2126, 1, 0.2126, 0.2126 * 1e30 / FLT_MAX};
@@ -557,8 +557,8 @@ static void test_bad_channels(void) {
     CHECK(fabs(mcs_env_mean(&image) / (sum / W) - 1) <= 4 * eps, "mean %g, not %g", (double)mcs_env_mean(&image), sum / W);
     for (i = 0; i < W; i++) {
         const double p = mcs_env_pdf(env_in(&a), point(W, 1, i, 0, 0.5, 0.5)) * 4 * pi / W, due = want[i] / sum;
-        CHECK((p > 0) == (due > 0) && fabs(p - due) <= 5 * eps * due + (2 + W * due) * quantum, "texel %u: probability %g, not %g", i,
-              p, due);
+        CHECK((p > 0) == (due > 0) && fabs(p - due) <= 5 * eps * due + (2 + W * due) * quantum, "texel %u: probability %g, not %g",
+              i, p, due);
     }
     /* an overflowed half is a sun; nothing overflows with it */
     image = mcs_image_make(&suns[0][0], 4, 1, 3);

@@ -705,8 +705,8 @@ static void check_every_bit(picture p, mcs_status status) {
         mcs_status rc;
         a.at[bit / 8] ^= (unsigned char)(1u << bit % 8);
         rc = mcs_env_check(env_in(&a), a.bytes), passed += rc == MCS_OK;
-        CHECK((rc == MCS_OK) == (in_frame(bit / 8) && orthonormal(&env_in(&a)->frame)), "%s: bit %zu of byte %zu of %zu: %d", p.name,
-              bit % 8, bit / 8, a.bytes, rc);
+        CHECK((rc == MCS_OK) == (in_frame(bit / 8) && orthonormal(&env_in(&a)->frame)), "%s: bit %zu of byte %zu of %zu: %d",
+              p.name, bit % 8, bit / 8, a.bytes, rc);
         a.at[bit / 8] ^= (unsigned char)(1u << bit % 8);
     }
     CHECK(passed > 0 && mcs_env_check(env_in(&a), a.bytes) == MCS_OK, "%s: %zu frames pass", p.name, passed);

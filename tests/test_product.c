@@ -1654,8 +1654,8 @@ static void test_weights(void) {
             for (r = 0; r < 32; r++)
                 for (c = 0; c < 64; c++) {
                     const double p = density(&d, point(64, 32, c, r, 0.5, 0.5)), want = weight[tile_at(&m, c, r)];
-                    CHECK(p >= 0 && p <= FLT_MAX && (p > 0) == (want > 0),
-                          "texel (%u, %u): density %g of weight %g", c, r, p, want);
+                    CHECK(p >= 0 && p <= FLT_MAX && (p > 0) == (want > 0), "texel (%u, %u): density %g of weight %g", c, r, p,
+                          want);
                 }
             sampler_free(&d);
         }

@@ -762,7 +762,8 @@ static void test_discrete_bits(uint32_t n) {
     const mcs_pwl *l = (const mcs_pwl *)b.at;
     uint32_t *const cdf = integers_of(n), i, k;
     for (i = 0; i <= n; i++) weight[i] = i % 5 ? 0.1f + hash01(i) : 0;
-    CHECK(mcs_pwc_build((mcs_pwc *)a.at, a.bytes, weight, n) == MCS_OK && mcs_pwl_build((mcs_pwl *)b.at, b.bytes, weight, n) == MCS_OK,
+    CHECK(mcs_pwc_build((mcs_pwc *)a.at, a.bytes, weight, n) == MCS_OK &&
+              mcs_pwl_build((mcs_pwl *)b.at, b.bytes, weight, n) == MCS_OK,
           "build");
     load_integers(t, n, cdf);
     for (i = 0; i < 100000; i++) {
@@ -781,8 +782,8 @@ static void test_discrete_bits(uint32_t n) {
         CHECK(d.i == lo && c.i == lo, "n = %u, bits %016llx: entries %u and %u, not %u", n, (unsigned long long)v, d.i, c.i, lo);
         CHECK(d.pmf == mcs_discrete_pmf(t, lo) && c.pdf == mcs_pwc_pdf(t, c.x) && weight[lo] > 0,
               "n = %u, bits %016llx: pmf %g, pdf %g", n, (unsigned long long)v, (double)d.pmf, (double)c.pdf);
-        CHECK(d.u >= 0 && d.u < 1 && fabs((double)(d.u - rest)) <= 1.0001 * eps * (double)rest, "n = %u, bits %016llx: rest %a, not %a",
-              n, (unsigned long long)v, (double)d.u, (double)rest);
+        CHECK(d.u >= 0 && d.u < 1 && fabs((double)(d.u - rest)) <= 1.0001 * eps * (double)rest,
+              "n = %u, bits %016llx: rest %a, not %a", n, (unsigned long long)v, (double)d.u, (double)rest);
         CHECK(c.x >= 0 && c.x < 1 && fabs((double)(c.x - x)) <= 2.0001 * eps * (double)x, "n = %u, bits %016llx: x %a, not %a", n,
               (unsigned long long)v, (double)c.x, (double)x);
     }
@@ -792,8 +793,8 @@ static void test_discrete_bits(uint32_t n) {
         const mcs_pick d = mcs_discrete_sample(t, u), e = mcs_discrete_sample_bits(t, b1, 0);
         const mcs_cell c = mcs_pwc_sample(t, u), f = mcs_pwc_sample_bits(t, b1, 0), g = mcs_pwl_sample(l, u),
                        h = mcs_pwl_sample_bits(l, b1, 0);
-        CHECK(d.i == e.i && d.u == e.u && d.pmf == e.pmf && c.i == f.i && c.x == f.x && c.pdf == f.pdf && g.i == h.i && g.x == h.x &&
-                  g.pdf == h.pdf,
+        CHECK(d.i == e.i && d.u == e.u && d.pmf == e.pmf && c.i == f.i && c.x == f.x && c.pdf == f.pdf && g.i == h.i &&
+                  g.x == h.x && g.pdf == h.pdf,
               "n = %u, u = %a: other draws by bits", n, (double)u);
     }
     for (k = 0; k < 2; k++) { /* one entry that holds all 2^64, up to the last; of pwl, with no density there */

@@ -429,7 +429,8 @@ static void fuzz_env(int products, bytes *b) {
 /* A table as it comes from a file: the input itself, or a map of the input's size with bytes of it changed; half of them with
  * checksums that fit, as they would hide from everything else that is checked. */
 static void fuzz_file(bytes *b) {
-    const uint32_t kind = take_u8(b), raw = kind & 1, forged = kind & 2, w = 1 + take_u8(b) % 20, h = 1 + take_u8(b) % 12, changes = take_u8(b) % 4;
+    const uint32_t kind = take_u8(b), raw = kind & 1, forged = kind & 2, w = 1 + take_u8(b) % 20, h = 1 + take_u8(b) % 12,
+                   changes = take_u8(b) % 4;
     const size_t table = mcs_env_bytes(w, h), size = raw ? b->left : table, less = take_u32(b);
     mcs_env *e = (mcs_env *)room(size), *cut;
     mcs_status s;
