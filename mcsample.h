@@ -44,6 +44,11 @@
  *               bits on every CPU. Where the compiler may contract a*b+c they differ by the rounding of single operations, more
  *               where those cancel, and the `_n` forms are up to 30 % faster. -ffast-math compiles, but does not recognise bad
  *               input.
+ *   exceptions  good input raises no invalid operation, no division by zero and no overflow, whatever the width, where the compiler
+ *               adds none (gcc does not; clang needs -ffp-exception-behavior=maytrap). Cosines are 0, or 1e-15 and more, for that.
+ *   rounding    must be to nearest; in another mode results are finite at best. Flush to zero and denormals-are-zero may be on:
+ *               subnormal numbers then count as 0, and so may densities below 2^-100 of the peak; cosines must be 0, or 1e-7 and
+ *               more.
  *   state       none: no globals, no allocation, no I/O. Everything is thread-safe that does not share a caller's object.
  */
 /* INDEX: find [tag] for the block of a sampler. "w": also 4, 8, 16 wide (mcs4_, mcs8_, mcs16_). Every public name stands here once.
@@ -709,6 +714,11 @@ MCSI_CORE MCSI_F MCSI_(keep)(MCSI_I ok, MCSI_F x) {
 MCSI_CORE MCSI_F MCSI_(within)(MCSI_I ok, MCSI_F x, float lo, float hi) {
     return MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(x, MCS_(set)(lo)), MCS_(set)(hi)), MCS_(set)(lo));
 }
+/* x / y, x >= 0 and y > 0, but FLT_MAX where it would overflow. */
+MCSI_CORE MCSI_F MCSI_(quotient)(MCSI_F x, MCSI_F y) {
+    MCSI_I fits = (y >= 1.0f) | (x < MCSI_(min)(y, MCS_(set)(1.0f)) * 3.40282266e38f);
+    return MCSI_(sel)(fits, MCSI_(sel)(fits, x, MCS_(set)(1.0f)) / MCSI_(sel)(fits, y, MCS_(set)(1.0f)), MCS_(set)(FLT_MAX));
+}
 /* Lengths, rates and radii whose squares and inverses are floats. */
 MCSI_CORE MCSI_I MCSI_(scale_ok)(MCSI_F scale) { return (scale >= 1e-18f) & (scale <= 1e18f); }
 MCSI_CORE MCSI_I MCSI_(always)(void) { return MCS_(set)(0.0f) == MCS_(set)(0.0f); }
@@ -1271,7 +1281,8 @@ MCSI_SAMPLE MCS_(sample1) MCS_(linear_sample)(MCSI_F a, MCSI_F b, MCSI_F u) {
 }
 MCSI_FN MCSI_F MCS_(linear_pdf)(MCSI_F a, MCSI_F b, MCSI_F x) {
     MCSI_I ok = MCSI_(linear_ends)(&a, &b);
-    return MCSI_(keep)(ok & (x >= 0.0f) & (x <= 1.0f), 2.0f * (((1.0f - x) * a + x * b) / (a + b)));
+    MCSI_F t = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), MCS_(set)(1.0f));
+    return MCSI_(keep)(ok & (t == x), 2.0f * (((1.0f - t) * a + t * b) / (a + b)));
 }
 MCSI_FN MCSI_F MCS_(linear_invert)(MCSI_F a, MCSI_F b, MCSI_F x) {
     MCSI_I ok = MCSI_(linear_ends)(&a, &b);
@@ -1290,11 +1301,11 @@ MCSI_SAMPLE MCS_(sample1) MCS_(tent_sample)(MCSI_F r, MCSI_F u) {
 MCSI_FN MCSI_F MCS_(tent_pdf)(MCSI_F r, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(r);
     MCSI_REQUIRE(ok);
-    return MCSI_(keep)(ok, (r - MCSI_(abs)(x)) / r / r);
+    return MCSI_(keep)(ok, (r - MCSI_(min)(MCSI_(abs)(x), r)) / r / r);
 }
 MCSI_FN MCSI_F MCS_(tent_invert)(MCSI_F r, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(r);
-    MCSI_F t = MCSI_(max)((r - MCSI_(abs)(x)) / r, MCS_(set)(0.0f)), below = 0.5f * t * t;
+    MCSI_F t = MCSI_(max)((r - MCSI_(min)(MCSI_(abs)(x), r)) / r, MCS_(set)(0.0f)), below = 0.5f * t * t;
     MCSI_REQUIRE(ok);
     return MCSI_(u_of)(ok & (x == x), MCSI_(sel)(x < 0.0f, below, 1.0f - below));
 }
@@ -1308,29 +1319,32 @@ MCSI_SAMPLE MCS_(sample1) MCS_(exponential_sample)(MCSI_F rate, MCSI_F u) {
 MCSI_FN MCSI_F MCS_(exponential_pdf)(MCSI_F rate, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(rate);
     MCSI_REQUIRE(ok);
-    return MCSI_(keep)(ok & (x >= 0.0f), rate * MCSI_(exp_neg)(-rate * x));
+    x = MCSI_(min)(x, MCS_(set)(1e20f)); /* the density is 0 there at every rate */
+    return MCSI_(keep)(ok & (x >= 0.0f), rate * MCSI_(exp_neg)(-rate * MCSI_(max)(x, MCS_(set)(0.0f))));
 }
 MCSI_FN MCSI_F MCS_(exponential_invert)(MCSI_F rate, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(rate);
     MCSI_F minus_one;
     MCSI_REQUIRE(ok);
-    MCSI_(exp_both)(-MCSI_(min)(MCSI_(max)(rate * x, MCS_(set)(0.0f)), MCS_(set)(80.0f)), &minus_one);
+    x = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), MCS_(set)(1e20f));
+    MCSI_(exp_both)(-MCSI_(min)(rate * x, MCS_(set)(80.0f)), &minus_one);
     return MCSI_(u_of)(ok, -minus_one);
 }
 
-/* truncexp: rate m -> e^(-rate m) and its distance to 1; `flat` where the density is uniform to float precision. */
-MCSI_CORE MCSI_I MCSI_(truncexp_ends)(MCSI_F rate, MCSI_F m, MCSI_F *e, MCSI_F *one_minus_e, MCSI_I *flat) {
-    MCSI_I ok = (rate >= 0.0f) & (rate <= 1e18f) & MCSI_(scale_ok)(m);
-    MCSI_F t = rate * m;
+/* truncexp: rate m -> e^(-rate m) and its distance to 1; `flat` where the density is uniform to float precision. There the rate and
+ * the distance become 1, as divisors that are not used. */
+MCSI_CORE MCSI_I MCSI_(truncexp_ends)(MCSI_F *rate, MCSI_F m, MCSI_F *e, MCSI_F *one_minus_e, MCSI_I *flat) {
+    MCSI_I ok = (*rate >= 0.0f) & (*rate <= 1e18f) & MCSI_(scale_ok)(m);
+    MCSI_F t = *rate * m;
     MCSI_REQUIRE(ok);
     *flat = t < 1e-8f;
     *e = MCSI_(exp_both)(-MCSI_(sel)(ok & (t < 80.0f), t, MCS_(set)(80.0f)), one_minus_e);
-    *one_minus_e = -*one_minus_e;
+    *one_minus_e = MCSI_(sel)(*flat, MCS_(set)(1.0f), -*one_minus_e), *rate = MCSI_(sel)(*flat, MCS_(set)(1.0f), *rate);
     return ok;
 }
 MCSI_SAMPLE MCS_(sample1) MCS_(truncexp_sample)(MCSI_F rate, MCSI_F m, MCSI_F u) {
     MCSI_F e, d, w, c, x;
-    MCSI_I flat, ok = MCSI_(truncexp_ends)(rate, m, &e, &d, &flat);
+    MCSI_I flat, ok = MCSI_(truncexp_ends)(&rate, m, &e, &d, &flat);
     u = MCSI_(unit)(u, &ok);
     w = MCSI_(stored)((1.0f - u) + u * e); /* 1 - u d = e^(-rate x); u d itself has more digits of it where it is small */
     c = MCSI_(blend)((0x3effffff - MCSI_(bits)(w)) >> 31, (1.0f - w) - u * d, MCS_(set)(0.0f)); /* where w >= 1/2 */
@@ -1339,14 +1353,15 @@ MCSI_SAMPLE MCS_(sample1) MCS_(truncexp_sample)(MCSI_F rate, MCSI_F m, MCSI_F u)
 }
 MCSI_FN MCSI_F MCS_(truncexp_pdf)(MCSI_F rate, MCSI_F m, MCSI_F x) {
     MCSI_F e, d;
-    MCSI_I flat, ok = MCSI_(truncexp_ends)(rate, m, &e, &d, &flat);
-    return MCSI_(keep)(ok & (x >= 0.0f) & (x <= m), MCSI_(sel)(flat, 1.0f / m, rate * MCSI_(exp_neg)(-rate * x) / d));
+    MCSI_I flat, ok = MCSI_(truncexp_ends)(&rate, m, &e, &d, &flat);
+    MCSI_F t = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), m);
+    return MCSI_(keep)(ok & (t == x), MCSI_(sel)(flat, 1.0f / m, rate * MCSI_(exp_neg)(-rate * t) / d));
 }
 MCSI_FN MCSI_F MCS_(truncexp_invert)(MCSI_F rate, MCSI_F m, MCSI_F x) {
     MCSI_F e, d, p;
-    MCSI_I flat, ok = MCSI_(truncexp_ends)(rate, m, &e, &d, &flat);
+    MCSI_I flat, ok = MCSI_(truncexp_ends)(&rate, m, &e, &d, &flat);
     x = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), m);
-    MCSI_(exp_both)(-MCSI_(min)(MCSI_(max)(rate * x, MCS_(set)(0.0f)), MCS_(set)(80.0f)), &p);
+    MCSI_(exp_both)(-MCSI_(min)(rate * x, MCS_(set)(80.0f)), &p);
     return MCSI_(u_of)(ok, MCSI_(sel)(flat, x / m, -p / d));
 }
 
@@ -1358,17 +1373,21 @@ MCSI_SAMPLE MCS_(sample1) MCS_(normal_sample)(MCSI_F mean, MCSI_F sd, MCSI_F u) 
     z = MCSI_(normal_quantile)(MCSI_(off_zero)(u));
     return MCSI_(sample1)(ok, mean + sd * z, MCSI_(exp_neg)(-0.5f * z * z) * (0.398942280f / sd));
 }
+/* |x - mean| / scale, at most 200: both densities are 0 there. */
+MCSI_CORE MCSI_F MCSI_(deviation)(MCSI_F mean, MCSI_F scale, MCSI_F x) {
+    return MCSI_(min)(MCSI_(abs)(x - mean), 200.0f * scale) / scale;
+}
 MCSI_FN MCSI_F MCS_(normal_pdf)(MCSI_F mean, MCSI_F sd, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(sd) & (MCSI_(abs)(mean) <= 1e30f);
-    MCSI_F z = (x - mean) / sd;
+    MCSI_F z = MCSI_(deviation)(mean, sd, x);
     MCSI_REQUIRE(ok);
-    return MCSI_(keep)(ok & (z == z), 0.398942280f * MCSI_(exp_neg)(-0.5f * z * z) / sd);
+    return MCSI_(keep)(ok & (x == x), 0.398942280f * MCSI_(exp_neg)(-0.5f * z * z) / sd);
 }
 MCSI_FN MCSI_F MCS_(normal_invert)(MCSI_F mean, MCSI_F sd, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(sd) & (MCSI_(abs)(mean) <= 1e30f);
-    MCSI_F z = (x - mean) / sd, tail = MCSI_(normal_tail)(MCSI_(abs)(z));
+    MCSI_F tail = MCSI_(normal_tail)(MCSI_(deviation)(mean, sd, x));
     MCSI_REQUIRE(ok);
-    return MCSI_(u_of)(ok & (z == z), MCSI_(sel)(z < 0.0f, tail, 1.0f - tail));
+    return MCSI_(u_of)(ok & (x == x), MCSI_(sel)(x < mean, tail, 1.0f - tail));
 }
 
 MCSI_SAMPLE MCS_(sample1) MCS_(logistic_sample)(MCSI_F mean, MCSI_F s, MCSI_F u) {
@@ -1380,15 +1399,15 @@ MCSI_SAMPLE MCS_(sample1) MCS_(logistic_sample)(MCSI_F mean, MCSI_F s, MCSI_F u)
 }
 MCSI_FN MCSI_F MCS_(logistic_pdf)(MCSI_F mean, MCSI_F s, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
-    MCSI_F z = (x - mean) / s, e = MCSI_(exp_neg)(-MCSI_(abs)(z));
+    MCSI_F e = MCSI_(exp_neg)(-MCSI_(deviation)(mean, s, x));
     MCSI_REQUIRE(ok);
-    return MCSI_(keep)(ok & (z == z), e / ((1.0f + e) * (1.0f + e)) / s);
+    return MCSI_(keep)(ok & (x == x), e / ((1.0f + e) * (1.0f + e)) / s);
 }
 MCSI_FN MCSI_F MCS_(logistic_invert)(MCSI_F mean, MCSI_F s, MCSI_F x) {
     MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
-    MCSI_F z = (x - mean) / s, e = MCSI_(exp_neg)(-MCSI_(abs)(z));
+    MCSI_F e = MCSI_(exp_neg)(-MCSI_(deviation)(mean, s, x));
     MCSI_REQUIRE(ok);
-    return MCSI_(u_of)(ok & (z == z), MCSI_(sel)(z < 0.0f, e, MCS_(set)(1.0f)) / (1.0f + e));
+    return MCSI_(u_of)(ok & (x == x), MCSI_(sel)(x < mean, e, MCS_(set)(1.0f)) / (1.0f + e));
 }
 
 MCSI_CORE MCSI_I MCSI_(exponent_ok)(MCSI_F n) { return (n >= 0.0f) & (n <= 1e9f); }
@@ -1484,8 +1503,10 @@ MCSI_CORE MCS_(sample2) MCSI_(sample2)(MCSI_I ok, MCSI_F R, MCSI_F r, MCSI_F tur
     d.pdf = MCSI_(keep)(ok, MCSI_1_PI / R / R);
     return d;
 }
+/* A coordinate in units of the radius, but no further than 4, which is outside. */
+MCSI_CORE MCSI_F MCSI_(in_radii)(MCSI_F R, MCSI_F x) { return MCSI_(min)(MCSI_(max)(x, -4.0f * R), 4.0f * R) / R; }
 MCSI_CORE MCSI_F MCSI_(disk_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) {
-    MCSI_F p = x / R, q = y / R;
+    MCSI_F p = MCSI_(in_radii)(R, x), q = MCSI_(in_radii)(R, y);
     MCSI_REQUIRE(MCSI_(scale_ok)(R));
     return MCSI_(keep)(MCSI_(scale_ok)(R) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / R / R);
 }
@@ -1502,7 +1523,7 @@ MCSI_SAMPLE MCS_(sample2) MCS_(disk_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
 }
 MCSI_FN MCSI_F MCS_(disk_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) { return MCSI_(disk_pdf)(R, x, y); }
 MCSI_FN MCS_(vec2) MCS_(disk_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
-    MCSI_F p = x / R, q = y / R;
+    MCSI_F p = MCSI_(in_radii)(R, x), q = MCSI_(in_radii)(R, y);
     MCSI_REQUIRE(MCSI_(scale_ok)(R));
     return MCSI_(uv)(MCSI_(scale_ok)(R) & (p * p + q * q < 4.0f), p * p + q * q, MCSI_(atan2_turns)(q, p));
 }
@@ -1520,7 +1541,7 @@ MCSI_SAMPLE MCS_(sample2) MCS_(concentric_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2
 }
 MCSI_FN MCSI_F MCS_(concentric_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) { return MCSI_(disk_pdf)(R, x, y); }
 MCSI_FN MCS_(vec2) MCS_(concentric_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
-    MCSI_F p = MCSI_(stored)(x / R), q = MCSI_(stored)(y / R), r2 = p * p + q * q,
+    MCSI_F p = MCSI_(stored)(MCSI_(in_radii)(R, x)), q = MCSI_(stored)(MCSI_(in_radii)(R, y)), r2 = p * p + q * q,
            r = MCSI_(sqrt)(MCSI_(sel)(r2 < 4.0f, r2, MCS_(set)(0.0f)));
     MCSI_I wide = MCSI_(abs)(p) > MCSI_(abs)(q);
     MCSI_F along = MCSI_(sel)(wide, p, q), across = MCSI_(sel)(wide, q, p); /* the nearer axis, and the other one */
@@ -1726,7 +1747,9 @@ MCSI_FN MCS_(vec3) MCS_(reflect)(MCS_(vec3) wo, MCS_(vec3) h) {
     d = 2.0f * MCSI_(dot)(wo, h);
     return MCSI_(vec3)(d * h.x - wo.x, d * h.y - wo.y, d * h.z - wo.z);
 }
-MCSI_FN MCSI_F MCS_(reflect_pdf)(MCSI_F pdf_h, MCSI_F cos_d) { return MCSI_(keep)(cos_d > 0.0f, pdf_h / (4.0f * cos_d)); }
+MCSI_FN MCSI_F MCS_(reflect_pdf)(MCSI_F pdf_h, MCSI_F cos_d) {
+    return MCSI_(keep)((pdf_h > 0.0f) & (cos_d > 0.0f), MCSI_(quotient)(pdf_h, 4.0f * cos_d));
+}
 MCSI_FN MCS_(vec3) MCS_(half)(MCS_(vec3) wo, MCS_(vec3) wi) {
     MCSI_I ok = MCSI_(always)(), some;
     MCS_(vec3) h;
@@ -2006,11 +2029,14 @@ MCSI_CORE MCS_(dir) MCSI_(slope_dir)(const MCSI_(slopes) * m, MCSI_I ok, MCSI_F 
     d.pdf = MCSI_(keep)(ok, g * (p2 * length));
     return d;
 }
-/* e = (sx/ax)^2 + (sy/ay)^2 of a direction's slopes. */
+/* e = (sx/ax)^2 + (sy/ay)^2 of a direction's slopes, at most 2e36. */
 MCSI_CORE MCSI_F MCSI_(slope_square)(const MCSI_(slopes) * m, MCS_(vec3) h) {
-    MCSI_F x = h.x * m->inv_ax / h.z, y = h.y * m->inv_ay / h.z;
+    MCSI_F x = h.x * m->inv_ax / h.z, y = h.y * m->inv_ay / h.z, far = MCS_(set)(1e18f);
+    x = MCSI_(min)(MCSI_(abs)(x), far), y = MCSI_(min)(MCSI_(abs)(y), far);
     return x * x + y * y;
 }
+/* 1/cos^2 of a direction, at most 1e18: slopes of 1e9 are 1e5 alphas at least, where a Gaussian is 0. */
+MCSI_CORE MCSI_F MCSI_(secant2)(MCS_(vec3) h) { return MCSI_(min)(MCSI_(dot)(h, h) / (h.z * h.z), MCS_(set)(1e18f)); }
 /* p.wo of the lanes `off` again: by value, as a vector that is indexed cannot stay in a register. */
 MCSI_CORE MCSI_F MCSI_(slope_cosine)(MCSI_(slopes) m, MCS_(vec3) wo, MCSI_F r, MCSI_F turns, MCSI_I off, MCSI_F d) {
     int k;
@@ -2031,7 +2057,8 @@ MCSI_CORE MCS_(brdf)
         MCSI_I off = MCSI_(cancelled)(wo.z, *d, *p2);
         if (MCSI_(rarely)(off)) *d = MCSI_(slope_cosine)(*m, wo, r, u2, off, *d);
     }
-    return MCSI_(brdf)(ok & (*d > 0.0f), MCSI_(mirror)(wo, p, 2.0f * *d / *p2), g * (*p2 * *p2) / (4.0f * *d), MCS_(set)(1.0f));
+    return MCSI_(brdf)(ok & (*d > 0.0f), MCSI_(mirror)(wo, p, 2.0f * *d / *p2),
+                       g * (*p2 * *p2) / MCSI_(sel)(*d > 0.0f, 4.0f * *d, MCS_(set)(1.0f)), MCS_(set)(1.0f));
 }
 MCSI_CORE MCS_(vec2) MCSI_(slope_invert)(const MCSI_(slopes) * m, MCSI_I ok, MCS_(vec3) h, MCSI_F u1) {
     return MCSI_(uv)(ok & (m->norm > 0.0f), u1, MCSI_(atan2_turns)(h.y * m->inv_ay, h.x * m->inv_ax));
@@ -2075,7 +2102,7 @@ MCSI_CORE MCS_(dir) MCSI_(gauss_h_sample)(const MCSI_(slopes) * m, MCSI_F u1, MC
 MCSI_CORE MCSI_F MCSI_(gauss_h_pdf)(const MCSI_(slopes) * m, MCS_(vec3) h) {
     MCSI_I ok = MCSI_(always)();
     MCSI_F q;
-    h = MCSI_(above)(h, &ok), q = MCSI_(dot)(h, h) / (h.z * h.z);
+    h = MCSI_(above)(h, &ok), q = MCSI_(secant2)(h);
     return MCSI_(keep)(ok, m->norm * MCSI_(exp_neg)(-MCSI_(slope_square)(m, h)) * (q * MCSI_(sqrt)(q)));
 }
 MCSI_CORE MCS_(vec2) MCSI_(gauss_h_invert)(const MCSI_(slopes) * m, MCS_(vec3) h) {
@@ -2090,7 +2117,7 @@ MCSI_CORE MCSI_F MCSI_(gauss_pdf)(const MCSI_(slopes) * m, MCS_(vec3) wo, MCS_(v
     MCSI_I ok = MCSI_(always)();
     MCS_(vec3) h;
     wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
-    return MCSI_(keep)(ok, m->norm * MCSI_(exp_neg)(-MCSI_(slope_square)(m, h)) * (MCSI_(dot)(h, h) / (h.z * h.z)) / (2.0f * h.z));
+    return MCSI_(keep)(ok, m->norm * MCSI_(exp_neg)(-MCSI_(slope_square)(m, h)) * MCSI_(secant2)(h) / (2.0f * h.z));
 }
 
 MCSI_SAMPLE MCS_(dir) MCS_(ward_h_sample)(const MCS_(ward) * m, MCSI_F u1, MCSI_F u2) {
@@ -2104,7 +2131,7 @@ MCSI_SAMPLE MCS_(brdf) MCS_(ward_sample)(const MCS_(ward) * m, MCS_(vec3) wo, MC
     MCS_(brdf) s;
     wo = MCSI_(above)(wo, &ok);
     s = MCSI_(slope_brdf)(&m->s, ok, wo, r, g, u2, &d, &p2);
-    if (m->model == MCS_WARD_GMD) g = 2.0f * s.wi.z / (wo.z + s.wi.z);
+    if (m->model == MCS_WARD_GMD) g = 2.0f * s.wi.z / (wo.z + MCSI_(abs)(s.wi.z));
     else if (m->model == MCS_WARD_DUER) g = d / (p2 * p2 * wo.z);
     else g = d / (p2 * p2) * MCSI_(sqrt)(MCSI_(abs)(s.wi.z) / wo.z);
     s.weight = MCSI_(keep)(s.pdf > 0.0f, g);
@@ -2117,8 +2144,8 @@ MCSI_FN MCSI_F MCS_(ward_eval)(const MCS_(ward) * m, MCS_(vec3) wo, MCS_(vec3) w
     MCSI_F f;
     wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
     f = m->s.norm * MCSI_(exp_neg)(-MCSI_(slope_square)(&m->s, h));
-    if (m->model == MCS_WARD_GMD) f = f * (MCSI_(dot)(h, h) / (h.z * h.z)) / (h.z * h.z);
-    else if (m->model == MCS_WARD_DUER) f = f / (4.0f * wo.z * wi.z);
+    if (m->model == MCS_WARD_GMD) f = MCSI_(quotient)(f * MCSI_(secant2)(h), h.z * h.z);
+    else if (m->model == MCS_WARD_DUER) f = MCSI_(quotient)(f, 4.0f * wo.z * wi.z);
     else f = f / (4.0f * MCSI_(sqrt)(wo.z * wi.z));
     return MCSI_(keep)(ok, f);
 }
@@ -2160,11 +2187,12 @@ MCSI_FN MCS_(beckmann) MCS_(beckmann_make)(MCSI_F ax, MCSI_F ay) {
     m.s = MCSI_(slopes_make)(ax, ay);
     return m;
 }
-/* z L(w): L = exp(-a^2)/(2 a sqrt pi) - erfc(a)/2 with a = z/t, t = |(ax x, ay y)|; times z it stays finite at the horizon. */
+/* z L(w): L = exp(-a^2)/(2 a sqrt pi) - erfc(a)/2 with a = z/t, t = |(ax x, ay y)|; times z it stays finite at the horizon. It is 0
+ * for a of 1000, and below the horizon it is not asked for. */
 MCSI_CORE MCSI_F MCSI_(beckmann_shadow)(const MCSI_(slopes) * m, MCS_(vec3) w) {
-    MCSI_F x = m->ax * w.x, y = m->ay * w.y, t = MCSI_(sqrt)(x * x + y * y);
-    MCSI_F a = w.z / MCSI_(max)(t, MCS_(set)(FLT_MIN));
-    MCSI_F l = t * 0.282094792f * MCSI_(exp_neg)(-a * a) - w.z * MCSI_(normal_tail)(a * 1.41421356f);
+    MCSI_F x = m->ax * w.x, y = m->ay * w.y, z = MCSI_(max)(w.z, MCS_(set)(0.0f)), t = MCSI_(sqrt)(x * x + y * y);
+    MCSI_F a = z / MCSI_(max)(t, z * 1e-3f + FLT_MIN);
+    MCSI_F l = t * 0.282094792f * MCSI_(exp_neg)(-a * a) - z * MCSI_(normal_tail)(a * 1.41421356f);
     return MCSI_(max)(l, MCS_(set)(0.0f));
 }
 MCSI_SAMPLE MCS_(dir) MCS_(beckmann_h_sample)(const MCS_(beckmann) * m, MCSI_F u1, MCSI_F u2) {
@@ -2190,10 +2218,10 @@ MCSI_FN MCSI_F MCS_(beckmann_eval)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCS_
     MCS_(vec3) h;
     MCSI_F q, lo, li;
     wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
-    q = MCSI_(dot)(h, h) / (h.z * h.z);
+    q = MCSI_(secant2)(h);
     lo = MCSI_(beckmann_shadow)(&m->s, wo), li = MCSI_(beckmann_shadow)(&m->s, wi);
-    return MCSI_(keep)(ok, m->s.norm * MCSI_(exp_neg)(-MCSI_(slope_square)(&m->s, h)) * (q * q) /
-                               (4.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
+    return MCSI_(keep)(ok, MCSI_(quotient)(m->s.norm * MCSI_(exp_neg)(-MCSI_(slope_square)(&m->s, h)) * (q * q),
+                                           4.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
 }
 MCSI_FN MCSI_F MCS_(beckmann_weight)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
     MCSI_I ok = m->s.norm > 0.0f;
@@ -2418,7 +2446,7 @@ MCSI_CORE MCS_(brdf) MCSI_(visible_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, M
     inv = 1.0f / (h.p2 * (h.n2 * h.scale)), q = h.p2 * h.scale * (h.p2 * inv), s = v.t * h.n2 * h.n2 * inv;
     wi = MCSI_(mirror)(wo, h.p, s);
     return MCSI_(brdf)(ok, wi, m->s.norm / (2.0f * v.denominator) * (q * q),
-                       wi.z * v.denominator / (v.t * wi.z + MCSI_(ggx_t)(&m->s, wi) * wo.z));
+                       wi.z * v.denominator / (v.t * MCSI_(abs)(wi.z) + MCSI_(ggx_t)(&m->s, wi) * wo.z));
 }
 MCSI_CORE MCSI_F MCSI_(visible_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi, int bounded) {
     MCSI_I ok = MCSI_(always)();
@@ -2644,18 +2672,20 @@ MCSI_BATCH_VALUE(ashikhmin_eval, ashikhmin)
  * mixture takes bad densities for 0 and the nearest c in [0,1], 0 for NaN. 1-2 div. */
 
 MCSI_CORE MCSI_F MCSI_(mis_ratio)(MCSI_F pf, MCSI_F pg, MCSI_I *ok) {
+    const MCSI_F one = MCS_(set)(1.0f);
     *ok = (pf > 0.0f) & (pg >= 0.0f);
-    return MCSI_(sel)(pf == pg, MCS_(set)(1.0f), pg / MCSI_(sel)(*ok, pf, MCS_(set)(1.0f)));
+    return MCSI_(quotient)(MCSI_(sel)(pf == pg, one, pg), MCSI_(sel)(*ok & (pf != pg), pf, one));
 }
 MCSI_FN MCSI_F MCS_(mis_balance)(MCSI_F pf, MCSI_F pg) {
     MCSI_I ok;
     MCSI_F r = MCSI_(mis_ratio)(pf, pg, &ok);
-    return MCSI_(keep)(ok, 1.0f / (1.0f + r));
+    return MCSI_(keep)(ok & (r < FLT_MAX), 1.0f / (1.0f + r));
 }
 MCSI_FN MCSI_F MCS_(mis_power)(MCSI_F pf, MCSI_F pg) {
     MCSI_I ok;
     MCSI_F r = MCSI_(mis_ratio)(pf, pg, &ok);
-    return MCSI_(keep)(ok, 1.0f / (1.0f + r * r));
+    MCSI_F least = MCSI_(min)(r, MCS_(set)(1.8446743e19f)); /* the largest whose square is a float */
+    return MCSI_(keep)(ok & (r <= least), 1.0f / (1.0f + least * least));
 }
 MCSI_FN MCSI_F MCS_(mix_pdf)(MCSI_F c, MCSI_F pf, MCSI_F pg) {
     MCSI_I ok = c == c;
@@ -3834,7 +3864,10 @@ MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, m
 /* Blocks of points, so that the misses of one stage (guide, cumulative sums) are under way together before the next one needs
  * them: aim all of them, then land. */
 MCSI_CORE void mcsi_env_block_start(mcsi_env_block *b, size_t n) {
-    if (n < MCSI_ENV_BLOCK) memset(b, 0, sizeof *b); /* directions are computed by whole vectors */
+    size_t k;
+    if (n >= MCSI_ENV_BLOCK) return;
+    memset(b, 0, sizeof *b); /* directions are computed by whole vectors */
+    for (k = n; k < MCSI_ENV_BLOCK; k++) b->row_mass[k] = b->col_mass[k] = 1.0f;
 }
 MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi_env_block *b, size_t k, double U1, double U2,
                                   double part, int ok) {
@@ -3955,7 +3988,7 @@ MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
 }
 MCS_FN float mcs_env_weight(const mcs_env *e, float pdf) {
     MCS_ASSERT(!e->incomplete);
-    return mcsi_keep(!e->incomplete & (pdf > 0.0f), 1.0f / pdf);
+    return mcsi_keep(!e->incomplete & (pdf > 0.0f), mcsi_quotient(1.0f, pdf));
 }
 
 /* ---- windows ---- */
@@ -4104,19 +4137,20 @@ MCSI_CORE MCSI_F MCSI_(falloff)(MCSI_F x) {
 MCSI_CORE MCSI_F MCSI_(tile_lobe)(const mcsi_facing *s, MCS_(vec3) w, MCSI_F spread) {
     MCSI_F ax2 = s->ax2 + 0.25f * spread, ay2 = s->ay2 + 0.25f * spread, aa = ax2 * ay2, root = MCSI_(sqrt)(aa);
     MCSI_F hx = w.x + s->wo.x, hy = w.y + s->wo.y, hz = w.z + s->wo.z, hh = hx * hx + hy * hy + hz * hz;
-    MCSI_F ratio, shadow;
+    MCSI_F ratio, shadow, least = MCS_(set)(FLT_MIN);
     if (s->profile == MCS_PROFILE_GAUSS) {
-        MCSI_F h2 = hz * hz;
-        return MCSI_1_PI * MCSI_(falloff)((hx * hx * ay2 + hy * hy * ax2) / (aa * h2)) * hh * w.z / (root * h2 * h2);
+        MCSI_F h2 = hz * hz, a = hx * hx * ay2 + hy * hy * ax2, b = MCSI_(max)(aa * h2, least);
+        a = MCSI_(falloff)(MCSI_(min)(a, 64.0f * b) / b); /* which is as far as it falls */
+        return MCSI_(quotient)(MCSI_1_PI * a * hh * w.z, MCSI_(max)(root * h2 * h2, least));
     }
     if (s->profile == MCS_PROFILE_PHONG) {
         MCSI_F n = MCSI_(max)(0.5f / root - 2.0f, MCS_(set)(0.0f)), z = w.z - s->wo.z; /* h without its z: w less the mirror's */
         return (n + 2.0f) * MCSI_1_2PI * MCSI_(falloff)(0.5f * n * (hx * hx + hy * hy + z * z)) * w.z;
     }
-    ratio = root * hh / (hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa);
+    ratio = root * hh / MCSI_(max)(hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa, least);
     shadow = s->wo.z * MCSI_(sqrt)(ax2 * w.x * w.x + ay2 * w.y * w.y + w.z * w.z) +
              w.z * MCSI_(sqrt)(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
-    return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / shadow;
+    return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / MCSI_(max)(shadow, least);
 }
 /* Never 0, nor what bad axes make of it. */
 MCSI_CORE MCSI_F MCSI_(reflected)(MCSI_F f) {
@@ -4124,7 +4158,8 @@ MCSI_CORE MCSI_F MCSI_(reflected)(MCSI_F f) {
 }
 /* Reflection towards the light of tiles; more than 0 wherever there may be light above the horizon. */
 MCSI_CORE MCSI_F MCSI_(tile_value)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride) {
-    MCSI_F r = MCS_(load)(tile + MCSI_TILE_RADIUS * stride), reach = MCS_(load)(tile + MCSI_TILE_REACH * stride);
+    MCSI_F r = MCS_(load)(tile + MCSI_TILE_RADIUS * stride);
+    MCSI_F reach = MCSI_(max)(MCS_(load)(tile + MCSI_TILE_REACH * stride), MCS_(set)(1e-6f)); /* beyond the last tile it is 0 */
     MCSI_F c, crossing, cosine, f, zero = MCS_(set)(0.0f);
     MCS_(vec3) m;
     m.x = MCS_(load)(tile + MCSI_TILE_X * stride), m.y = MCS_(load)(tile + MCSI_TILE_Y * stride);
@@ -4377,7 +4412,7 @@ MCS_FN void mcsi_patch_store(const mcs_env *e, const mcsi_patch *p, float *field
     d = d < 1.0 ? d : 1.0;
     spread = 1.0 - d * d + (p->e > 0.0 ? p->within / p->e : 0.0), spread = spread < 1.0 ? spread : 1.0, r2 = mcsi_sqrt_d(r2),
     reach = 1.5 * mcsi_sqrt_d(spread);
-    if (p->area > 0.0) {
+    if (p->area > 0.0 && p->col1 > p->col0) {
         float s, c;
         double even = p->up * p->up, turns = 0.5 * (p->col1 - p->col0) / e->w;
         mcsi_sincos_turns((float)turns, &s, &c); /* a column's mean lies sin(x)/x from the axis, x half its width */
@@ -4954,6 +4989,7 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
     }
     mcsi_env_block_start(&b, n);
     if (n < MCSI_ENV_BLOCK) memset(&warps, 0, sizeof warps);
+    for (k = n; k < MCSI_ENV_BLOCK; k++) warps.value[k] = 1.0f;
     for (i = 0; i < n; i += m) { /* by stages, as each of them is a long chain of operations */
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         for (k = 0; k < m; k++) {

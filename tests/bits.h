@@ -199,13 +199,19 @@ FN(sobol_n) {
 FN(stratified) { B_(put2)(out, 0, mcs_stratified(WORD(11), WORD(12) % 50, WORD(13) % 70, WORD(13))); }
 FN(latin) { PUT(0, mcs_latin(WORD(11), WORD(12) % 5000, WORD(13) % 9, WORD(13))); }
 
+/* Bad entries, unless a test wants none. */
+#ifndef BITS_NEGATIVE
+#define BITS_NEGATIVE -1.0f
+#define BITS_NAN from_bits(0x7fc00000)
+#endif
+
 /* Small tables, built anew for every case: of 1 to BITS_CELLS entries, some of them 0 or bad, now and then all 0. */
 BITS_HD static uint32_t bits_entries(const float *in, float *f) {
     const uint32_t n = 1 + WORD(11) % BITS_CELLS;
     uint32_t i;
     for (i = 0; i <= n; i++) {
         const uint32_t h = mcs_hash(WORD(12), i);
-        f[i] = WORD(13) % 16 == 0 || h % 8 == 0 ? 0.0f : h % 128 == 1 ? -1.0f : mcs_u01(h) * (h % 8 == 1 ? 1e6f : 1.0f);
+        f[i] = WORD(13) % 16 == 0 || h % 8 == 0 ? 0.0f : h % 128 == 1 ? BITS_NEGATIVE : mcs_u01(h) * (h % 8 == 1 ? 1e6f : 1.0f);
     }
     return n;
 }
@@ -335,8 +341,8 @@ BITS_HD static void bits_picture(uint32_t seed, uint32_t n, float *f) {
     for (i = 0; i < n; i++) {
         const uint32_t h = mcs_hash(seed, i);
         f[i] = h % 8 == 0     ? 0.0f
-               : h % 128 == 1 ? -1.0f
-               : h % 128 == 9 ? from_bits(0x7fc00000)
+               : h % 128 == 1 ? BITS_NEGATIVE
+               : h % 128 == 9 ? BITS_NAN
                               : mcs_u01(h) * (h % 8 == 1 ? 1e4f : 1.0f);
     }
 }
