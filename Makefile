@@ -17,13 +17,14 @@ LIBS = -lm
 TESTS = $(sort $(wildcard tests/test_*.c))
 EXAMPLES = $(sort $(wildcard examples/[0-9][0-9]_*.c))
 TEST_BINS = $(TESTS:%.c=$(BUILD)/%)
-# Stress programs: at full size by `make stress`, part by part; a small cut of each with every full `make test`. The oracle of
-# extremes is __float128, which takes gcc and its libquadmath.
-STRESS_ALL = floats deep hostile fuzz images extremes
-STRESS = $(if $(QUADMATH),$(STRESS_ALL),$(filter-out extremes,$(STRESS_ALL)))
+# Stress programs: at full size by `make stress`, part by part; a small cut of each with every full `make test`. The truth of
+# extremes and climb is __float128, which takes gcc and its libquadmath.
+STRESS_ALL = floats deep hostile fuzz images extremes climb
+STRESS_QUAD = extremes climb
+STRESS = $(if $(QUADMATH),$(STRESS_ALL),$(filter-out $(STRESS_QUAD),$(STRESS_ALL)))
 STRESS_BINS = $(STRESS:%=$(BUILD)/tests/stress/%)
 # Parts of make stress: program-filter, + for a space and . for a slash in the filter.
-STRESS_PARTS = hostile fuzz images $(filter extremes,$(STRESS)) floats-vector+maths floats-u+to+x floats-u+to+radius floats-any+float \
+STRESS_PARTS = hostile fuzz images $(filter $(STRESS_QUAD),$(STRESS)) floats-vector+maths floats-u+to+x floats-u+to+radius floats-any+float \
 	$(addprefix deep-,linear tent exponential truncexp normal logistic power disk concentric sphere cosine cone phong ward \
 	beckmann ggx. ggx_h. ggx_vndf ggx_bounded ashikhmin)
 STRESS_CUT = $(if $(filter-out $(TESTS),$(sort $(wildcard tests/test_*.c))),,$(STRESS_BINS))
@@ -44,11 +45,11 @@ QUADMATH = $(shell mkdir -p $(BUILD) && printf '\043include <quadmath.h>\nint ma
 test: ## build and run every tests/test_*.c (the default); FILTER=text and SEED=number narrow it down
 	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS) $(EXACT)'
 	+@$(SUBMAKE) test-binaries
-	@$(if $(STRESS_CUT),$(if $(QUADMATH),,echo 'SKIPPED: tests/stress/extremes.c: $(CC) has no libquadmath'))
+	@$(if $(STRESS_CUT),$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath'))
 	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS) $(STRESS_CUT)
 
 stress: ## every float, deep statistics, extremes, hostile input at full size: half an hour; parts that passed are not run again
-	@$(if $(QUADMATH),,echo 'SKIPPED: tests/stress/extremes.c: $(CC) has no libquadmath')
+	@$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath')
 	+@$(SUBMAKE) $(STRESS_BINS)
 	+@$(SUBMAKE) --keep-going $(STRESS_PARTS:%=$(BUILD)/stress/%.ok)
 	@cat $(STRESS_PARTS:%=$(BUILD)/stress/%.txt)
@@ -117,7 +118,7 @@ $(RENDER): examples/render.c examples/hdr.h mcsample.h $(BUILD)/flags
 $(TEST_BINS) $(STRESS_BINS): CONTRACT = $(EXACT)
 $(STRESS_BINS): $(wildcard tests/stress/*.h)
 $(STRESS_BINS): FLAGS += -Itests/stress
-$(BUILD)/tests/stress/extremes: LIBS = $(QUADMATH) -lm
+$(STRESS_QUAD:%=$(BUILD)/tests/stress/%): LIBS = $(QUADMATH) -lm
 $(BUILD)/tests/stress/fuzz: FLAGS += -DMCS_FUZZ_MAIN
 
 $(STRESS_PARTS:%=$(BUILD)/stress/%.ok): $(BUILD)/stress/%.ok: $(STRESS_BINS)

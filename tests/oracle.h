@@ -541,7 +541,7 @@ static inline ld o_ggx_weight(ld ax, ld ay, o_vec3 wo, o_vec3 wi) {
     return o_above(wo, wi) ? wi.z * o_dot(H, H) / (2.0L * H.z * o_ggx_shadow(ax, ay, wo, wi)) : 0.0L;
 }
 
-/* ---- GGX visible normals by spherical caps (Dupuy and Benyoub 2023), bounded (Tokuyoshi and Eto 2023) ---- */
+/* ---- GGX visible normals by spherical caps (Dupuy and Benyoub 2023), bounded (Eto and Tokuyoshi 2023) ---- */
 
 /* The view where the surface is a hemisphere: i unit, (ex, ey) its azimuth, s its sine; k bounds the cap, k1 = 1 - k. */
 typedef struct {

@@ -6,7 +6,7 @@
  *
  * Sources: Phong lobe: Lafortune and Willems 1994. Ward: Ward 1992 with the arctangent that Walter 2005 restored. GGX and Beckmann:
  * Walter et al. 2007, equations 25 to 36; anisotropic: Burley 2012, appendix B. Visible normals: Heitz 2018, listing 1. Bounded:
- * Tokuyoshi and Eto 2023. Ashikhmin and Shirley 2000 (the exponent unsquared). Concentric map: Shirley and Chiu 1997. Normal: Giles
+ * Eto and Tokuyoshi 2023. Ashikhmin and Shirley 2000 (the exponent unsquared). Concentric map: Shirley and Chiu 1997. Normal: Giles
  * 2010, "Approximating the erfinv function". Frame: Duff et al. 2017. Generator: O'Neill 2014. The rest: Pharr, Jakob, Humphreys
  * 2023, appendix A. */
 #ifndef BENCH_TEXT_H

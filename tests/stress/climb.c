@@ -1,0 +1,278 @@
+/* An adversary: for every figure of accuracy that the header states for directions it looks for the input that breaks it, by random
+ * starts and by climbing from the best of them, against the __float128 truth of exact.h. Directions are unit to half an ulp, what a
+ * caller in double gives; nothing else is forgiven: no condition comes on top of a figure.
+ *
+ * The figures are those of claims.h; test_oracle.c looks up that the header states them.
+ * At full size the seed is the day, and printed; --seed picks another, MCS_TEST_SCALE scales the number of climbs. */
+#include <time.h>
+#include "claims.h"
+#include "exact.h"
+
+#define EPS 0x1p-24 /* half an ulp of 1 */
+enum { CLIMBS = 60 }; /* for each figure, at full size */
+
+/* --- points ----------------------------------------------------------------------------------------------------------------- */
+
+/* One input. What a figure does not depend on is never changed. */
+typedef struct {
+    float p[MCST_P], u[2], w[3];
+} point;
+
+static uint64_t state;
+static double flat(void) { return (double)(mcst_mix(&state) >> 11) * 0x1p-53; }
+static int one_in(unsigned n) { return mcst_mix(&state) % n == 0; }
+/* Small steps are as likely as large ones. */
+static double any_step(double largest) { return (one_in(2) ? largest : -largest) * pow(10, -7 * flat()); }
+static float ulps(float x, int n) {
+    for (; n > 0; n--) x = nextafterf(x, INFINITY);
+    for (; n < 0; n++) x = nextafterf(x, -INFINITY);
+    return x;
+}
+static float clamped(double x, double least, double most) { return (float)fmin(fmax(x, least), most); }
+
+static void set_direction(float w[3], double cosine, double azimuth) {
+    const double c = fmin(fmax(cosine, 1.0001e-15), 1), s = sqrt((1 - c) * (1 + c));
+    w[0] = (float)(s * cos(azimuth)), w[1] = (float)(s * sin(azimuth)), w[2] = (float)c;
+}
+/* A sine of wo below 1e-24 may count as 0. */
+static int unit_enough(const float w[3]) {
+    const double x = (double)w[0], y = (double)w[1], z = (double)w[2], r2 = x * x + y * y;
+    return !(r2 > 0 && r2 < 1e-48) && w[2] >= 1e-15f && fabs(sqrt(x * x + y * y + z * z) - 1) <= EPS;
+}
+static void any_direction(float w[3]) { set_direction(w, one_in(2) ? flat() : pow(10, -15 * flat()), 6.283185307179586 * flat()); }
+static void move_direction(float w[3]) {
+    const double azimuth = atan2((double)w[1], (double)w[0]);
+    float was[3];
+    memcpy(was, w, sizeof was);
+    if (one_in(3)) {
+        const size_t k = mcst_mix(&state) % 3;
+        w[k] = ulps(w[k], (int)(mcst_mix(&state) % 9) - 4);
+        if (!unit_enough(w)) memcpy(w, was, sizeof was);
+    } else if (one_in(2)) set_direction(w, (double)w[2] * exp(any_step(3)), azimuth);
+    else set_direction(w, (double)w[2], azimuth + any_step(3));
+    if (!unit_enough(w)) memcpy(w, was, sizeof was);
+}
+
+static float any_u(void) {
+    if (one_in(3)) return one_in(2) ? (float)pow(10, -12 * flat()) : clamped(1 - pow(10, -7.3 * flat()), 0, 1 - EPS);
+    return clamped(flat(), 0, 1 - EPS);
+}
+static float move_u(float u) {
+    double x = (double)u;
+    if (one_in(3)) x = (double)ulps(u, (int)(mcst_mix(&state) % 9) - 4);
+    else if (one_in(2)) x += any_step(1);
+    else if (x < 0.5) x *= exp(any_step(3));
+    else x = 1 - (1 - x) * exp(any_step(3));
+    return clamped(x, 0, 1 - EPS);
+}
+
+static const mcst_claim *claim; /* what is under attack */
+
+static float any_parameter(int i) {
+    const double least = claim->least[i], most = claim->most[i], floor_ = fmax(least, 1e-30);
+    if (!(most > least)) return (float)least;
+    if (least == 0 && one_in(20)) return 0;
+    if (one_in(2)) return clamped(pow(10, 4 * flat() - 2.5), least, most); /* what materials have */
+    return clamped(floor_ * pow(most / floor_, flat()), least, most);
+}
+static float move_parameter(int i, float v) {
+    const double x = one_in(3) ? (double)ulps(v, (int)(mcst_mix(&state) % 9) - 4) : (double)v * exp(any_step(3));
+    return clamped(x, claim->least[i], claim->most[i]);
+}
+
+static void sample_at(const mcst_row *row, point *t) {
+    float out[5] = {0};
+    row->fn[0].sample(t->p, &t->u[0], &t->u[1], out);
+    if (unit_enough(out)) memcpy(t->w, out, sizeof t->w);
+}
+static void any_point(const mcst_row *row, point *t) {
+    memset(t, 0, sizeof *t);
+    t->p[0] = any_parameter(0);
+    t->p[1] = row->params > 1 && one_in(3) ? clamped((double)t->p[0], claim->least[1], claim->most[1]) : any_parameter(1);
+    t->p[5] = 1;
+    if (row->has_wo) any_direction(t->p + 3);
+    t->u[0] = any_u(), t->u[1] = any_u();
+    any_direction(t->w);
+    if (!one_in(4)) sample_at(row, t);
+}
+static int is_of_u(int figure) { return figure == CLAIM_PDF_U || figure == CLAIM_SAMPLE_WEIGHT || figure == CLAIM_LENGTH; }
+static void move_point(const mcst_row *row, int figure, point *t) {
+    const int of_u = is_of_u(figure);
+    do {
+        if (one_in(4)) t->p[0] = move_parameter(0, t->p[0]);
+        if (one_in(4)) t->p[1] = move_parameter(1, one_in(8) && row->params > 1 ? t->p[0] : t->p[1]);
+        if (row->has_wo && one_in(3)) move_direction(t->p + 3);
+        if (of_u && one_in(2)) t->u[0] = move_u(t->u[0]);
+        if (of_u && one_in(2)) t->u[1] = move_u(t->u[1]);
+        if (!of_u && one_in(2)) move_direction(t->w);
+    } while (one_in(3));
+}
+
+/* --- scores ----------------------------------------------------------------------------------------------------------------- */
+
+/* The greatest density: of a grid of u, then uphill from there. Only its logarithm counts. */
+static double peak_of(const mcst_row *row, const float *p) {
+    enum { GRID = 16 };
+    ld at[2] = {0.5L, 0.5L}, peak = 0, step;
+    int i, j;
+    for (i = 0; i < GRID; i++)
+        for (j = 0; j < GRID; j++) {
+            const ld u1 = 1 - (ld)((GRID - i) * (GRID - i)) / (GRID * GRID), u2 = ((ld)j + 0.25L) / GRID;
+            const ld pdf = row->truth.pdf_u(p, u1, u2);
+            if (pdf > peak && pdf < 1e300L) peak = pdf, at[0] = u1, at[1] = u2;
+        }
+    for (step = 1.0L / GRID; step > 1e-6L; step *= 0.6L)
+        for (i = 0; i < 8; i++) {
+            static const int way[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
+            const ld u1 = fminl(fmaxl(at[0] + step * way[i][0], 0), 1 - (ld)EPS), u2 = at[1] + step * way[i][1];
+            const ld pdf = row->truth.pdf_u(p, u1, u2 - floorl(u2));
+            if (pdf > peak && pdf < 1e300L) peak = pdf, at[0] = u1, at[1] = u2 - floorl(u2);
+        }
+    return (double)peak;
+}
+
+/* The error of got in 1e-6 (1 + |ln(density/peak)|) of want; what is below 2^-126 of the peak does not count. The peak is looked
+ * for only where the score would be above `least` without it. Densities above FLT_MAX saturate; subnormal ones are only small. */
+static double in_units(const mcst_row *row, const float *p, float got, qd want, qd density, double least) {
+    const double error = fabs((double)(((qd)got - want) / want));
+    double peak;
+    if (!(want < (qd)FLT_MAX && want > (qd)FLT_MIN)) return 0;
+    if (!(error / 1e-6 > least)) return error / 1e-6;
+    peak = fmax(peak_of(row, p), (double)density);
+    return (error - 0x1p-126 * peak / (double)density) / (1e-6 * (1 + log(peak / (double)density)));
+}
+/* The exponent e of a Gaussian half-vector; 0 of another row. */
+static double exponent_of(const mcst_row *row, const setting *s, q3 x) {
+    const q3 h = row->shape == MCST_IS_BRDF ? add(s->wo, x) : x;
+    return mcst_is_gauss(row) ? (double)(tan2_of(h) * per_alpha2(s->a, s->b, h)) : 0;
+}
+/* The error of a density or value at a given direction, in its unit. */
+static double at_direction(const mcst_row *row, const setting *s, const float *p, q3 x, float got, qd want, qd density,
+                           double least) {
+    if (!mcst_is_gauss(row)) return in_units(row, p, got, want, density, least);
+    if (!(want < (qd)FLT_MAX && want > (qd)FLT_MIN)) return 0;
+    return fabs((double)(((qd)got - want) / want)) / (1e-6 * (1 + exponent_of(row, s, x)));
+}
+
+/* What the weight of a sample belongs to: the half-vector of the exact point and the float direction wi. */
+static qd weight_of_sample(const setting *s, qd u1, qd u2, q3 wi) {
+    const qd zo = s->wo.z, a = s->a, b = s->b;
+    const q3 h = s->half ? half_vector_map(s, u1, u2) : wi;
+    const qd d = dot(s->wo, h), c = h.z;
+    switch (s->id) {
+    case ID_phong: return (a + 2) / (a + 1) * wi.z;
+    case ID_ward_gmd: return 2 * wi.z / (zo + wi.z);
+    case ID_ward_duer: return d * c * c * c / zo;
+    case ID_ward_1992: return d * c * c * c * sqrtq(wi.z / zo);
+    case ID_beckmann: return d / (zo * c * (1 + beckmann_lambda(a, b, s->wo) + beckmann_lambda(a, b, wi)));
+    case ID_ashikhmin: return wi.z / fmaxq(zo, wi.z);
+    default: break;
+    }
+    if (!s->visible) return d / (zo * c * (1 + ggx_lambda(a, b, s->wo) + ggx_lambda(a, b, wi)));
+    if (s->visible == 1) return (1 + ggx_lambda(a, b, s->wo)) / (1 + ggx_lambda(a, b, s->wo) + ggx_lambda(a, b, wi));
+    return (bound(a, b, s->wo) * zo + len(vec(a * s->wo.x, b * s->wo.y, zo))) /
+           (2 * zo * (1 + ggx_lambda(a, b, s->wo) + ggx_lambda(a, b, wi)));
+}
+
+static double weight_error(float got, qd want) {
+    if (!(want < (qd)FLT_MAX && want > (qd)0x1p-100)) return 0;
+    return fabs((double)(((qd)got - want) / want)) / 1e-6;
+}
+
+static double score_of(const mcst_row *row, int figure, const point *t, double least) {
+    const setting s = setting_of(row, t->p);
+    q3 x = vec(t->w[0], t->w[1], t->w[2]);
+    qd pdf, f;
+    float out[5] = {0}, got = 0;
+    if (is_of_u(figure)) row->fn[0].sample(t->p, &t->u[0], &t->u[1], out);
+    if (figure == CLAIM_LENGTH) {
+        const double l2 = (double)out[0] * (double)out[0] + (double)out[1] * (double)out[1] + (double)out[2] * (double)out[2];
+        return fabs(sqrt(l2) - 1) / EPS;
+    }
+    if (figure == CLAIM_SAMPLE_WEIGHT) {
+        if (!(out[3] > 0) || out[2] < 1e-15f) return 0;
+        return weight_error(out[4], weight_of_sample(&s, t->u[0], t->u[1], vec(out[0], out[1], out[2])));
+    }
+    if (figure == CLAIM_PDF_U) {
+        exact_map(row, &s, t->u[0], t->u[1], &x);
+        if (row->shape == MCST_IS_BRDF && !(out[3] > 0) && x.z <= 40 * (qd)EPS) return 0; /* lost, or nearly */
+        if (row->coord != MCST_SPHERE && row->coord != MCST_CONE && x.z < (qd)1e-15) return 0;
+        pdf = exact_pdf(row, &s, x);
+        return in_units(row, t->p, out[3], pdf, pdf, least);
+    }
+    if (row->coord == MCST_CONE && fabsq((1 - x.z / len(x)) / s.a - 1) < (qd)1e-6) return 0; /* the rim */
+    pdf = exact_pdf(row, &s, x);
+    if (!(pdf > (qd)0x1p-1022) || exponent_of(row, &s, x) > 87) return 0;
+    if (figure == CLAIM_PDF_W) {
+        row->fn[0].pdf(t->p, t->w, &got);
+        if (row->shape == MCST_IS_VLOBE && got == 0) return 0; /* the rim of the cap */
+        return at_direction(row, &s, t->p, x, got, pdf, pdf, least);
+    }
+    f = exact_value(&s, x);
+    if (figure == CLAIM_EVAL) {
+        row->fn[0].eval(t->p, t->w, &got);
+        return at_direction(row, &s, t->p, x, got, f, pdf, least);
+    }
+    row->fn[0].weight(t->p, t->w, &got);
+    return weight_error(got, f * x.z / pdf);
+}
+
+static double climb(const mcst_row *row, int figure, int starts, int steps, point *at) {
+    double best = -1;
+    int i;
+    for (i = 0; i < starts; i++) {
+        point t;
+        double score;
+        any_point(row, &t);
+        score = score_of(row, figure, &t, best);
+        if (score > best) best = score, *at = t;
+    }
+    for (i = 0; i < steps; i++) {
+        point t = *at;
+        double score;
+        move_point(row, figure, &t);
+        score = score_of(row, figure, &t, best);
+        if (score > best) best = score, *at = t;
+    }
+    return best;
+}
+
+int main(int argc, char **argv) {
+    const double scale = mcst_scale();
+    size_t i;
+    int k, n;
+    exact_start();
+    if (scale >= 1) mcst.seed = (uint64_t)time(NULL) / 86400;
+    mcst_start(argc, argv);
+    if (!mcst.list) printf("seed %llu\n", (unsigned long long)mcst.seed);
+    for (i = 0; i < MCST_COUNT(mcst_claims); i++) {
+        const mcst_row *row = mcst_rows;
+        char group[64];
+        claim = &mcst_claims[i];
+        while (strcmp(row->name, claim->row) != 0) row++;
+        if (row->dim < 3) continue;
+        snprintf(group, sizeof group, row->params ? "%s %g to %g" : "%s", row->name, claim->least[0], claim->most[0]);
+        mcst_group(group);
+        for (k = 0; k < CLAIMS; k++) {
+            const int climbs = (int)ceil(CLIMBS * scale);
+            double worst = 0;
+            point at;
+            char where[320] = "";
+            if (claim->claim[k] == 0 || !mcst_case("%s", mcst_claim_name[k])) continue;
+            state = mcst_seed_for(row->name, mcst_claim_name[k], 0);
+            for (n = 0; n < climbs; n++) {
+                const double score = climb(row, k, 100, 500, &at);
+                if (score > worst) {
+                    worst = score;
+                    snprintf(where, sizeof where, "p %a %a, wo %a %a %a, u %a %a, w %a %a %a", (double)at.p[0], (double)at.p[1],
+                             (double)at.p[3], (double)at.p[4], (double)at.p[5], (double)at.u[0], (double)at.u[1], (double)at.w[0],
+                             (double)at.w[1], (double)at.w[2]);
+                }
+            }
+            CHECK(worst <= claim->claim[k], "%.3f at %s", worst, where);
+            printf("  %-26s %-18s %6.3f of %4.2f%s%s\n", group, mcst_claim_name[k], worst, claim->claim[k],
+                   getenv("MCS_TEST_VERBOSE") ? " at " : "", getenv("MCS_TEST_VERBOSE") ? where : "");
+        }
+    }
+    return mcst_finish();
+}
