@@ -23,10 +23,21 @@ STRESS_ALL = floats deep hostile fuzz images extremes climb
 STRESS_QUAD = extremes climb
 STRESS = $(if $(QUADMATH),$(STRESS_ALL),$(filter-out $(STRESS_QUAD),$(STRESS_ALL)))
 STRESS_BINS = $(STRESS:%=$(BUILD)/tests/stress/%)
-# Parts of make stress: program-filter, + for a space and . for a slash in the filter.
-STRESS_PARTS = hostile fuzz images $(filter $(STRESS_QUAD),$(STRESS)) floats-vector+maths floats-u+to+x floats-u+to+radius floats-any+float \
-	$(addprefix deep-,linear tent exponential truncexp normal logistic power disk concentric sphere cosine cone phong ward \
-	beckmann ggx. ggx_h. ggx_vndf ggx_bounded ashikhmin)
+# Parts of make stress, of up to about five minutes each: program-filter, + for a space and . for a slash in the filter, ^ for all
+# but what follows. stress-whole looks whether they leave a case out.
+STRESS_ROWS = linear tent exponential truncexp normal logistic power disk concentric sphere cosine cone phong ward beckmann \
+	ggx. ggx_h. ggx_vndf ggx_bounded ashikhmin
+STRESS_PARTS = hostile images fuzz-product fuzz-^product $(filter climb,$(STRESS)) \
+	$(addprefix floats-vector+maths.,sin 1 ln e x normal+tail normal+quantile atan2+of) \
+	$(addprefix floats-,y+to+1 y+beyond+1 y+below+0 u+to+x u+to+radius any+float.u) \
+	$(addprefix floats-any+float.x+of+,l t e n p) $(STRESS_ROWS:%=deep-%) \
+	$(if $(filter extremes,$(STRESS)),$(STRESS_ROWS:%=extremes-%) extremes-mass extremes-oracle)
+STRESS_FILTER = $(if $(findstring -,$(1)),--filter '$(subst .,/,$(subst +, ,$(word 2,$(subst -, ,$(1)))))')
+# Two of them each day of the year.
+DAY ?= $(shell date +%j)
+STRESS_TODAY = $(foreach i,$(shell echo '$(DAY) $(words $(STRESS_PARTS))' | awk '{ print $$1 % $$2 + 1, ($$1 + int($$2 / 2)) % $$2 + 1 }'), \
+	$(word $(i),$(STRESS_PARTS)))
+STRESS_SUM = awk '/^[0-9]+ passed, [0-9]+ failed$$/ { p += $$1; f += $$3 } END { print p + 0 " passed, " f + 0 " failed"; exit f != 0 || p == 0 }'
 STRESS_CUT = $(if $(filter-out $(TESTS),$(sort $(wildcard tests/test_*.c))),,$(STRESS_BINS))
 EXAMPLE_BINS = $(EXAMPLES:%.c=$(BUILD)/%)
 RENDER = $(BUILD)/examples/render
@@ -48,13 +59,18 @@ test: ## build and run every tests/test_*.c (the default); FILTER=text and SEED=
 	@$(if $(STRESS_CUT),$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath'))
 	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS) $(STRESS_CUT)
 
-stress: ## every float, deep statistics, extremes, hostile input at full size: half an hour; parts that passed are not run again
+stress: ## every float, deep statistics, extremes, hostile input at full size: an hour; parts that passed are not run again
 	@$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath')
-	+@$(SUBMAKE) $(STRESS_BINS)
+	+@$(SUBMAKE) stress-whole
 	+@$(SUBMAKE) --keep-going $(STRESS_PARTS:%=$(BUILD)/stress/%.ok)
 	@cat $(STRESS_PARTS:%=$(BUILD)/stress/%.txt)
-	@cat $(STRESS_PARTS:%=$(BUILD)/stress/%.txt) | awk '/^[0-9]+ passed, [0-9]+ failed$$/ { p += $$1; f += $$3 } \
-		END { print p + 0 " passed, " f + 0 " failed"; exit f != 0 || p == 0 }'
+	@cat $(STRESS_PARTS:%=$(BUILD)/stress/%.txt) | $(STRESS_SUM)
+
+stress-today: ## the two parts of make stress whose day it is, at full size: some minutes; DAY=number picks another
+	@echo 'stress: day $(DAY): $(STRESS_TODAY)'
+	+@$(SUBMAKE) stress-whole
+	+@$(SUBMAKE) --keep-going $(STRESS_TODAY:%=$(BUILD)/stress/%.ok)
+	@cat $(STRESS_TODAY:%=$(BUILD)/stress/%.txt) | $(STRESS_SUM)
 
 cross: ## the same bits on other machines: cross compilers and qemu-user where installed; ONLY=name picks one
 	@BUILD='$(BUILD)' sh tests/cross.sh $(ONLY)
@@ -100,6 +116,12 @@ clean: ## remove everything that was built
 	rm -rf $(BUILD)
 
 test-binaries: $(TEST_BINS) $(STRESS_CUT)
+# Every case of every program is in a part.
+stress-whole: $(STRESS_BINS)
+	@for p in $(STRESS_BINS); do $$p --list | sed "s,^,$${p##*/} ,"; done | sort -u > $(BUILD)/stress.cases
+	@{ $(foreach p,$(STRESS_PARTS),$(BUILD)/tests/stress/$(firstword $(subst -, ,$(p))) --list $(call STRESS_FILTER,$(p)) | \
+		sed 's,^,$(firstword $(subst -, ,$(p))) ,';) } | sort -u | comm -23 $(BUILD)/stress.cases - > $(BUILD)/stress.left
+	@if [ -s $(BUILD)/stress.left ]; then echo 'FAIL stress: in no part:'; cat $(BUILD)/stress.left; exit 1; fi
 example-binaries: $(EXAMPLE_BINS)
 
 # Rewritten only when the compiler or a flag changes, so that such a change rebuilds everything and nothing else does.
@@ -124,8 +146,7 @@ $(BUILD)/tests/stress/fuzz: FLAGS += -DMCS_FUZZ_MAIN
 $(STRESS_PARTS:%=$(BUILD)/stress/%.ok): $(BUILD)/stress/%.ok: $(STRESS_BINS)
 	@mkdir -p $(@D)
 	@echo 'stress: $* ...'
-	@$(BUILD)/tests/stress/$(firstword $(subst -, ,$*)) $(if $(findstring -,$*),--filter '$(subst .,/,$(subst +, ,$(word 2,$(subst -, ,$*))))') \
-		> $(@:.ok=.txt); status=$$?; cat $(@:.ok=.txt); test $$status = 0 && touch $@
+	@$(BUILD)/tests/stress/$(firstword $(subst -, ,$*)) $(call STRESS_FILTER,$*) > $(@:.ok=.txt); status=$$?; cat $(@:.ok=.txt); test $$status = 0 && touch $@
 
 # ---- benchmarks: what a user's build gives, -O2 without -march. Everything below $(BUILD)/bench.
 BENCH = $(BUILD)/bench
@@ -169,4 +190,4 @@ $(BENCH)/%: tests/bench/%.c $(BENCH_HEADERS)
 	$(CC) $(BENCH_FLAGS) $< -o $@ $(LIBS)
 
 FORCE:
-.PHONY: test stress cross analyze mutants examples demo hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries
+.PHONY: test stress stress-today stress-whole cross analyze mutants examples demo hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries

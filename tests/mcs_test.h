@@ -7,7 +7,8 @@
  *         return mcst_finish();
  *     }
  *
- * Command line of every test binary: --list (names only), --filter TEXT (cases whose "group/name" holds TEXT), --seed N.
+ * Command line of every test binary: --list (names only), --filter TEXT (cases whose "group/name" holds TEXT; ^TEXT: the others),
+ * --seed N.
  * One line per group, then "N passed, N failed" (cases, not checks); the exit status is 1 when a case failed or none ran.
  * A comparison must be written so that NaN fails it: CHECK(err <= tol), never CHECK(!(err > tol)). */
 #ifndef MCS_TEST_H
@@ -85,7 +86,10 @@ static int mcst_case(const char *fmt, ...) {
     vsnprintf(mcst.name, sizeof mcst.name, fmt, a);
     va_end(a);
     snprintf(full, sizeof full, "%s/%s", mcst.group, mcst.name);
-    if (mcst.filter && !strstr(full, mcst.filter)) return 0;
+    if (mcst.filter) {
+        const int others = mcst.filter[0] == '^';
+        if ((strstr(full, mcst.filter + others) != NULL) == others) return 0;
+    }
     if (mcst.list) {
         puts(full);
         return 0;
