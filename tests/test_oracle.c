@@ -71,7 +71,7 @@ static int near(int what, float got, ld want, double rel, ld peak) {
 static double pdf_tol(ld pdf, ld peak) { return 1e-6 * (1 + (pdf > 0 && peak > 0 ? fabs((double)logl(pdf / peak)) : 0)); }
 
 /* The same for a given direction. A Gaussian half-vector has factors beside e^-e: the peak of the product is not where e is 0, and
- * the rounding is that of e itself, found to 12 EPS: 5 roundings in each quotient of slope and alpha, squared, and two. */
+ * the rounding is that of e itself, which has 12 EPS: twice the 5 of a slope over its alpha, and two more. */
 static double direction_tol(const mcst_row *row, const float *p, const float *x, ld pdf, ld peak) {
     const o_vec3 v = o_v3(x[0], x[1], x[2]), h = row->shape == MCST_IS_BRDF ? o_add(mcst_o3(p + 3), v) : v;
     return mcst_is_gauss(row) && h.z > 0 ? 1e-6 * (1 + (double)(o_slope_rr((ld)p[0], (ld)p[1], h) / (h.z * h.z)))

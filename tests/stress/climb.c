@@ -217,9 +217,26 @@ static double score_of(const mcst_row *row, int figure, const point *t, double l
     return weight_error(got, f * x.z / pdf);
 }
 
+/* Where others found densities above what the header promised then; climbs of pdf(u) begin there, too. */
+static const struct {
+    const char *row;
+    point at;
+} known[] = {
+    {"ggx_vndf",
+     {{0x1.126bcep+2f, 0x1.7bc3dap-3f, 0, 0x1.f8e284p-1f, -0x1.543c68p-3f, 0x1.07b004p-10f},
+      {0x1.feed64p-1f, 0x1.9aeb1ep-1f},
+      {0, 0, 1}}},
+    {"ggx_bounded",
+     {{0x1.0e3e94p+0f, 0x1.41c456p-6f, 0, 0x1.a323dap-1f, 0x1.260756p-1f, 0x1.c9b3bp-8f},
+      {0x1.50dc1ap-21f, 0x1.4974cap-1f},
+      {0, 0, 1}}},
+};
+
 static double climb(const mcst_row *row, int figure, int starts, int steps, point *at) {
     double best = -1;
     int i;
+    for (i = 0; i < (int)MCST_COUNT(known) && one_in(2); i++)
+        if (strcmp(known[i].row, row->name) == 0) *at = known[i].at, best = score_of(row, figure, at, best);
     for (i = 0; i < starts; i++) {
         point t;
         double score;

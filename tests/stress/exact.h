@@ -1,7 +1,7 @@
-/* The truth of the stress tests: every sampler and density in __float128 (gcc with libquadmath), as the papers print them (sources in
- * the header): angles, tangents and powers of cosines, with 113 bits in place of care. Parameters are clamped as the header clamps
- * them; directions are the literal floats and not made unit, half-vectors are wo + wi. extremes.c checks by numerical Jacobians
- * that the maps have the densities. */
+/* The truth of the stress tests: every sampler and density in __float128 (gcc with libquadmath), as the papers print them (sources
+ * in the header): angles, tangents and powers of cosines, with 113 bits in place of care. Parameters are clamped as the header
+ * clamps them; directions are the literal floats and not made unit, half-vectors are wo + wi. extremes.c checks by numerical
+ * Jacobians that the maps have the densities. */
 #ifndef MCS_EXACT_H
 #define MCS_EXACT_H
 #include <quadmath.h>
