@@ -369,6 +369,52 @@ static void rows_beside_borders(uint32_t h) {
     arena_free(&a);
 }
 
+/* Borders of rows: the series ends at t^17 with t below pi/4, what is left out is below 1e-18; 16 roundings of 2^-53. */
+static void borders_of_rows(void) {
+    int i;
+    for (i = 0; i <= 100000; i++) {
+        const double x = i / 100000.0, got = mcsi_one_minus_cos_pi(x);
+        const ld s = sinl(0.5L * O_PI * (ld)x), want = 2 * s * s;
+        CHECK(fabsl((ld)got - want) <= 16 * 0x1p-53L * want, "x = %g: %.17g, not %.17Lg", x, got, want);
+    }
+}
+
+/* ---- product ---- */
+
+/* The lobe's share as the header has it: (1 - matte) m/(1 + m), at most 0.95, where m + 0.03 is a fourteenth of the mean solid
+ * angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), three times as much without GGX's tails. Some ten roundings of m. */
+static void share_of_the_lobe(void) {
+    static const float alphas[][2] = {{1, 1}, {0.08f, 0.08f}, {0.03f, 0.03f}, {0.02f, 0.01f}, {0.01f, 0.01f}, {1e-3f, 1e-3f}};
+    static const float mattes[] = {0, 0.25f, 1};
+    float light[32 * 16];
+    mcs_image image = mcs_image_make(light, 32, 16, 1);
+    arena map = arena_make(mcs_env_bytes(32, 16)), tiles, memory = arena_make(mcs_product_bytes(16));
+    mcs_env *e = (mcs_env *)(void *)map.at;
+    mcs_product *p = (mcs_product *)(void *)memory.at;
+    mcs_tiles *t;
+    int i, j, k;
+    for (i = 0; i < 32 * 16; i++) light[i] = (float)(1 + i % 5);
+    CHECK(mcs_env_build(e, map.bytes, &image) == MCS_OK, "map");
+    tiles = arena_make(mcs_tiles_bytes(e, 16)), t = (mcs_tiles *)(void *)tiles.at;
+    CHECK(mcs_tiles_build(t, tiles.bytes, e, 16) == MCS_OK, "tiles");
+    for (i = 0; i < 6; i++)
+        for (j = 0; j < 3; j++)
+            for (k = 0; k < 3; k++) {
+                const mcs_vec3 up = {0, 0, 1}, wo = {0.6f, 0, 0.8f};
+                mcs_reflection r;
+                ld m, want;
+                memset(&r, 0, sizeof r);
+                r.frame = mcs_frame_make(up), r.wo = wo, r.alpha_x = alphas[i][0], r.alpha_y = alphas[i][1];
+                r.matte = mattes[j], r.profile = k == 0 ? MCS_PROFILE_GGX : k == 1 ? MCS_PROFILE_GAUSS : MCS_PROFILE_PHONG;
+                CHECK(mcs_product_build(p, memory.bytes, t, e, &r) == MCS_OK, "product");
+                m = (k ? 3 : 1) / (14 * 512.0L * (ld)alphas[i][0] * (ld)alphas[i][1] * 0.8L) - 0.03L;
+                want = m > 0 ? (1 - (ld)mattes[j]) * fminl(m / (1 + m), 0.95L) : 0;
+                CHECK(fabsl((ld)p->brdf_share - want) <= 16 * EPS, "alphas %g %g, matte %g, profile %d: %g, not %Lg",
+                      (double)alphas[i][0], (double)alphas[i][1], (double)mattes[j], k, (double)p->brdf_share, want);
+            }
+    arena_free(&map), arena_free(&tiles), arena_free(&memory);
+}
+
 int main(int argc, char **argv) {
     static const uint32_t heights[] = {5, 64, 1000, 4099};
     static const char *const visible[] = {"ggx_vndf_h", "ggx_vndf", "ggx_bounded_h", "ggx_bounded"};
@@ -407,5 +453,8 @@ int main(int argc, char **argv) {
     mcst_group("values, rows of a map");
     for (i = 0; i < MCST_COUNT(heights); i++)
         if (mcst_case("%u rows", heights[i])) rows_beside_borders(heights[i]);
+    if (mcst_case("borders of rows")) borders_of_rows();
+    mcst_group("values, product");
+    if (mcst_case("share of the lobe")) share_of_the_lobe();
     return mcst_finish();
 }
