@@ -12,7 +12,9 @@
 #include "oracle.h"
 #include "stats.h"
 
-/* X(shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid) */
+/* X(shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid). One row alone
+ * is built much faster: tests/mutants.sh defines it. */
+#ifndef MCST_ROWS
 #define MCST_ROWS(X)                                                     \
     X(LINE, linear, linear, 2, -, UNIT, linear)                          \
     X(LINE, tent, tent, 1, -, TENT, radius)                              \
@@ -44,6 +46,7 @@
     X(BRDF, ggx_bounded, ggx_bounded, ggx, ggx, SLOPES, alpha)           \
     X(LOBE, ashikhmin_h, ashikhmin_h, ashikhmin, -, COSPOWER, exponents) \
     X(BRDF, ashikhmin, ashikhmin, ashikhmin, ashikhmin, COSPOWER, exponents)
+#endif
 
 /* Samplers of mcsample.h that are not rows, because a table is not a handful of parameters. */
 static const char *const mcst_exempt[] = {"pwc", "pwl", "discrete", "alias", "env", "env_window", "product", "oneshot"};
