@@ -450,6 +450,96 @@ static void rows_beside_borders(uint32_t h) {
     arena_free(&a);
 }
 
+/* ---- texels of a map ---- */
+
+static mcs_env *map_of(arena *a, const float *light, uint32_t w, uint32_t h) {
+    const mcs_image image = mcs_image_make(light, w, h, 1);
+    mcs_env *e;
+    *a = arena_make(mcs_env_bytes(w, h)), e = (mcs_env *)(void *)a->at;
+    CHECK(mcs_env_build(e, a->bytes, &image) == MCS_OK, "build");
+    return e;
+}
+
+/* The only light in every place of a row of some chunks. */
+static void lone_texels(void) {
+    enum { W = 200, H = 3 };
+    float light[W * H];
+    uint32_t c;
+    for (c = 0; c < W; c++) {
+        arena a;
+        mcs_env *e;
+        mcs_texel t;
+        memset(light, 0, sizeof light), light[W + c] = 1;
+        e = map_of(&a, light, W, H), t = mcs_env_sample(e, 0.3f, 0.7f);
+        CHECK(t.col == c && t.row == 1 && t.pdf > 0 && mcs_env_pdf(e, t.w) == t.pdf, "column %u: drawn %u, %u, density %g", c,
+              t.col, t.row, (double)t.pdf);
+        arena_free(&a);
+    }
+}
+
+/* Rows of two levels, each of which fills a chunk, are not even. */
+static void rows_of_two_levels(void) {
+    enum { W = 128, H = 4 };
+    float light[W * H];
+    arena a;
+    mcs_env *e;
+    int i, right = 0;
+    for (i = 0; i < W * H; i++) light[i] = i % W < W / 2 ? 1.0f : 3.0f;
+    e = map_of(&a, light, W, H);
+    for (i = 0; i < 1000; i++) right += mcs_env_sample(e, ((float)i + 0.5f) / 1000, 0.4f).col >= W / 2;
+    CHECK(right >= 749 && right <= 751, "%d of 1000 in the brighter half, not 750", right);
+    arena_free(&a);
+}
+
+/* Random bits on the very border of two texels belong to the second, half a unit before it to the first. */
+static void borders_of_texels(void) {
+    enum { W = 100, H = 12 };
+    float light[W * H];
+    uint64_t seed = mcst_seed_for("env", "texels", 0);
+    arena a;
+    mcs_env *e;
+    mcsi_env_view v;
+    uint32_t r, c;
+    for (c = 0; c < W * H; c++) light[c] = mcst_mix(&seed) % 3 ? (float)(1 + mcst_mix(&seed) % 1000) : 0.0f;
+    e = map_of(&a, light, W, H), v = mcsi_env_whole(e);
+    for (r = 0; r < H; r++) {
+        const uint32_t *cdf = mcsi_env_cdf(e, r);
+        for (c = 0; c < W; c++) {
+            mcs_texel t;
+            if (cdf[c] == cdf[c + 1]) continue;
+            t = mcs_env_sample_bits(e, 2 * cdf[c], v.rows[r] + v.rows[r + 1]);
+            CHECK(t.col == c && t.row == r, "border %u of row %u: %u, %u", c, r, t.col, t.row);
+            t = mcs_env_sample_bits(e, 2 * cdf[c + 1] - 1, 2 * v.rows[r]);
+            CHECK(t.col == c && t.row == r, "before border %u of row %u: %u, %u", c + 1, r, t.col, t.row);
+        }
+    }
+    arena_free(&a);
+}
+
+/* Of a constant map arrays look the texels up: rows alone, columns alone, both. */
+static void texels_of_even_maps(void) {
+    enum { N = 50 };
+    float light[8 * 4], u1[N], u2[N];
+    uint32_t col[N], row[N];
+    uint64_t seed = mcst_seed_for("env", "even", 0);
+    arena a;
+    mcs_env *e;
+    int i, form;
+    for (i = 0; i < 8 * 4; i++) light[i] = 2;
+    e = map_of(&a, light, 8, 4);
+    mcst_uniform(&seed, N, u1, u2);
+    for (form = 1; form < 4; form++) {
+        memset(col, 0xa5, sizeof col), memset(row, 0xa5, sizeof row);
+        mcs_env_sample_n(e, N, u1, u2, NULL, NULL, NULL, NULL, form & 1 ? col : NULL, form & 2 ? row : NULL);
+        for (i = 0; i < N; i++) {
+            const mcs_texel t = mcs_env_sample(e, u1[i], u2[i]);
+            CHECK((!(form & 1) || col[i] == t.col) && (!(form & 2) || row[i] == t.row), "outputs %d: %u, %u, not %u, %u", form,
+                  col[i], row[i], t.col, t.row);
+        }
+    }
+    arena_free(&a);
+}
+
 /* Borders of rows: the series ends at t^17 with t below pi/4, what is left out is below 1e-18; 16 roundings of 2^-53. */
 static void borders_of_rows(void) {
     int i;
@@ -496,6 +586,172 @@ static void share_of_the_lobe(void) {
     arena_free(&map), arena_free(&tiles), arena_free(&memory);
 }
 
+/* However little a tile weighs beside another, in its row or in another one, it can be drawn, and where it weighs nothing it
+ * cannot: not by u = 0 either. */
+static void tiny_tiles(void) {
+    enum { ROWS = 16, TILES = 2 * ROWS * ROWS };
+    static float weight[TILES];
+    float light[32 * 16];
+    arena map, tiles, memory = arena_make(mcs_product_bytes(ROWS));
+    mcs_product *p = (mcs_product *)(void *)memory.at;
+    mcs_tiles *t;
+    mcs_env *e;
+    uint32_t k;
+    for (k = 0; k < 32 * 16; k++) light[k] = (float)(1 + k % 5);
+    e = map_of(&map, light, 32, 16);
+    tiles = arena_make(mcs_tiles_bytes(e, ROWS)), t = (mcs_tiles *)(void *)tiles.at;
+    CHECK(mcs_tiles_build(t, tiles.bytes, e, ROWS) == MCS_OK, "tiles");
+    memset(weight, 0, sizeof weight);
+    weight[5 * ROWS + 7] = 1, weight[9 * ROWS + 7] = 1e-12f, weight[9 * ROWS + 3] = 1e-12f;
+    CHECK(mcs_product_build_weights(p, memory.bytes, t, e, weight) == MCS_OK, "product");
+    for (k = 0; k < TILES; k++)
+        CHECK((mcs_product_pdf(p, mcs_tiles_direction(t, e, k)) > 0) == (weight[k] > 0), "tile %u of weight %g: density %g", k,
+              (double)weight[k], (double)mcs_product_pdf(p, mcs_tiles_direction(t, e, k)));
+    for (k = 0; k < 4; k++) {
+        const mcs_texel x = mcs_product_sample(p, k & 1 ? 0.5f : 0, k & 2 ? 0.5f : 0);
+        CHECK(x.pdf > 0 && relative(mcs_product_pdf(p, x.w), (ld)x.pdf) <= 1e-5L, "draw %u: density %g, of its direction %g", k,
+              (double)x.pdf, (double)mcs_product_pdf(p, x.w));
+    }
+    arena_free(&map), arena_free(&tiles), arena_free(&memory);
+}
+
+/* A fine grid: 8 x 8 values column by column, bilinear between, then what its rows of nodes weigh by trapezoids over the columns.
+ * Relative to its mean, from the sums: some 20 roundings of floats, most of them of the sums. */
+static void fine_grids(void) {
+    enum { M = MCSI_NODES };
+    float v[MCSI_GRID + MCSI_NODES];
+    uint64_t seed = mcst_seed_for("product", "fine", 0);
+    int round, i, j, k;
+    for (round = 0; round < 2000; round++) {
+        float u[2];
+        double mean = 0, x, y, got;
+        ld want;
+        for (k = 0; k < MCSI_GRID; k++) v[k] = (float)(1 + mcst_mix(&seed) % 1000);
+        for (i = 0; i < M; i++) {
+            double sum = 0.5 * ((double)v[i] + (double)v[(M - 1) * M + i]);
+            for (j = 1; j < M - 1; j++) sum += (double)v[j * M + i];
+            v[MCSI_GRID + i] = (float)sum, mean += (i == 0 || i == M - 1 ? 0.5 : 1) * sum / ((M - 1) * (M - 1));
+        }
+        mcst_uniform(&seed, 1, &u[0], &u[1]);
+        if (round % 3 == 0) u[0] = round % 2 ? 1.0f : 0.0f;
+        if (round % 5 == 0) u[1] = round % 4 < 2 ? 1.0f : 0.0f;
+        x = (M - 1) * (double)u[0], y = (M - 1) * (double)u[1];
+        j = x < M - 2 ? (int)x : M - 2, i = y < M - 2 ? (int)y : M - 2, x -= j, y -= i;
+        want = (ld)((1 - x) * ((1 - y) * (double)v[j * M + i] + y * (double)v[j * M + i + 1]) +
+                    x * ((1 - y) * (double)v[(j + 1) * M + i] + y * (double)v[(j + 1) * M + i + 1])) /
+               (ld)mean;
+        got = (double)mcsi_fine_density(v, u[0], u[1]);
+        /* values of up to 1000 times the least, differences of which are rounded; places to 7 * 2^-24 */
+        CHECK(fabsl((ld)got - want) <= 20 * EPS * want + 40 * EPS * 1000 / (ld)mean, "at %g, %g: %g, not %Lg", (double)u[0],
+              (double)u[1], got, want);
+    }
+}
+
+static mcs_reflection glossy(float alpha) {
+    const mcs_vec3 n = {0.6f, 0, 0.8f}, wo = {0.6f, 0, 0.8f};
+    mcs_reflection r;
+    memset(&r, 0, sizeof r);
+    r.frame.s.x = 0.8f, r.frame.s.z = -0.6f, r.frame.t.y = 1, r.frame.n = n;
+    r.wo = wo, r.alpha_x = r.alpha_y = alpha, r.matte = 0.25f;
+    return r;
+}
+
+typedef struct {
+    arena map, tiles, memory;
+    mcs_env *e;
+    mcs_tiles *t;
+    mcs_product *p;
+    mcs_reflection r;
+} lit_surface;
+
+static lit_surface surface_under(const float *light, uint32_t w, uint32_t h, float alpha) {
+    lit_surface s;
+    s.e = map_of(&s.map, light, w, h);
+    s.tiles = arena_make(mcs_tiles_bytes(s.e, 16)), s.t = (mcs_tiles *)(void *)s.tiles.at;
+    s.memory = arena_make(mcs_product_bytes(16)), s.p = (mcs_product *)(void *)s.memory.at;
+    s.r = glossy(alpha);
+    CHECK(mcs_tiles_build(s.t, s.tiles.bytes, s.e, 16) == MCS_OK, "tiles");
+    CHECK(mcs_product_build(s.p, s.memory.bytes, s.t, s.e, &s.r) == MCS_OK && !(s.p->brdf_share > 0), "product");
+    return s;
+}
+
+static void surface_free(lit_surface *s) { arena_free(&s->map), arena_free(&s->tiles), arena_free(&s->memory); }
+
+/* Even light and a surface that both stay the same when y changes sign: so does the density, by columns from both ends of the map.
+ * Weights of tiles are integers over 2^24 of a row, of which there are 32; a place among the light is known to 2^-21 of the map,
+ * 2^-16 of a tile, whose density changes by a few times itself at most: 1e-4. */
+static void mirrored(float alpha) {
+    enum { W = 64, H = 32 };
+    float light[W * H];
+    uint64_t seed = mcst_seed_for("product", "mirror", alpha > 0.1f);
+    lit_surface s;
+    int i;
+    for (i = 0; i < W * H; i++) light[i] = (float)(2 + i / W % 3);
+    s = surface_under(light, W, H, alpha);
+    for (i = 0; i < 5000; i++) {
+        mcs_dir a, b;
+        float u1, u2;
+        double p, q, f, g;
+        mcst_uniform(&seed, 1, &u1, &u2);
+        a = b = mcs_sphere_sample(u1, i % 4 ? u2 : u2 * 0.03f), b.w.y = -b.w.y;
+        p = (double)mcs_product_pdf(s.p, a.w), q = (double)mcs_product_pdf(s.p, b.w);
+        f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, a.w), g = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, b.w);
+        CHECK(fabs(p - q) <= 1e-4 * p, "(%g, %g, %g): %g, mirrored %g", (double)a.w.x, (double)a.w.y, (double)a.w.z, p, q);
+        CHECK(fabs(f - g) <= 1e-4 * f, "(%g, %g, %g): one-shot %g, mirrored %g", (double)a.w.x, (double)a.w.y, (double)a.w.z, f, g);
+    }
+    surface_free(&s);
+}
+
+/* Rows without light within tiles that have some. */
+static void black_rows(void) {
+    enum { W = 64, H = 32 };
+    float light[W * H];
+    uint64_t seed = mcst_seed_for("product", "black rows", 0);
+    lit_surface s;
+    int i, lit = 0;
+    for (i = 0; i < W * H; i++) light[i] = i / W % 2 ? 1.0f : 0.0f;
+    s = surface_under(light, W, H, 0.5f);
+    for (i = 0; i < 3000; i++) {
+        float u1, u2;
+        mcs_vec3 w;
+        double p, f;
+        int black;
+        mcst_uniform(&seed, 1, &u1, &u2);
+        w = mcs_sphere_sample(u1, u2).w, black = mcs_env_texel(s.e, w).row % 2 == 0;
+        p = (double)mcs_product_pdf(s.p, w), f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, w);
+        CHECK(black ? p == 0 && f == 0 : p >= 0 && f >= 0, "(%g, %g, %g): %g, one-shot %g", (double)w.x, (double)w.y, (double)w.z,
+              p, f);
+        lit += p > 0;
+    }
+    CHECK(lit > 500, "%d of 3000 directions", lit);
+    surface_free(&s);
+}
+
+/* Draws of the one-shot form over scattered light: none is lost while there is light above the horizon, and the density of a draw is
+ * that of its direction, to the rounding of its place as above. */
+static void one_shot_draws(void) {
+    enum { W = 64, H = 32 };
+    float light[W * H];
+    uint64_t seed = mcst_seed_for("product", "one-shot", 0);
+    lit_surface s;
+    int i, lost = 0;
+    for (i = 0; i < W * H; i++) light[i] = mcst_mix(&seed) % 40 ? 0.0f : (float)(1 + mcst_mix(&seed) % 100);
+    s = surface_under(light, W, H, 0.5f);
+    for (i = 0; i < 20000; i++) {
+        mcs_texel x;
+        float u[4];
+        double p;
+        mcst_uniform(&seed, 2, u, u + 2);
+        if (i % 100 == 0) s.r.frame = mcs_frame_make(mcs_sphere_sample(u[0], u[2]).w);
+        x = mcs_oneshot_sample(s.t, s.e, &s.r, u[1], u[3]), p = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, x.w);
+        lost += !(x.pdf > 0);
+        CHECK(fabs(p - (double)x.pdf) <= 1e-4 * (double)x.pdf, "u %a %a: density %g, of its direction %g", (double)u[1],
+              (double)u[3], (double)x.pdf, p);
+    }
+    CHECK(lost == 0, "%d draws are lost", lost);
+    surface_free(&s);
+}
+
 int main(int argc, char **argv) {
     static const uint32_t heights[] = {5, 64, 1000, 4099};
     static const char *const visible[] = {"ggx_vndf_h", "ggx_vndf", "ggx_bounded_h", "ggx_bounded"};
@@ -539,7 +795,18 @@ int main(int argc, char **argv) {
     for (i = 0; i < MCST_COUNT(heights); i++)
         if (mcst_case("%u rows", heights[i])) rows_beside_borders(heights[i]);
     if (mcst_case("borders of rows")) borders_of_rows();
+    mcst_group("values, texels of a map");
+    if (mcst_case("one lit texel")) lone_texels();
+    if (mcst_case("rows of two levels")) rows_of_two_levels();
+    if (mcst_case("borders of texels")) borders_of_texels();
+    if (mcst_case("even maps by arrays")) texels_of_even_maps();
     mcst_group("values, product");
     if (mcst_case("share of the lobe")) share_of_the_lobe();
+    if (mcst_case("tiny tiles")) tiny_tiles();
+    if (mcst_case("fine grids")) fine_grids();
+    if (mcst_case("mirrored, alpha 0.5")) mirrored(0.5f);
+    if (mcst_case("mirrored, alpha 0.1")) mirrored(0.1f);
+    if (mcst_case("black rows")) black_rows();
+    if (mcst_case("one-shot draws")) one_shot_draws();
     return mcst_finish();
 }
