@@ -261,6 +261,13 @@ static void beyond_the_ends(void) {
           "disks, 3e-6 past the rim: %g", (double)mcs_disk_pdf(3, 3.00001f, 0));
 }
 
+/* A cosine to the power 0 is 1 down to the least cosine, whose tangent squared is beyond any float. */
+static void even_phong(void) {
+    const mcs_phong m = mcs_phong_make(0);
+    const mcs_vec3 low = {1, 0, 1e-25f};
+    CHECK(relative(mcs_phong_lobe_pdf(&m, low), 0.5L / O_PI) <= 2 * EPS, "%g", (double)mcs_phong_lobe_pdf(&m, low));
+}
+
 static void opposed(void) {
     const float w[][3] = {{0, 0, 1}, {0.6f, 0, 0.8f}, {1, 0, 0}, {-0.48f, 0.6f, 0.64f}};
     size_t i;
@@ -727,8 +734,8 @@ static void black_rows(void) {
     surface_free(&s);
 }
 
-/* Draws of the one-shot form over scattered light: none is lost while there is light above the horizon, and the density of a draw is
- * that of its direction, to the rounding of its place as above. */
+/* Draws of the one-shot form over scattered light: none is lost while there is light above the horizon, and the density of a draw
+ * is that of its direction, to the rounding of its place as above. */
 static void one_shot_draws(void) {
     enum { W = 64, H = 32 };
     float light[W * H];
@@ -779,6 +786,7 @@ int main(int argc, char **argv) {
     for (i = 0; i < 6; i++)
         if (mcst_case("constants of %s", even[i])) constants(even[i], i < 2 ? 0.1 : 0.15);
     if (mcst_case("beyond the ends")) beyond_the_ends();
+    if (mcst_case("Phong's lobe of power 0 at the horizon")) even_phong();
     if (mcst_case("half of opposed directions")) opposed();
     if (mcst_case("jitter")) jitter();
     if (mcst_case("Ashikhmin and Shirley: the length of h")) reflection_at_rounded_half();
