@@ -125,7 +125,12 @@ worker() {
     done <"$dir/names"
 }
 
-[ "$jobs" = 0 ] || baseline
+if [ "$jobs" = 0 ]; then
+    if [ -s "$dir/wrong" ]; then sed 's/^/FAIL /' "$dir/wrong"; else echo "$(grep -c . "$dir/names") mutants fit the header"; fi
+    [ ! -s "$dir/wrong" ]
+    exit
+fi
+baseline
 while [ "$jobs" -gt 0 ]; do
     worker &
     jobs=$((jobs - 1))

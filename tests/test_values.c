@@ -289,6 +289,19 @@ static void jitter(void) {
         }
 }
 
+/* Blocks of counters whose lower word overflows within a vector, and of the last ones. */
+static void philox_counters(void) {
+    static const uint64_t first[] = {0xfffffffdu, 0xfffffffffu, 0xfffffffffffffffdu, 0x1fffffff8u};
+    float u[4 * 40];
+    size_t i, k;
+    for (i = 0; i < MCST_COUNT(first); i++) {
+        mcs_philox_fill_n(77, first[i], MCST_COUNT(u), u);
+        for (k = 0; k < MCST_COUNT(u); k++)
+            CHECK(u[k] == mcs_u01(mcs_philox(77, first[i] + k / 4, 0).v[k % 4]), "counter %llx, number %zu",
+                  (unsigned long long)first[i], k);
+    }
+}
+
 static void bad_shares(void) {
     CHECK(mcs_mix_pdf(-0.5f, 1, 2) == 2 && mcs_mix_pdf(-INFINITY, 1, 2) == 2 && mcs_mix_pdf(1.5f, 1, 2) == 1 &&
               mcs_mix_pdf(INFINITY, 1, 2) == 1,
@@ -793,6 +806,7 @@ int main(int argc, char **argv) {
     if (mcst_case("cone of a sine")) cones();
     if (mcst_case("sine and cosine of the detours")) detour_angles();
     if (mcst_case("steps of R2")) r2_steps();
+    if (mcst_case("counters of philox")) philox_counters();
     if (mcst_case("mixtures with a bad share")) bad_shares();
     if (mcst_case("piecewise linear cells of 1e-45 beside 3e38")) tiny_cells();
     if (mcst_case("searches of cumulative sums")) searches();
