@@ -51,10 +51,11 @@ static int mcst_masses_skipped;
 static inline int mcst_mass_resolved(const mcst_row *row, const float *p) {
     const double noise = mcst_map_make(row, p).noise;
     if (noise <= 0.2) return 1;
-    mcst_masses_skipped++;
-    if (!mcst.list && !mcst.filter)
+    if (!mcst.list && (!mcst.filter || strstr(mcst.group, mcst.filter))) {
+        mcst_masses_skipped++;
         printf("SKIPPED: mass of %s %g %g, wo %g %g %g: rounding moves a point by %.1f widths of the lobe\n", row->name,
                (double)p[0], (double)p[1], (double)p[3], (double)p[4], (double)p[5], noise);
+    }
     return 0;
 }
 

@@ -522,6 +522,6 @@ int main(int argc, char **argv) {
         check_bad_input(row);
     }
     mcst_group("");
-    if (!mcst.list && !mcst.filter && mcst_masses_skipped) printf("SKIPPED: %d masses, named above\n", mcst_masses_skipped);
+    if (mcst_masses_skipped) printf("SKIPPED: %d masses, named above\n", mcst_masses_skipped);
     return mcst_finish();
 }

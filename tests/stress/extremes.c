@@ -503,7 +503,7 @@ int main(int argc, char **argv) {
     }
     mcst_group("");
     if (!mcst.list) {
-        if (!mcst.filter && mcst_masses_skipped) printf("SKIPPED: %d masses, named above\n", mcst_masses_skipped);
+        if (mcst_masses_skipped) printf("SKIPPED: %d masses, named above\n", mcst_masses_skipped);
         print_tally("", NULL, 1);
         for (i = 0; i < MCST_NROWS; i++)
             for (j = 0; j < (mcst_rows[i].dim == 3 ? 2 : 1); j++)
