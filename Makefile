@@ -1,7 +1,7 @@
 # mcsample.h is one header: nothing here has to be built to use it. This file builds what proves it and what shows it.
 #
 # Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), DESTDIR; MAPS (.hdr files for the
-# benchmark, none); for tests also FILTER=text, SEED=number and
+# benchmark, none); for tests also FILTER=text, SEED=number, WITHOUT=files and
 # MCS_TEST_SCALE=0.05 (scales the sample counts of the statistical tests; 1 is the count that the tolerances are meant for).
 
 CFLAGS ?= -O2
@@ -14,7 +14,7 @@ FLAGS = $(CFLAGS) -std=c99 $(WARNINGS) -I. -Itests
 EXACT = -ffp-contract=off
 LIBS = -lm
 
-TESTS = $(sort $(wildcard tests/test_*.c))
+TESTS = $(filter-out $(WITHOUT),$(sort $(wildcard tests/test_*.c)))
 EXAMPLES = $(sort $(wildcard examples/[0-9][0-9]_*.c))
 TEST_BINS = $(TESTS:%.c=$(BUILD)/%)
 # Stress programs: at full size by `make stress`, part by part; a small cut of each with every full `make test`. The truth of
@@ -38,7 +38,7 @@ DAY ?= $(shell date +%j)
 STRESS_TODAY = $(foreach i,$(shell echo '$(DAY) $(words $(STRESS_PARTS))' | awk '{ print $$1 % $$2 + 1, ($$1 + int($$2 / 2)) % $$2 + 1 }'), \
 	$(word $(i),$(STRESS_PARTS)))
 STRESS_SUM = awk '/^[0-9]+ passed, [0-9]+ failed$$/ { p += $$1; f += $$3 } END { print p + 0 " passed, " f + 0 " failed"; exit f != 0 || p == 0 }'
-STRESS_CUT = $(if $(filter-out $(TESTS),$(sort $(wildcard tests/test_*.c))),,$(STRESS_BINS))
+STRESS_CUT = $(if $(filter-out $(TESTS) $(WITHOUT),$(wildcard tests/test_*.c)),,$(STRESS_BINS))
 EXAMPLE_BINS = $(EXAMPLES:%.c=$(BUILD)/%)
 RENDER = $(BUILD)/examples/render
 

@@ -149,11 +149,15 @@
  * MCS_NO_1D       leaves out the one-dimensional densities                           (default: off)
  * MCS_NO_LOBES    leaves out [microfacet], the BRDFs and [product]                   (default: off)
  * MCS_NO_TABLES   leaves out [tables], [env] and [product]                           (default: off)
- * MCS_MAX_LANES   4, 8 or 16: the widest unit that `_n` forms pick at run time on x86, SSE2, AVX2 or AVX-512   (default: 16)
+ * MCS_MAX_LANES   4, 8 or 16: the widest unit that `_n` forms use on x86, SSE2, AVX2 or AVX-512; mcs_lanes() tells which it is
+ *                 (default: 16)
+ * MCS_ASSERT      called with conditions on arguments, see "mistakes": assert, say     (default: nothing)
+ * MCS_FN          the linkage of every function: nothing makes a library of a C file that includes this, inline lets a C++ module
+ *                 export them                                                        (default: static inline)
  * The MCS_NO_ switches only save compile time: functions that are not used leave no code in any case. */
 
 #ifndef MCS_ASSERT
-#define MCS_ASSERT(condition) ((void)0) /* called with the conditions on arguments (mistakes, above); define as assert to be told */
+#define MCS_ASSERT(condition) ((void)0)
 #endif
 #ifndef MCS_MAX_LANES
 #define MCS_MAX_LANES 16
@@ -264,6 +268,15 @@ typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #define MCSI_PREFETCH(p) ((void)(p))
 #endif
 
+/* Those of the library are functions of the host to HIP. */
+#if defined(__HIPCC__)
+#define MCSI_COPY(to, from, bytes) __builtin_memcpy(to, from, bytes)
+#define MCSI_FILL(to, byte, bytes) __builtin_memset(to, byte, bytes)
+#else
+#define MCSI_COPY(to, from, bytes) memcpy(to, from, bytes)
+#define MCSI_FILL(to, byte, bytes) memset(to, byte, bytes)
+#endif
+
 /* Square root without errno: sqrtf would cost a test and a call in every loop. */
 MCS_FN float mcsi_sqrt(float x) {
 #if defined(MCSI_ELEMENTWISE_SQRT)
@@ -350,14 +363,14 @@ MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
     size_t rest = b->n - b->i;
     if (b->rest) {
         for (k = 0; k < MCSI_OUT_MAX; k++)
-            if (b->out[k]) memcpy(b->rest_out[k], b->out_copy[k], b->rest * sizeof(float));
+            if (b->out[k]) MCSI_COPY(b->rest_out[k], b->out_copy[k], b->rest * sizeof(float));
         return 0;
     }
     if (!rest) return 0;
     for (k = 0; k < MCSI_IN_MAX; k++) {
         if (!b->in[k]) continue;
-        memset(b->in_copy[k], 0, sizeof b->in_copy[k]);
-        memcpy(b->in_copy[k], b->in[k] + b->i, rest * sizeof(float));
+        MCSI_FILL(b->in_copy[k], 0, sizeof b->in_copy[k]);
+        MCSI_COPY(b->in_copy[k], b->in[k] + b->i, rest * sizeof(float));
         b->in[k] = b->in_copy[k];
     }
     for (k = 0; k < MCSI_OUT_MAX; k++) {
@@ -601,12 +614,12 @@ MCSI_SAMPLE void mcs_store(float *p, float x) { *p = x; }
 MCSI_CORE void mcsi_store_int(uint32_t *p, int32_t i) { *p = (uint32_t)i; }
 MCSI_CORE int32_t mcsi_bits(float x) {
     int32_t i;
-    memcpy(&i, &x, sizeof i);
+    MCSI_COPY(&i, &x, sizeof i);
     return i;
 }
 MCSI_CORE float mcsi_from_bits(int32_t i) {
     float x;
-    memcpy(&x, &i, sizeof x);
+    MCSI_COPY(&x, &i, sizeof x);
     return x;
 }
 MCSI_CORE int32_t mcsi_trunc(float x) { return (int32_t)x; }
@@ -669,9 +682,9 @@ MCSI_CORE MCSI_F MCSI_(sqrt)(MCSI_F x) {
 #elif defined(MCSI_X86)
     mcs4_f part[MCSI_W / 4];
     int k;
-    memcpy(part, &x, sizeof x);
+    MCSI_COPY(part, &x, sizeof x);
     for (k = 0; k < MCSI_W / 4; k++) part[k] = __builtin_ia32_sqrtps(part[k]);
-    memcpy(&x, part, sizeof x);
+    MCSI_COPY(&x, part, sizeof x);
     return x;
 #else
     int k;
@@ -1106,7 +1119,7 @@ MCSI_CORE void MCSI_(philox_blocks)(uint64_t key, uint64_t counter, float *out) 
 MCSI_BATCH(philox_fill_n, (uint64_t key, uint64_t counter, size_t n, float *out), (key, counter, n, out), float rest[4 * MCSI_W];
            if (!out) return;
            for (; n >= 4 * MCSI_W; n -= 4 * MCSI_W, out += 4 * MCSI_W, counter += MCSI_W) MCSI_(philox_blocks)(key, counter, out);
-           if (n) MCSI_(philox_blocks)(key, counter, rest), memcpy(out, rest, n * sizeof(float));)
+           if (n) MCSI_(philox_blocks)(key, counter, rest), MCSI_COPY(out, rest, n * sizeof(float));)
 #endif
 
 /* ==== [points] well-spread points instead of independent ones ==================================================================
@@ -1813,7 +1826,7 @@ MCSI_CORE int MCSI_(rarely)(MCSI_I m) {
 #else
     uint64_t part[MCSI_W / 2], all = 0;
     int k;
-    memcpy(part, &m, sizeof m);
+    MCSI_COPY(part, &m, sizeof m);
     for (k = 0; k < MCSI_W / 2; k++) all |= part[k];
     return (int)__builtin_expect(all != 0, 0);
 #endif
@@ -2034,8 +2047,8 @@ MCSI_CORE MCS_(dir) MCSI_(slope_dir)(const MCSI_(slopes) * m, MCSI_I ok, MCSI_F 
 }
 /* e = (sx/ax)^2 + (sy/ay)^2 of a direction's slopes, at most 2e36. */
 MCSI_CORE MCSI_F MCSI_(slope_square)(const MCSI_(slopes) * m, MCS_(vec3) h) {
-    MCSI_F x = h.x * m->inv_ax / h.z, y = h.y * m->inv_ay / h.z, far = MCS_(set)(1e18f);
-    x = MCSI_(min)(MCSI_(abs)(x), far), y = MCSI_(min)(MCSI_(abs)(y), far);
+    MCSI_F x = h.x * m->inv_ax / h.z, y = h.y * m->inv_ay / h.z, most = MCS_(set)(1e18f);
+    x = MCSI_(min)(MCSI_(abs)(x), most), y = MCSI_(min)(MCSI_(abs)(y), most);
     return x * x + y * y;
 }
 /* 1/cos^2 of a direction, at most 1e18: slopes of 1e9 are 1e5 alphas at least, where a Gaussian is 0. */
@@ -2761,10 +2774,10 @@ MCSI_CORE float mcsi_clean(float x, uint32_t *bad) {
 /* A weight on its way to becoming a cumulative sum in the same place. */
 MCSI_CORE float mcsi_word_weight(const uint32_t *word) {
     float w;
-    memcpy(&w, word, sizeof w);
+    MCSI_COPY(&w, word, sizeof w);
     return w;
 }
-MCSI_CORE void mcsi_put_weight(uint32_t *word, float w) { memcpy(word, &w, sizeof w); }
+MCSI_CORE void mcsi_put_weight(uint32_t *word, float w) { MCSI_COPY(word, &w, sizeof w); }
 /* memmove of n words, which kernels do not have. */
 MCS_FN void mcsi_move(uint32_t *to, const float *from, uint32_t n) {
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
@@ -3319,7 +3332,7 @@ typedef struct {
 } mcs_image;
 MCS_FN mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels) {
     mcs_image im;
-    memset(&im, 0, sizeof im);
+    MCSI_FILL(&im, 0, sizeof im);
     im.pixels = pixels, im.w = w, im.h = h, im.channels = channels;
     return im;
 }
@@ -3412,7 +3425,7 @@ MCSI_CORE uint64_t mcsi_check_mix(uint64_t sum, uint64_t word) {
 }
 MCSI_CORE uint64_t mcsi_check_word(const char *at, size_t bytes) {
     uint64_t word = 0;
-    memcpy(&word, at, bytes);
+    MCSI_COPY(&word, at, bytes);
     return word;
 }
 MCS_FN uint64_t mcsi_checksum(uint64_t before, const void *memory, size_t bytes) {
@@ -3571,12 +3584,12 @@ MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, u
         for (lit = same == x + n && !(level > 0.0f) ? 0 : n; lit > 0 && !(v[lit - 1] > 0.0f);) lit--;
         if (lit) { /* weights are kept from the first light on */
             if (!last) {
-                memset(cdf, 0, x * sizeof *cdf);
+                MCSI_FILL(cdf, 0, x * sizeof *cdf);
                 for (first = x; !(v[first - x] > 0.0f);) first++;
             }
             last = x + lit;
         }
-        if (last) memcpy(cdf + x, v, n * sizeof *v);
+        if (last) MCSI_COPY(cdf + x, v, n * sizeof *v);
     }
     info->power = 0.0;
     info->sum = 0;
@@ -3584,8 +3597,8 @@ MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, u
     info->col0 = first;
     info->col1 = last;
     if (!last) {
-        memset(cdf, 0, ((size_t)im->w + 1) * sizeof *cdf);
-        memset(guide, 0, guides * sizeof *guide);
+        MCSI_FILL(cdf, 0, ((size_t)im->w + 1) * sizeof *cdf);
+        MCSI_FILL(guide, 0, guides * sizeof *guide);
         return;
     }
     info->power = mcsi_cdf_build(cdf, im->w) * mcsi_env_height(y, im->h);
@@ -3613,7 +3626,7 @@ MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) 
     uint16_t *guide;
     double *edge, top = 0.0;
     if (status) return status;
-    memset(e, 0, sizeof *e);
+    MCSI_FILL(e, 0, sizeof *e);
     e->magic = MCSI_ENV_MAGIC, e->version = MCSI_ENV_VERSION, e->at = mcsi_env_layout(im->w, im->h);
     e->w = im->w, e->h = im->h, e->row0 = im->h, e->col0 = im->w, e->uniform = 1, e->incomplete = im->floor > 0.0f;
     mcsi_env_set_turn(e);
@@ -3621,8 +3634,8 @@ MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) 
     edge = (double *)(void *)((char *)e + e->at.edge), line = (mcsi_env_line *)(void *)((char *)e + e->at.line);
     info = (const mcsi_env_info *)(const void *)((const char *)e + e->at.info);
     rows = (uint32_t *)(void *)((char *)e + e->at.rows), guide = (uint16_t *)(void *)((char *)e + e->at.row_guide);
-    memset(rows, 0, (size_t)(e->at.cdf - e->at.rows)); /* this list and its guide do not always fill their parts */
-    memset((char *)e + mcsi_env_end(e), 0, (size_t)(e->at.bytes - mcsi_env_end(e)));
+    MCSI_FILL(rows, 0, (size_t)(e->at.cdf - e->at.rows)); /* this list and its guide do not always fill their parts */
+    MCSI_FILL((char *)e + mcsi_env_end(e), 0, (size_t)(e->at.bytes - mcsi_env_end(e)));
     for (y = 0; y <= (e->h + 1) / 2; y++) edge[y] = mcsi_one_minus_cos_pi((double)y / e->h);
     for (y = 0; y < e->h; y++) {
         e->bad += info[y].bad, e->total += info[y].power * (6.2831853071795865 / e->w);
@@ -3881,7 +3894,7 @@ MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, m
 MCSI_CORE void mcsi_env_block_start(mcsi_env_block *b, size_t n) {
     size_t k;
     if (n >= MCSI_ENV_BLOCK) return;
-    memset(b, 0, sizeof *b); /* directions are computed by whole vectors */
+    MCSI_FILL(b, 0, sizeof *b); /* directions are computed by whole vectors */
     for (k = n; k < MCSI_ENV_BLOCK; k++) b->row_mass[k] = b->col_mass[k] = 1.0f;
 }
 MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi_env_block *b, size_t k, double U1, double U2,
@@ -3922,12 +3935,12 @@ MCS_FN void mcsi_env_block_land(const mcs_env *e, mcsi_env_block *b, size_t n, f
     even = !b->cdf[0] && (col || row); /* a constant map: texels lie where directions do */
     if (x || y || z || even) mcsi_env_directions_n(&e->frame, n, b, e->turn, e->inner);
     for (k = 0; even && k < n; k++) mcsi_env_texel_of(e, mcsi_vec3(b->x[k], b->y[k], b->z[k]), &b->in_col[k], &b->in_row[k]);
-    if (x) memcpy(x, b->x, n * sizeof *x);
-    if (y) memcpy(y, b->y, n * sizeof *y);
-    if (z) memcpy(z, b->z, n * sizeof *z);
-    if (pdf) memcpy(pdf, b->pdf, n * sizeof *pdf);
-    if (col) memcpy(col, b->in_col, n * sizeof *col);
-    if (row) memcpy(row, b->in_row, n * sizeof *row);
+    if (x) MCSI_COPY(x, b->x, n * sizeof *x);
+    if (y) MCSI_COPY(y, b->y, n * sizeof *y);
+    if (z) MCSI_COPY(z, b->z, n * sizeof *z);
+    if (pdf) MCSI_COPY(pdf, b->pdf, n * sizeof *pdf);
+    if (col) MCSI_COPY(col, b->in_col, n * sizeof *col);
+    if (row) MCSI_COPY(row, b->in_row, n * sizeof *row);
 }
 MCS_FN void mcsi_env_draw_n(const mcs_env *e, const mcsi_env_view *v, size_t n, const float *u1, const float *u2, float *x,
                             float *y, float *z, float *pdf, uint32_t *col, uint32_t *row) {
@@ -4033,7 +4046,7 @@ MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mc
     if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
     all = mcsi_env_whole(e), span = (mcsi_env_span *)(void *)(m + 1);
     cdf = (uint32_t *)(void *)(span + rows), guide = (uint16_t *)(void *)(cdf + rows + 1);
-    memset(m, 0, mcs_env_window_bytes(rows)); /* the guide does not always fill its part */
+    MCSI_FILL(m, 0, mcs_env_window_bytes(rows)); /* the guide does not always fill its part */
     m->row = row, m->rows = rows, m->col = col, m->cols = cols, m->shift = mcsi_guide_shift(rows, 1);
     for (i = 0; i < rows; i++) {
         uint32_t mass = e->uniform ? 0 : all.rows[row + i + 1] - all.rows[row + i], end = col + cols;
@@ -4473,10 +4486,10 @@ MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mc
     mcs_frame axes;
     uint32_t k, row, col;
     if (!(p->e > 0.0)) { /* never asked for */
-        memset(node, 0, 3 * MCSI_GRID * sizeof *node);
+        MCSI_FILL(node, 0, 3 * MCSI_GRID * sizeof *node);
         return;
     }
-    memset(&axes, 0, sizeof axes), axes.s.x = axes.t.y = axes.n.z = 1.0f, v = mcsi_env_part(e, m);
+    MCSI_FILL(&axes, 0, sizeof axes), axes.s.x = axes.t.y = axes.n.z = 1.0f, v = mcsi_env_part(e, m);
     for (k = 0; k < MCSI_GRID; k++) {
         mcsi_env_point at;
         mcs_vec3 w;
@@ -4490,7 +4503,7 @@ MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mc
 /* Patch (i, j) of a map cut into `rows` rows of them: a tile, or the sum of its parts, whose fields are stored from `level` on. */
 MCS_FN void mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, uint32_t i, uint32_t j, float *level, mcsi_patch *p) {
     uint32_t side, parts, k, y, n = t->rows * t->cols;
-    memset(p, 0, sizeof *p);
+    MCSI_FILL(p, 0, sizeof *p);
     p->row0 = mcsi_tile_begin(i, rows, e->h), p->row1 = mcsi_tile_begin(i + 1, rows, e->h);
     p->col0 = mcsi_tile_begin(j, 2 * rows, e->w), p->col1 = mcsi_tile_begin(j + 1, 2 * rows, e->w);
     if (rows == t->rows) {
@@ -4499,7 +4512,7 @@ MCS_FN void mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, uint
         size_t at = (size_t)j * rows + i;
         float *around = (float *)(uintptr_t)mcsi_tiles_around(t) + 12 * at;
         for (y = p->row0; y < p->row1; y++) mcsi_patch_add_row(e, &all, y, p);
-        memset(m, 0, t->window_bytes); /* where no light is, and where windows of other tiles have one row more */
+        MCSI_FILL(m, 0, t->window_bytes); /* where no light is, and where windows of other tiles have one row more */
         if (p->e > 0.0) mcs_env_window_build(m, t->window_bytes, e, p->row0, p->row1 - p->row0, p->col0, p->col1 - p->col0);
         mcsi_patch_store(e, p, (float *)(uintptr_t)mcsi_tiles_fields(t) + at, n);
         mcsi_patch_nodes(e, m, p, (float *)(uintptr_t)mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * at);
@@ -4610,16 +4623,16 @@ MCSI_CORE uint8_t *mcsi_product_fine(const mcs_product *p) {
 MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e) {
     if (!p || !t || !e || ((uintptr_t)p & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (bytes < mcs_product_bytes(t->rows)) return MCS_ERR_MEMORY;
-    memset(p, 0, sizeof *p);
+    MCSI_FILL(p, 0, sizeof *p);
     p->t = t, p->e = e;
     mcsi_product_rows(p)[t->rows + 1] = 0; /* it only aligns what follows */
-    memset(mcsi_product_fine(p), 0, (size_t)t->rows * t->cols);
+    MCSI_FILL(mcsi_product_fine(p), 0, (size_t)t->rows * t->cols);
     return MCS_OK;
 }
 /* Memory keeps nothing of what it held before: zeros for the grids that no tile uses. */
 MCSI_CORE void mcsi_product_end_grids(mcs_product *p, uint32_t used) {
     const size_t grid = MCSI_GRID + MCSI_NODES;
-    memset(mcsi_product_grids(p) + used * grid, 0, (MCSI_FINE - used) * grid * sizeof(float));
+    MCSI_FILL(mcsi_product_grids(p) + used * grid, 0, (MCSI_FINE - used) * grid * sizeof(float));
 }
 MCSI_CORE void mcsi_product_add_up(mcs_product *p) {
 #ifndef MCS_NO_BATCH
@@ -4731,7 +4744,7 @@ MCSI_CORE mcsi_own_lobe mcsi_own_make(const mcs_reflection *r, const mcsi_facing
     float ax = mcsi_within(r->alpha_x >= 0.0f, r->alpha_x, 1e-7f, 1e4f),
           ay = mcsi_within(r->alpha_y >= 0.0f, r->alpha_y, 1e-7f, 1e4f);
     mcsi_own_lobe l;
-    memset(&l, 0, sizeof l);
+    MCSI_FILL(&l, 0, sizeof l);
     l.frame = r->frame, l.wo = s->wo, l.profile = s->profile;
     switch (l.profile) {
     case MCS_PROFILE_GAUSS: l.gauss = mcs_ward_make(ax, ay, MCS_WARD_GMD); break;
@@ -4780,7 +4793,7 @@ MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tile
     if (status) return status;
     if (!r) return MCS_ERR_ARG;
     if (!mcsi_facing_make(e, r, &s)) {
-        memset(mcsi_product_units(p), 0, mcs_product_bytes(t->rows) - sizeof *p);
+        MCSI_FILL(mcsi_product_units(p), 0, mcs_product_bytes(t->rows) - sizeof *p);
         return MCS_UNIFORM;
     }
     n = (size_t)t->rows * t->cols;
@@ -4803,7 +4816,7 @@ MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const 
     for (k = 0; k < n; k++) value[k] = mcsi_clean(weight[k], &bad), top = mcsi_max(top, value[k]);
     for (k = 0; k < n; k++) /* of the size of reflections, and none lost to underflow */
         value[k] = value[k] > 0.0f ? mcsi_max((float)((double)value[k] / (double)top), 1e-18f) : 0.0f;
-    memset(mcsi_product_corners(p), 0, mcsi_corners(t) * sizeof(float));
+    MCSI_FILL(mcsi_product_corners(p), 0, mcsi_corners(t) * sizeof(float));
     mcsi_product_end_grids(p, 0);
     return mcsi_product_finish(p);
 }
@@ -5003,7 +5016,7 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
         return;
     }
     mcsi_env_block_start(&b, n);
-    if (n < MCSI_ENV_BLOCK) memset(&warps, 0, sizeof warps);
+    if (n < MCSI_ENV_BLOCK) MCSI_FILL(&warps, 0, sizeof warps);
     for (k = n; k < MCSI_ENV_BLOCK; k++) warps.value[k] = 1.0f;
     for (i = 0; i < n; i += m) { /* by stages, as each of them is a long chain of operations */
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;

@@ -12,18 +12,20 @@
 #include "oracle.h"
 #include "stats.h"
 
-/* X(shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid). One row alone
- * is built much faster: tests/mutants.sh defines it. */
+/* X(shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid). Some rows alone
+ * are built much faster: define MCST_ROWS as MCST_LINES, or as one row (tests/mutants.sh). */
+#define MCST_LINES(X)                                       \
+    X(LINE, linear, linear, 2, -, UNIT, linear)             \
+    X(LINE, tent, tent, 1, -, TENT, radius)                 \
+    X(LINE, exponential, exponential, 1, -, HALFLINE, rate) \
+    X(LINE, truncexp, truncexp, 2, -, TRUNCATED, truncexp)  \
+    X(LINE, normal, normal, 2, -, WHOLELINE, normal)        \
+    X(LINE, logistic, logistic, 2, -, WHOLELINE, normal)    \
+    X(LINE, power, power, 1, -, POWER, power)               \
+    X(LINE, evenpower, evenpower, 1, -, EVENPOWER, power)
 #ifndef MCST_ROWS
 #define MCST_ROWS(X)                                                     \
-    X(LINE, linear, linear, 2, -, UNIT, linear)                          \
-    X(LINE, tent, tent, 1, -, TENT, radius)                              \
-    X(LINE, exponential, exponential, 1, -, HALFLINE, rate)              \
-    X(LINE, truncexp, truncexp, 2, -, TRUNCATED, truncexp)               \
-    X(LINE, normal, normal, 2, -, WHOLELINE, normal)                     \
-    X(LINE, logistic, logistic, 2, -, WHOLELINE, normal)                 \
-    X(LINE, power, power, 1, -, POWER, power)                            \
-    X(LINE, evenpower, evenpower, 1, -, EVENPOWER, power)                \
+    MCST_LINES(X)                                                        \
     X(PLANE, disk, disk, 1, -, DISK, radius)                             \
     X(PLANE, concentric, concentric, 1, -, DISK, radius)                 \
     X(DIR, sphere, sphere, 0, -, SPHERE, none)                           \

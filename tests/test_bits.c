@@ -431,7 +431,7 @@ static void print(void) {
 }
 
 int main(int argc, char **argv) {
-    const char *reason = FLT_EVAL_METHOD > 0      ? "floats are not evaluated as floats"
+    const char *reason = MCSI_FLT_EVAL > 0      ? "floats are not evaluated as floats"
                          : mcst_arrays_contract() ? "a*b + c is contracted"
                                                   : NULL;
     int i;
