@@ -2164,7 +2164,7 @@ MCSI_SAMPLE MCS_(brdf) MCS_(ward_sample)(const MCS_(ward) * m, MCS_(vec3) wo, MC
 }
 MCSI_FN MCSI_F MCS_(ward_pdf)(const MCS_(ward) * m, MCS_(vec3) wo, MCS_(vec3) wi) { return MCSI_(gauss_pdf)(&m->s, wo, wi); }
 MCSI_FN MCSI_F MCS_(ward_eval)(const MCS_(ward) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)();
+    MCSI_I ok = m->s.norm > 0.0f;
     MCS_(vec3) h;
     MCSI_F f;
     wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
@@ -2239,7 +2239,7 @@ MCSI_FN MCSI_F MCS_(beckmann_pdf)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCS_(
     return MCSI_(gauss_pdf)(&m->s, wo, wi);
 }
 MCSI_FN MCSI_F MCS_(beckmann_eval)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)();
+    MCSI_I ok = m->s.norm > 0.0f;
     MCS_(vec3) h;
     MCSI_F q, lo, li;
     wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
