@@ -732,8 +732,12 @@ MCSI_CORE MCSI_F MCSI_(within)(MCSI_I ok, MCSI_F x, float lo, float hi) {
 }
 /* x / y, x >= 0 and y > 0, but FLT_MAX where it would overflow. */
 MCSI_CORE MCSI_F MCSI_(quotient)(MCSI_F x, MCSI_F y) {
+#if MCSI_W == 1
+    return y >= 1.0f || x < y * 3.40282266e38f ? x / y : FLT_MAX;
+#else
     MCSI_I fits = (y >= 1.0f) | (x < MCSI_(min)(y, MCS_(set)(1.0f)) * 3.40282266e38f);
-    return MCSI_(sel)(fits, MCSI_(sel)(fits, x, MCS_(set)(1.0f)) / MCSI_(sel)(fits, y, MCS_(set)(1.0f)), MCS_(set)(FLT_MAX));
+    return MCSI_(sel)(fits, x, MCS_(set)(FLT_MAX)) / MCSI_(sel)(fits, y, MCS_(set)(1.0f));
+#endif
 }
 /* Lengths, rates and radii whose squares and inverses are floats. */
 MCSI_CORE MCSI_I MCSI_(scale_ok)(MCSI_F scale) { return (scale >= 1e-18f) & (scale <= 1e18f); }
