@@ -1347,7 +1347,7 @@ MCSI_FN MCSI_F MCS_(exponential_invert)(MCSI_F rate, MCSI_F x) {
     MCSI_F minus_one;
     MCSI_REQUIRE(ok);
     x = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), MCS_(set)(1e20f));
-    MCSI_(exp_both)(-MCSI_(min)(rate * x, MCS_(set)(80.0f)), &minus_one);
+    MCSI_(exp_both)(-MCSI_(min)(MCSI_(max)(rate * x, MCS_(set)(0.0f)), MCS_(set)(80.0f)), &minus_one);
     return MCSI_(u_of)(ok, -minus_one);
 }
 
@@ -1381,7 +1381,7 @@ MCSI_FN MCSI_F MCS_(truncexp_invert)(MCSI_F rate, MCSI_F m, MCSI_F x) {
     MCSI_F e, d, p;
     MCSI_I flat, ok = MCSI_(truncexp_ends)(&rate, m, &e, &d, &flat);
     x = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), m);
-    MCSI_(exp_both)(-MCSI_(min)(rate * x, MCS_(set)(80.0f)), &p);
+    MCSI_(exp_both)(-MCSI_(min)(MCSI_(max)(rate * x, MCS_(set)(0.0f)), MCS_(set)(80.0f)), &p);
     return MCSI_(u_of)(ok, MCSI_(sel)(flat, x / m, -p / d));
 }
 
