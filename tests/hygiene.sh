@@ -19,6 +19,7 @@ if [ "${1:-}" = compile ]; then
     esac
     case $5 in none) switch= ;; *) switch=-D$5 ;; esac
     cell=$2-$3-$4-$(basename "$6" .c)
+    [ "$4" != fsyntax-only ] || switch="$switch -Wno-unused-command-line-argument" # of -c and -o
     unit=-DUNIT=unit_$(echo "$cell" | tr -c 'a-zA-Z0-9\n' _)
     # shellcheck disable=SC2086
     if "$2" -x $language -std="$3" -"$4" $warnings -I. $switch "$unit" -c "$6" -o "$dir/matrix/$cell.o" 2>"$dir/matrix/$cell.log"; then
@@ -148,8 +149,16 @@ done
 # --- the matrix: compilers x standards x switches. A file that only includes the header is compiled at -O0 and -O2; the one that uses
 # everything goes through the front end each time, and through code generation (a minute of work) in plain form and with
 # MCS_NO_WIDE, which changes bodies where the other switches only leave some out. The standards after C++17, as far as the compiler
-# knows them, may deprecate what those allow: the front end will say.
+# knows them, may deprecate what those allow: the front end will say. The newest clang is asked about the oldest and newest standards.
 for c in $compilers; do
+    if [ "$c" = "$newest" ]; then
+        for std in c99 c2x c++11 c++2b; do echo "$c $std fsyntax-only none $dir/use_none.c"; done
+        for std in c99 c++17; do
+            echo "$c $std O0 none $dir/include_none.c"
+            echo "$c $std O2 none $dir/use_none.c"
+        done
+        continue
+    fi
     for std in c++20 c++2b; do # 2b: C++23, by the name that older compilers know, too
         "$c" -x c++ -std=$std -fsyntax-only /dev/null 2>/dev/null || continue
         for s in none MCS_NO_WIDE; do echo "$c $std fsyntax-only $s $dir/use_$s.c"; done
