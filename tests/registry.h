@@ -12,8 +12,8 @@
 #include "oracle.h"
 #include "stats.h"
 
-/* X(shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid). Some rows alone
- * are built much faster: define MCST_ROWS as MCST_LINES, or as one row (tests/mutants.sh). */
+/* X(shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid). Some rows
+ * alone are built much faster: define MCST_ROWS as MCST_LINES, or as one row (tests/mutants.sh). */
 #define MCST_LINES(X)                                       \
     X(LINE, linear, linear, 2, -, UNIT, linear)             \
     X(LINE, tent, tent, 1, -, TENT, radius)                 \

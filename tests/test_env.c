@@ -489,8 +489,8 @@ static void test_refused_strides(void) {
     }
 }
 
-/* Each bad channel is 0, but +infinity is FLT_MAX: mean, total and draws are those of a picture that says so, as it is, bilinear and
- * with a floor; `way` 0: whole texels are bad, 1: channels of them, 2: and some of these infinite. */
+/* Each bad channel is 0, but +infinity is FLT_MAX: mean, total and draws are those of a picture that says so, as it is, bilinear
+ * and with a floor; `way` 0: whole texels are bad, 1: channels of them, 2: and some of these infinite. */
 static void check_bad_pixels(uint32_t channels, int way, int mode) {
     enum { W = 24, H = 12 };
     const float bad[5] = {NAN, -1.0f, -INFINITY, -FLT_MAX, -FLT_MIN};

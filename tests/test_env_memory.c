@@ -722,8 +722,8 @@ static void test_every_bit(void) {
     check_every_bit(make("16 x 2", 16, 2, v_random), MCS_OK);
 }
 
-/* Damage of any kind outside the frame: single bits, two and three of them, runs of bytes, zeroed or exchanged blocks; of a row, two
- * words exchanged, or one bit of both changed, 64 bytes or a multiple apart as sums take words together that are. */
+/* Damage of any kind outside the frame: single bits, two and three of them, runs of bytes, zeroed or exchanged blocks; of a row,
+ * two words exchanged, or one bit of both changed, 64 bytes or a multiple apart as sums take words together that are. */
 static void test_random_damage(void) {
     picture p = make("sky", 64, 32, v_sky);
     arena a = build(&p, MCS_OK);

@@ -79,8 +79,8 @@ static void draw_set(const mcst_row *row, uint64_t *state, float p[MCST_P]) {
     mcst_fill(row, between(state, lo[row->coord], hi[row->coord]), between(state, 1e-3, 1e3), 1, 0, p);
 }
 
-/* No x below that of the u before, by the array form, whose bits the others share. Parameters of `linear` that are of a size are the
- * hard case: its closed form in float falls at up to 1e6 of the 2^24 steps. */
+/* No x below that of the u before, by the array form, whose bits the others share. Parameters of `linear` that are of a size are
+ * the hard case: its closed form in float falls at up to 1e6 of the 2^24 steps. */
 static void check_increase(const mcst_row *row) {
     uint64_t state = mcst_seed_for(row->name, "increase", 0);
     size_t set;

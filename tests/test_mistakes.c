@@ -1,5 +1,5 @@
-/* The commonest mistakes of users, as MCS_ASSERT tells them: directions that are not unit vectors, random numbers outside [0,1). What
- * a careful caller gives, normalised in float and turned by many float frames, must pass. */
+/* The commonest mistakes of users, as MCS_ASSERT tells them: directions that are not unit vectors, random numbers outside [0,1).
+ * What a careful caller gives, normalised in float and turned by many float frames, must pass. */
 static int asserted; /* how often a condition of the header did not hold */
 #define MCS_ASSERT(condition) ((void)((condition) ? 0 : asserted++))
 #include "registry.h"

@@ -996,11 +996,11 @@ static void test_mean(void) {
         }
 }
 
-/* Patches of tiles weigh by the spread of their texels too. A constant map of fewer texels than tiles reflects as much as it shines;
- * a bright texel, as large as a tile or larger, whose middle is below the horizon costs the one-shot form at most twice the
- * variance of the prepared one, as two levels of weights are less exact than one. Without that spread: 0.67 of the light, 11 times.
- * Beside texels that are smaller than a tile the levels differ more, by 2.1 to 2.3 with that spread or without; at most 4.
- */
+/* Patches of tiles weigh by the spread of their texels too. A constant map of fewer texels than tiles reflects as much as it
+ * shines; a bright texel, as large as a tile or larger, whose middle is below the horizon costs the one-shot form at most twice
+ * the variance of the prepared one, as two levels of weights are less exact than one. Without that spread: 0.67 of the light, 11
+ * times. Beside texels that are smaller than a tile the levels differ more, by 2.1 to 2.3 with that spread or without; at most
+ * 4. */
 static void test_blocks(void) {
     static const struct { uint32_t w, h; } sizes[] = {{1, 1}, {3, 1}, {2, 3}, {5, 2}, {16, 8}};
     int i, k;

@@ -752,9 +752,9 @@ static uint32_t *integers_of(uint32_t n) {
     return cdf;
 }
 
-/* 64 bits over 2^33 are a place among 2^31 shares: found by bisection, and the rest within the entry, in long double, whose 64 digits
- * hold the difference. Half the bits lie at a border of entries. The rest is rounded twice, as double and as float. x of pwc is
- * (i + rest)/n, rounded to double and to float and moved by a float into its cell. */
+/* 64 bits over 2^33 are a place among 2^31 shares: found by bisection, and the rest within the entry, in long double, whose 64
+ * digits hold the difference. Half the bits lie at a border of entries. The rest is rounded twice, as double and as float. x of
+ * pwc is (i + rest)/n, rounded to double and to float and moved by a float into its cell. */
 static void test_discrete_bits(uint32_t n) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 163);
     arena a = arena_make(mcs_pwc_bytes(n)), b = arena_make(mcs_pwl_bytes(n));
@@ -809,9 +809,9 @@ static void test_discrete_bits(uint32_t n) {
     arena_free(&a), arena_free(&b), free(cdf);
 }
 
-/* The u to reuse has its digits at a million entries: of draws from one entry, 64 cells of it, and 64 cells of what is behind the
- * 14th digit, are alike; hardly any number comes twice: of 2^14 floats of [0,1) 5 pairs do, by chance, 40 of them never. With the 24
- * bits of a float u an entry has 16 numbers. */
+/* The u to reuse has its digits at a million entries: of draws from one entry, 64 cells of it, and 64 cells of what is behind
+ * the 14th digit, are alike; hardly any number comes twice: of 2^14 floats of [0,1) 5 pairs do, by chance, 40 of them never.
+ * With the 24 bits of a float u an entry has 16 numbers. */
 static void test_reused_digits(void) {
     enum { N = 1000000, DRAWS = 1 << 14, ENTRIES = 20 };
     static float rest[DRAWS];
