@@ -7,7 +7,7 @@
 
 int main(void) {
     const double exact = 4 * cos(1.0) - 2 * sin(1.0);
-    mcs_pcg32 rng = mcs_pcg32_make(1, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(1, 1, 0);
     int n, i, wrong = 0;
 
     printf("%10s %10s %10s %12s %10s\n", "samples", "estimate", "exact", "std. error", "off by");

@@ -12,7 +12,7 @@ static int report(const char *name, const mcs_stat *s, double exact) {
 int main(void) {
     const float R = 2;
     const double exact = 3.14159265358979 * R * R * R * R / 4;
-    mcs_pcg32 rng = mcs_pcg32_make(2, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(2, 1, 0);
     mcs_stat polar = {0, 0, 0}, concentric = {0, 0, 0};
     int i, wrong = 0;
 

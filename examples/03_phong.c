@@ -13,7 +13,7 @@ static int report(const char *name, double got, double error, double want) {
 int main(void) {
     const mcs_phong m = mcs_phong_make(50);
     const mcs_vec3 above = {0, 0, 1}, slant = {0.8f, 0, 0.6f};
-    mcs_pcg32 rng = mcs_pcg32_make(3, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(3, 1, 0);
     mcs_stat top = {0, 0, 0}, lobe = {0, 0, 0}, cosine = {0, 0, 0};
     int i, wrong = 0;
 

@@ -14,7 +14,7 @@ int main(void) {
     const float ax = 0.1f, ay = 0.4f;
     const mcs_ward m = mcs_ward_make(ax, ay, MCS_WARD_GMD);
     const mcs_vec3 wo = {0.6f, 0, 0.8f};
-    mcs_pcg32 rng = mcs_pcg32_make(4, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(4, 1, 0);
     mcs_stat x2 = {0, 0, 0}, y2 = {0, 0, 0}, brdf = {0, 0, 0}, cosine = {0, 0, 0};
     int i, wrong = 0;
 

@@ -15,7 +15,7 @@ int main(void) {
     const mcs_ggx m = mcs_ggx_make(0.2f, 0.5f);
     const mcs_vec3 wo = {0.8f, 0.36f, 0.48f};
     const float g1 = mcs_ggx_g1(&m, wo);
-    mcs_pcg32 rng = mcs_pcg32_make(5, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(5, 1, 0);
     mcs_stat area = {0, 0, 0}, full = {0, 0, 0}, visible = {0, 0, 0}, bounded = {0, 0, 0};
     int i, wrong = 0;
 

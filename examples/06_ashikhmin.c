@@ -13,7 +13,7 @@ static int report(const char *name, double got, double error, double want) {
 int main(void) {
     const mcs_ashikhmin m = mcs_ashikhmin_make(5, 80);
     const mcs_vec3 wo = {0, 0.6f, 0.8f};
-    mcs_pcg32 rng = mcs_pcg32_make(6, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(6, 1, 0);
     mcs_stat mass = {0, 0, 0}, brdf = {0, 0, 0}, cosine = {0, 0, 0};
     int i, wrong = 0;
 

@@ -17,7 +17,7 @@ int main(void) {
     const uint32_t cells = 64;
     size_t bytes = mcs_pwc_bytes(cells);
     mcs_pwc *table = (mcs_pwc *)malloc(bytes);
-    mcs_pcg32 rng = mcs_pcg32_make(7, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(7, 1, 0);
     mcs_stat s = {0, 0, 0};
     int i;
 

@@ -14,7 +14,7 @@ int main(void) {
     size_t bytes = mcs_env_bytes(W, H);
     mcs_env *env = (mcs_env *)malloc(bytes);
     mcs_image image = mcs_image_make(&sky[0][0], W, H, 1);
-    mcs_pcg32 rng = mcs_pcg32_make(8, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(8, 1, 0);
     mcs_stat table = {0, 0, 0}, cosine = {0, 0, 0};
     double exact = 0;
     int i, x, y;

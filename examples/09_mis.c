@@ -12,7 +12,7 @@ static float integrand(mcs_vec3 w) { return (mcs_cone_pdf(k, w) > 0 ? sun : sky)
 
 int main(void) {
     const double s = (double)k * (2 - (double)k), exact = sky * (1 - s) + sun * s;
-    mcs_pcg32 rng = mcs_pcg32_make(9, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(9, 1, 0);
     mcs_stat mis = {0, 0, 0}, cosine = {0, 0, 0};
     int i;
 

@@ -9,7 +9,7 @@ enum { N = 1000, ROUNDS = 1000 };
 int main(void) {
     static float u1[N], u2[N], z[N];
     const double exact = 2.0 / 3;
-    mcs_pcg32 rng = mcs_pcg32_make(10, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(10, 1, 0);
     mcs_stat s = {0, 0, 0};
     int round, i;
 

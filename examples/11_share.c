@@ -29,7 +29,7 @@ int main(void) {
     const mcs_image image = mcs_image_make(&sky[0][0], W, H, 1);
     mcs_env *built = (mcs_env *)malloc(bytes);
     const mcs_env *shared;
-    mcs_pcg32 rng = mcs_pcg32_make(11, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(11, 1, 0);
     FILE *f = tmpfile();
     int whole, cut, other, i, differ = 0;
 

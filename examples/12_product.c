@@ -18,7 +18,7 @@ int main(void) {
     mcs_product *point = (mcs_product *)malloc(point_bytes);
     const mcs_vec3 up = {0, 0, 1};
     const mcs_reflection matte = {mcs_frame_make(up), up, 1, 1, 1, MCS_PROFILE_GGX};
-    mcs_pcg32 rng = mcs_pcg32_make(12, 1);
+    mcs_pcg32 rng = mcs_pcg32_for(12, 1, 0);
     mcs_stat plain = {0, 0, 0}, prepared = {0, 0, 0}, oneshot = {0, 0, 0};
     double exact = 0;
     int i, x, y;
