@@ -272,7 +272,11 @@ typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #if defined(__HIPCC__)
 #define MCSI_COPY(to, from, bytes) __builtin_memcpy(to, from, bytes)
 #define MCSI_FILL(to, byte, bytes) __builtin_memset(to, byte, bytes)
+#define MCSI_SQRT(x) __builtin_sqrtf(x)
+#define MCSI_SQRT_D(x) __builtin_sqrt(x)
 #else
+#define MCSI_SQRT(x) sqrtf(x)
+#define MCSI_SQRT_D(x) sqrt(x)
 #define MCSI_COPY(to, from, bytes) memcpy(to, from, bytes)
 #define MCSI_FILL(to, byte, bytes) memset(to, byte, bytes)
 #endif
@@ -286,7 +290,7 @@ MCS_FN float mcsi_sqrt(float x) {
     v = __builtin_ia32_sqrtss(v);
     return v[0];
 #else
-    return sqrtf(x);
+    return MCSI_SQRT(x);
 #endif
 }
 
@@ -298,7 +302,7 @@ MCS_FN double mcsi_sqrt_d(double x) {
     v = __builtin_ia32_sqrtsd(v);
     return v[0];
 #else
-    return sqrt(x);
+    return MCSI_SQRT_D(x);
 #endif
 }
 
