@@ -282,7 +282,7 @@ typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #endif
 
 /* Square root without errno: sqrtf would cost a test and a call in every loop. */
-MCS_FN float mcsi_sqrt(float x) {
+MCS_FN float mcsi_sqrt_f(float x) {
 #if defined(MCSI_ELEMENTWISE_SQRT)
     return __builtin_elementwise_sqrt(x);
 #elif defined(MCSI_X86)
@@ -342,7 +342,6 @@ typedef double mcsi16_d __attribute__((vector_size(128), aligned(16)));
 #define MCSI_CPU_HAS_AVX512 \
     (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw"))
 
-#ifndef MCS_NO_BATCH
 enum { MCSI_IN_MAX = 3, MCSI_OUT_MAX = 5, MCSI_LANES_MAX = 16 };
 /* The arrays of one call: rounds over whole vectors, then one over a copy of the rest, so that nothing beyond n is touched. */
 typedef struct {
@@ -358,6 +357,14 @@ MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const fl
     for (k = 0; k < MCSI_OUT_MAX; k++) b->out[k] = NULL;
     b->in[0] = in0, b->in[1] = in1, b->in[2] = in2;
     b->n = n, b->i = 0, b->rest = 0;
+}
+
+MCS_FN void mcsi_batch_dir(mcsi_batch *b, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+    mcsi_batch_start(b, n, u1, u2, NULL);
+    b->out[0] = x;
+    b->out[1] = y;
+    b->out[2] = z;
+    b->out[3] = pdf;
 }
 
 /* Not cold: gcc 12 leaves vzeroupper out of cold exits, and SSE code is ten times slower from there on. */
@@ -386,13 +393,6 @@ MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
     return 1;
 }
 MCSI_LOUD
-/* Two loops, so that the inner one has a plain head: gcc then takes divisions and roots that are constant out of it. */
-#define MCSI_EACH(b)                                                       \
-    for ((b).more = 1; (b).more; (b).more = mcsi_batch_rest(&(b), MCSI_W)) \
-        for (; (b).i + MCSI_W <= (b).n; (b).i += MCSI_W)
-#define MCSI_IN(b, k) MCS_(load)((b).in[k] + (b).i)
-#define MCSI_OUT(b, k, v) (void)((b).out[k] ? (MCS_(store)((b).out[k] + (b).i, v), 0) : 0)
-#endif
 
 typedef enum {
     MCS_OK = 0,
@@ -404,8 +404,11 @@ typedef enum {
 } mcs_status;
 typedef enum { MCS_WARD_GMD = 0, MCS_WARD_DUER = 1, MCS_WARD_1992 = 2 } mcs_ward_model;
 
-/* The pass whose loops the `_n` forms use when no wider one may be picked at run time. */
-#if defined(__AVX512F__) && MCS_MAX_LANES >= 16
+/* The pass whose loops array functions use where none of more lanes may be picked at run time. */
+#if defined(MCS_NO_WIDE) || defined(MCS_NO_BATCH)
+#define MCSI_BASE(name) mcsi_##name
+#define MCSI_BASE_W 1
+#elif defined(__AVX512F__) && MCS_MAX_LANES >= 16
 #define MCSI_BASE(name) mcsi16_##name
 #define MCSI_BASE_W 16
 #elif defined(__AVX2__) && MCS_MAX_LANES >= 8
@@ -424,11 +427,7 @@ MCS_FN int mcs_lanes(void) {
 #if defined(MCSI_PICK_AVX2)
     if (MCSI_CPU_HAS_AVX2) return 8;
 #endif
-#if defined(MCS_NO_WIDE)
-    return 1;
-#else
     return MCSI_BASE_W;
-#endif
 }
 #endif
 
@@ -438,115 +437,11 @@ typedef int32_t mcs_i;
 typedef uint32_t mcs_u;
 typedef double mcsi_d;
 
+/* The scalar pass is the text below as it stands. */
 #define MCSI_W 1
-#define MCS_(name) mcs_##name
-#define MCSI_(name) mcsi_##name
-#define MCSI_F mcs_f
-#define MCSI_I mcs_i
-#define MCSI_U mcs_u
-#define MCSI_D mcsi_d
-#include MCS_SELF
+#endif /* MCSAMPLE_H */
 
-#ifndef MCS_NO_WIDE
-#define MCSI_W 4
-#if MCSI_BASE_W == 4
-#define MCSI_LOOPS
-#endif
-#define MCS_(name) mcs4_##name
-#define MCSI_(name) mcsi4_##name
-#define MCSI_F mcs4_f
-#define MCSI_I mcs4_i
-#define MCSI_U mcs4_u
-#define MCSI_D mcsi4_d
-#define MCSI_Q mcsi4_q
-#include MCS_SELF
-
-#define MCSI_W 8
-#if MCSI_BASE_W == 8
-#define MCSI_LOOPS
-#endif
-#define MCS_(name) mcs8_##name
-#define MCSI_(name) mcsi8_##name
-#define MCSI_F mcs8_f
-#define MCSI_I mcs8_i
-#define MCSI_U mcs8_u
-#define MCSI_D mcsi8_d
-#define MCSI_Q mcsi8_q
-#if defined(MCSI_X86) && defined(__AVX__)
-#define MCSI_AVX
-#endif
-#include MCS_SELF
-
-#define MCSI_W 16
-#if MCSI_BASE_W == 16
-#define MCSI_LOOPS
-#endif
-#define MCS_(name) mcs16_##name
-#define MCSI_(name) mcsi16_##name
-#define MCSI_F mcs16_f
-#define MCSI_I mcs16_i
-#define MCSI_U mcs16_u
-#define MCSI_D mcsi16_d
-#define MCSI_Q mcsi16_q
-#if defined(MCSI_X86) && defined(__AVX512F__)
-#define MCSI_AVX512
-#endif
-#include MCS_SELF
-
-#ifdef MCSI_PICK_AVX2
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target(MCSI_TARGET_AVX2))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,fma")
-#endif
-#define MCSI_W 8
-#define MCSI_LOOPS
-#define MCSI_PICKED
-#define MCS_(name) mcsi_avx2p_##name
-#define MCSI_(name) mcsi_avx2_##name
-#define MCSI_F mcs8_f
-#define MCSI_I mcs8_i
-#define MCSI_U mcs8_u
-#define MCSI_D mcsi8_d
-#define MCSI_Q mcsi8_q
-#define MCSI_AVX
-#include MCS_SELF
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#endif
-
-#ifdef MCSI_PICK_AVX512
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target(MCSI_TARGET_AVX512))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512bw,avx512vl")
-#endif
-#define MCSI_W 16
-#define MCSI_LOOPS
-#define MCSI_PICKED
-#define MCS_(name) mcsi_avx512p_##name
-#define MCSI_(name) mcsi_avx512_##name
-#define MCSI_F mcs16_f
-#define MCSI_I mcs16_i
-#define MCSI_U mcs16_u
-#define MCSI_D mcsi16_d
-#define MCSI_Q mcsi16_q
-#define MCSI_AVX512
-#include MCS_SELF
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#endif
-#endif
-
-#elif defined(MCSI_W)
+#ifdef MCSI_W
 
 /* ==== the body: one text for every width ======================================================================================
  * F, I, U stand for the float, int32 and uint32 lanes of the pass. Masks are lanes of I: 0 or 1 in the scalar pass, 0 or -1 in the
@@ -571,41 +466,14 @@ typedef double mcsi_d;
 #define MCSI_REQUIRE(ok) ((void)0)
 #endif
 
-/* Array forms: MCSI_BATCH(x_n, (parameters), (arguments), body) defines the loop in the passes that the `_n` forms use, and in the
- * scalar pass the public mcs_x_n, which calls the loop of the widest of them that the CPU runs. */
-#define MCSI_BATCH(name, params, args, ...) MCSI_BATCH_AS(mcs_##name, name, params, args, __VA_ARGS__)
-#if defined(MCSI_LOOPS)
-#define MCSI_BATCH_AS(caller, name, params, args, ...) \
-    __attribute__((unused)) MCSI_PRIVATE void MCSI_(name) params { __VA_ARGS__ }
-#elif MCSI_W > 1
-#define MCSI_BATCH_AS(caller, name, params, args, ...)
-#elif defined(MCS_NO_WIDE)
-#define MCSI_BATCH_AS(caller, name, params, args, ...) \
-    MCS_FN void caller params { __VA_ARGS__ }
-#else
-#if defined(MCSI_PICK_AVX512)
-#define MCSI_DECLARE_AVX512(name, params) MCSI_FOR_AVX512 MCSI_PRIVATE void mcsi_avx512_##name params;
-#define MCSI_TRY_AVX512(name, args)                   \
-    if (MCSI_CPU_HAS_AVX512) mcsi_avx512_##name args; \
-    else
-#else
-#define MCSI_DECLARE_AVX512(name, params)
-#define MCSI_TRY_AVX512(name, args)
+/* Loops of array functions exist in the passes that those choose from: MCSI_LOOPS. */
+#if MCSI_W == MCSI_BASE_W && !defined(MCSI_PICKED)
+#define MCSI_LOOPS
 #endif
-#if defined(MCSI_PICK_AVX2)
-#define MCSI_DECLARE_AVX2(name, params) MCSI_FOR_AVX2 MCSI_PRIVATE void mcsi_avx2_##name params;
-#define MCSI_TRY_AVX2(name, args)                 \
-    if (MCSI_CPU_HAS_AVX2) mcsi_avx2_##name args; \
-    else
+#if MCSI_W == 1
+#define MCSI_LOOP MCS_FN
 #else
-#define MCSI_DECLARE_AVX2(name, params)
-#define MCSI_TRY_AVX2(name, args)
-#endif
-#define MCSI_BATCH_AS(caller, name, params, args, ...)                \
-    MCSI_DECLARE_AVX512(name, params)                                 \
-    MCSI_DECLARE_AVX2(name, params)                                   \
-    __attribute__((unused)) MCSI_PRIVATE void MCSI_BASE(name) params; \
-    MCS_FN void caller params { MCSI_TRY_AVX512(name, args) MCSI_TRY_AVX2(name, args) MCSI_BASE(name) args; }
+#define MCSI_LOOP __attribute__((unused)) MCSI_PRIVATE
 #endif
 
 /* ---- lanes: what C has no operator for --------------------------------------------------------------------------------------- */
@@ -628,6 +496,7 @@ MCSI_CORE float mcsi_from_bits(int32_t i) {
 }
 MCSI_CORE int32_t mcsi_trunc(float x) { return (int32_t)x; }
 MCSI_CORE float mcsi_to_float(int32_t i) { return (float)i; }
+MCSI_CORE float mcsi_sqrt(float x) { return mcsi_sqrt_f(x); }
 #define MCSI_LANE(x, k) (*(&(x) + (k)))
 #define MCSI_WIDEN(x) ((double)(x))
 #define MCSI_NARROW(x) ((float)(x))
@@ -638,41 +507,41 @@ MCSI_CORE float mcsi_sel(int32_t m, float a, float b) { return m ? a : b; }
 MCSI_CORE float mcsi_max(float a, float b) { return a > b ? a : b; }
 MCSI_CORE float mcsi_min(float a, float b) { return a < b ? a : b; }
 #else
-MCSI_SAMPLE MCSI_F MCS_(set)(float x) {
-    MCSI_F zero = {0.0f};
+MCSI_SAMPLE mcs_f mcs_set(float x) {
+    mcs_f zero = {0.0f};
     return x - zero;
 }
 /* Through a type that may lie anywhere: gcc 12 copies by memcpy in pieces of 16 bytes, and the vector then waits for them. */
-typedef float MCSI_(anywhere) __attribute__((vector_size(4 * MCSI_W), aligned(4), may_alias));
-MCSI_SAMPLE MCSI_F MCS_(load)(const float *p) { return *(const MCSI_(anywhere) *)(const void *)p; }
-MCSI_SAMPLE void MCS_(store)(float *p, MCSI_F v) { *(MCSI_(anywhere) *)(void *)p = v; }
-MCSI_CORE void MCSI_(store_int)(uint32_t *p, MCSI_I i) { *(MCSI_(anywhere) *)(void *)p = (MCSI_F)i; }
-MCSI_CORE MCSI_I MCSI_(bits)(MCSI_F x) { return (MCSI_I)x; }
-MCSI_CORE MCSI_F MCSI_(from_bits)(MCSI_I i) { return (MCSI_F)i; }
-MCSI_CORE MCSI_I MCSI_(trunc)(MCSI_F x) { return __builtin_convertvector(x, MCSI_I); }
-MCSI_CORE MCSI_F MCSI_(to_float)(MCSI_I i) { return __builtin_convertvector(i, MCSI_F); }
+typedef float mcsi_anywhere __attribute__((vector_size(4 * MCSI_W), aligned(4), may_alias));
+MCSI_SAMPLE mcs_f mcs_load(const float *p) { return *(const mcsi_anywhere *)(const void *)p; }
+MCSI_SAMPLE void mcs_store(float *p, mcs_f v) { *(mcsi_anywhere *)(void *)p = v; }
+MCSI_CORE void mcsi_store_int(uint32_t *p, mcs_i i) { *(mcsi_anywhere *)(void *)p = (mcs_f)i; }
+MCSI_CORE mcs_i mcsi_bits(mcs_f x) { return (mcs_i)x; }
+MCSI_CORE mcs_f mcsi_from_bits(mcs_i i) { return (mcs_f)i; }
+MCSI_CORE mcs_i mcsi_trunc(mcs_f x) { return __builtin_convertvector(x, mcs_i); }
+MCSI_CORE mcs_f mcsi_to_float(mcs_i i) { return __builtin_convertvector(i, mcs_f); }
 #define MCSI_LANE(x, k) ((x)[k])
-#define MCSI_WIDEN(x) __builtin_convertvector(x, MCSI_D) /* to double and back; macros, as no unit passes so wide a vector */
-#define MCSI_NARROW(x) __builtin_convertvector(x, MCSI_F)
-#define MCSI_INT_WIDEN(i) MCSI_WIDEN(MCSI_(to_float)(i)) /* |i| < 2^24; straight to double gcc 12 fails at -O0 */
-#define MCSI_TRUNC_D(x) MCSI_(trunc)(MCSI_NARROW(x))
-#define MCSI_MAX_D(x, y) MCSI_WIDEN(MCSI_(max)(MCSI_NARROW(x), MCS_(set)(y)))
-MCSI_CORE MCSI_F MCSI_(sel)(MCSI_I m, MCSI_F a, MCSI_F b) { return (MCSI_F)(((MCSI_I)a & m) | ((MCSI_I)b & ~m)); }
+#define MCSI_WIDEN(x) __builtin_convertvector(x, mcsi_d) /* to double and back; macros, as no unit passes so wide a vector */
+#define MCSI_NARROW(x) __builtin_convertvector(x, mcs_f)
+#define MCSI_INT_WIDEN(i) MCSI_WIDEN(mcsi_to_float(i)) /* |i| < 2^24; straight to double gcc 12 fails at -O0 */
+#define MCSI_TRUNC_D(x) mcsi_trunc(MCSI_NARROW(x))
+#define MCSI_MAX_D(x, y) MCSI_WIDEN(mcsi_max(MCSI_NARROW(x), mcs_set(y)))
+MCSI_CORE mcs_f mcsi_sel(mcs_i m, mcs_f a, mcs_f b) { return (mcs_f)(((mcs_i)a & m) | ((mcs_i)b & ~m)); }
 /* The second of both where one is NaN, as the instructions have it; clang makes those of the plain text, gcc takes their names. */
 #if defined(MCSI_X86) && !defined(__clang__) && MCSI_W == 4
-MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps(a, b); }
-MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps(a, b); }
+MCSI_CORE mcs_f mcsi_max(mcs_f a, mcs_f b) { return __builtin_ia32_maxps(a, b); }
+MCSI_CORE mcs_f mcsi_min(mcs_f a, mcs_f b) { return __builtin_ia32_minps(a, b); }
 #elif defined(MCSI_AVX) && !defined(__clang__)
-MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps256(a, b); }
-MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps256(a, b); }
+MCSI_CORE mcs_f mcsi_max(mcs_f a, mcs_f b) { return __builtin_ia32_maxps256(a, b); }
+MCSI_CORE mcs_f mcsi_min(mcs_f a, mcs_f b) { return __builtin_ia32_minps256(a, b); }
 #elif defined(MCSI_AVX512) && !defined(__clang__)
-MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return __builtin_ia32_maxps512_mask(a, b, a, -1, 4); }
-MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return __builtin_ia32_minps512_mask(a, b, a, -1, 4); }
+MCSI_CORE mcs_f mcsi_max(mcs_f a, mcs_f b) { return __builtin_ia32_maxps512_mask(a, b, a, -1, 4); }
+MCSI_CORE mcs_f mcsi_min(mcs_f a, mcs_f b) { return __builtin_ia32_minps512_mask(a, b, a, -1, 4); }
 #else
-MCSI_CORE MCSI_F MCSI_(max)(MCSI_F a, MCSI_F b) { return MCSI_(sel)(a > b, a, b); }
-MCSI_CORE MCSI_F MCSI_(min)(MCSI_F a, MCSI_F b) { return MCSI_(sel)(a < b, a, b); }
+MCSI_CORE mcs_f mcsi_max(mcs_f a, mcs_f b) { return mcsi_sel(a > b, a, b); }
+MCSI_CORE mcs_f mcsi_min(mcs_f a, mcs_f b) { return mcsi_sel(a < b, a, b); }
 #endif
-MCSI_CORE MCSI_F MCSI_(sqrt)(MCSI_F x) {
+MCSI_CORE mcs_f mcsi_sqrt(mcs_f x) {
 #if defined(MCSI_ELEMENTWISE_SQRT)
     return __builtin_elementwise_sqrt(x);
 #elif defined(MCSI_X86) && MCSI_W == 4
@@ -692,63 +561,61 @@ MCSI_CORE MCSI_F MCSI_(sqrt)(MCSI_F x) {
     return x;
 #else
     int k;
-    for (k = 0; k < MCSI_W; k++) x[k] = mcsi_sqrt(x[k]);
+    for (k = 0; k < MCSI_W; k++) x[k] = mcsi_sqrt_f(x[k]);
     return x;
 #endif
 }
 #endif
 
 /* Bitwise choice, m = 0 or -1 (all bits): for choices that a branch predictor could not learn. */
-MCSI_CORE MCSI_F MCSI_(blend)(MCSI_I m, MCSI_F a, MCSI_F b) {
-    return MCSI_(from_bits)((MCSI_(bits)(a) & m) | (MCSI_(bits)(b) & ~m));
-}
+MCSI_CORE mcs_f mcsi_blend(mcs_i m, mcs_f a, mcs_f b) { return mcsi_from_bits((mcsi_bits(a) & m) | (mcsi_bits(b) & ~m)); }
 #if MCSI_W == 1 && defined(MCSI_GNU)
 MCSI_CORE float mcsi_abs(float x) { return __builtin_fabsf(x); }
 MCSI_CORE float mcsi_with_sign(float magnitude, float sign) { return __builtin_copysignf(magnitude, sign); }
 #else
-MCSI_CORE MCSI_F MCSI_(abs)(MCSI_F x) { return MCSI_(from_bits)(MCSI_(bits)(x) & 0x7fffffff); }
-MCSI_CORE MCSI_F MCSI_(with_sign)(MCSI_F magnitude, MCSI_F sign) {
-    return MCSI_(from_bits)((MCSI_(bits)(magnitude) & 0x7fffffff) | (MCSI_(bits)(sign) & (-0x7fffffff - 1)));
+MCSI_CORE mcs_f mcsi_abs(mcs_f x) { return mcsi_from_bits(mcsi_bits(x) & 0x7fffffff); }
+MCSI_CORE mcs_f mcsi_with_sign(mcs_f magnitude, mcs_f sign) {
+    return mcsi_from_bits((mcsi_bits(magnitude) & 0x7fffffff) | (mcsi_bits(sign) & (-0x7fffffff - 1)));
 }
 #endif
 /* A random number made safe: its value clamped into [0, 1 - 2^-24], NaN to 0; *ok keeps only lanes that were in [0,1). */
-MCSI_CORE MCSI_F MCSI_(unit)(MCSI_F u, MCSI_I *ok) {
-    MCSI_F v;
+MCSI_CORE mcs_f mcsi_unit(mcs_f u, mcs_i *ok) {
+    mcs_f v;
 #if MCSI_W == 1
     if (u > 0.0f && u < 1.0f) return u;
 #endif
     MCSI_REQUIRE(u >= 0.0f && u < 1.0f);
-    v = MCSI_(min)(MCSI_(max)(u, MCS_(set)(0.0f)), MCS_(set)(0.99999994f));
+    v = mcsi_min(mcsi_max(u, mcs_set(0.0f)), mcs_set(0.99999994f));
     *ok = *ok & (v == u);
     return v;
 }
 /* A density or weight made safe: x where ok and x > 0 (so not NaN), at most FLT_MAX, else 0. */
-MCSI_CORE MCSI_F MCSI_(keep)(MCSI_I ok, MCSI_F x) {
+MCSI_CORE mcs_f mcsi_keep(mcs_i ok, mcs_f x) {
 #if MCSI_W == 1
     return ok && x > 0.0f ? mcsi_min(x, FLT_MAX) : 0.0f;
 #else
-    return MCSI_(sel)(ok & (x > 0.0f), MCSI_(min)(x, MCS_(set)(FLT_MAX)), MCS_(set)(0.0f));
+    return mcsi_sel(ok & (x > 0.0f), mcsi_min(x, mcs_set(FLT_MAX)), mcs_set(0.0f));
 #endif
 }
 /* A parameter made safe: x within [lo, hi] where x > 0 or x >= 0 holds as `ok` says, else `lo`. */
-MCSI_CORE MCSI_F MCSI_(within)(MCSI_I ok, MCSI_F x, float lo, float hi) {
-    return MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(x, MCS_(set)(lo)), MCS_(set)(hi)), MCS_(set)(lo));
+MCSI_CORE mcs_f mcsi_within(mcs_i ok, mcs_f x, float lo, float hi) {
+    return mcsi_sel(ok, mcsi_min(mcsi_max(x, mcs_set(lo)), mcs_set(hi)), mcs_set(lo));
 }
 /* x / y, x >= 0 and y > 0, but FLT_MAX where it would overflow. */
-MCSI_CORE MCSI_F MCSI_(quotient)(MCSI_F x, MCSI_F y) {
+MCSI_CORE mcs_f mcsi_quotient(mcs_f x, mcs_f y) {
 #if MCSI_W == 1
     return y >= 1.0f || x < y * 3.40282266e38f ? x / y : FLT_MAX;
 #else
-    MCSI_I fits = (y >= 1.0f) | (x < MCSI_(min)(y, MCS_(set)(1.0f)) * 3.40282266e38f);
-    return MCSI_(sel)(fits, x, MCS_(set)(FLT_MAX)) / MCSI_(sel)(fits, y, MCS_(set)(1.0f));
+    mcs_i fits = (y >= 1.0f) | (x < mcsi_min(y, mcs_set(1.0f)) * 3.40282266e38f);
+    return mcsi_sel(fits, x, mcs_set(FLT_MAX)) / mcsi_sel(fits, y, mcs_set(1.0f));
 #endif
 }
 /* Lengths, rates and radii whose squares and inverses are floats. */
-MCSI_CORE MCSI_I MCSI_(scale_ok)(MCSI_F scale) { return (scale >= 1e-18f) & (scale <= 1e18f); }
-MCSI_CORE MCSI_I MCSI_(always)(void) { return MCS_(set)(0.0f) == MCS_(set)(0.0f); }
+MCSI_CORE mcs_i mcsi_scale_ok(mcs_f scale) { return (scale >= 1e-18f) & (scale <= 1e18f); }
+MCSI_CORE mcs_i mcsi_always(void) { return mcs_set(0.0f) == mcs_set(0.0f); }
 
 /* x as a float in memory holds it: where expressions keep more digits (x87), compilers leave them to variables as well. */
-MCSI_CORE MCSI_F MCSI_(stored)(MCSI_F x) {
+MCSI_CORE mcs_f mcsi_stored(mcs_f x) {
 #if MCSI_FLT_EVAL == 2
     volatile float memory = x;
     return memory;
@@ -763,11 +630,11 @@ MCSI_CORE MCSI_F MCSI_(stored)(MCSI_F x) {
 /* clang-format off */
 /* x to the nearest multiple of step, ties to even, and *k, which multiple; |x| < 2^22 step. `big` is 1.5 * 2^23 step: the sum has
  * room for nothing below step. Where compilers may take the difference for x itself it goes through *k. */
-MCSI_CORE MCSI_F MCSI_(to_grid)(MCSI_F x, float step, float big, MCSI_I *k) {
-    MCSI_F sum = x + big;
-    *k = MCSI_(bits)(sum) - MCSI_(bits)(MCS_(set)(big));
+MCSI_CORE mcs_f mcsi_to_grid(mcs_f x, float step, float big, mcs_i *k) {
+    mcs_f sum = x + big;
+    *k = mcsi_bits(sum) - mcsi_bits(mcs_set(big));
 #if defined(MCSI_SUMS_MAY_MOVE) || MCSI_FLT_EVAL != 0
-    return step * MCSI_(to_float)(*k);
+    return step * mcsi_to_float(*k);
 #else
     (void)step;
     return sum - big;
@@ -782,89 +649,89 @@ MCSI_CORE MCSI_F MCSI_(to_grid)(MCSI_F x, float step, float big, MCSI_I *k) {
 #endif
 /* (sin, cos)(2 pi t), t in [-1/8, 1]. The reduction to an eighth of a turn is exact. 1.4 ulp. *behind is set within an eighth of a
  * turn from half a turn, where *one_plus is 1 + cos without its cancellation. */
-MCSI_CORE void MCSI_(sincos_behind)(MCSI_F t, MCSI_F *sine, MCSI_F *cosine, MCSI_I *behind, MCSI_F *one_plus) {
-    MCSI_I k, swap;
-    MCSI_F r = t - MCSI_(to_grid)(t, 0.25f, 3145728.0f, &k), z = r * r, zz = z * z;
-    MCSI_F s = r * (6.28318548f + ((-1.95191802e-07f + z * -41.3416634f) + zz * (81.5926895f + z * -75.4075546f)));
-    MCSI_F less = z * ((-19.7392082f + z * 64.9391479f) + zz * (-85.4245148f + z * 58.6202126f)), c = 1.0f + less;
+MCSI_CORE void mcsi_sincos_behind(mcs_f t, mcs_f *sine, mcs_f *cosine, mcs_i *behind, mcs_f *one_plus) {
+    mcs_i k, swap;
+    mcs_f r = t - mcsi_to_grid(t, 0.25f, 3145728.0f, &k), z = r * r, zz = z * z;
+    mcs_f s = r * (6.28318548f + ((-1.95191802e-07f + z * -41.3416634f) + zz * (81.5926895f + z * -75.4075546f)));
+    mcs_f less = z * ((-19.7392082f + z * 64.9391479f) + zz * (-85.4245148f + z * 58.6202126f)), c = 1.0f + less;
     swap = -(k & 1);
-    *sine = MCSI_(from_bits)(MCSI_(bits)(MCSI_(blend)(swap, c, s)) ^ (MCSI_I)((MCSI_U)(k & 2) << 30));
-    *cosine = MCSI_(from_bits)(MCSI_(bits)(MCSI_(blend)(swap, s, c)) ^ (MCSI_I)((MCSI_U)((k + 1) & 2) << 30));
+    *sine = mcsi_from_bits(mcsi_bits(mcsi_blend(swap, c, s)) ^ (mcs_i)((mcs_u)(k & 2) << 30));
+    *cosine = mcsi_from_bits(mcsi_bits(mcsi_blend(swap, s, c)) ^ (mcs_i)((mcs_u)((k + 1) & 2) << 30));
     *behind = k == 2, *one_plus = -less;
 }
-MCSI_CORE void MCSI_(sincos_turns)(MCSI_F t, MCSI_F *sine, MCSI_F *cosine) {
-    MCSI_I behind;
-    MCSI_F one_plus;
-    MCSI_(sincos_behind)(t, sine, cosine, &behind, &one_plus);
+MCSI_CORE void mcsi_sincos_turns(mcs_f t, mcs_f *sine, mcs_f *cosine) {
+    mcs_i behind;
+    mcs_f one_plus;
+    mcsi_sincos_behind(t, sine, cosine, &behind, &one_plus);
 }
 
 /* atan2(y, x) in turns, [0, 1 - 2^-24]; (0, 0) gives 0. Absolute error below 2^-23 turns, relative 1.5e-7 in the first octant. */
-MCSI_CORE MCSI_F MCSI_(atan2_turns)(MCSI_F y, MCSI_F x) {
-    MCSI_F ax = MCSI_(abs)(x), ay = MCSI_(abs)(y), big = MCSI_(max)(ax, ay);
-    MCSI_F a = MCSI_(min)(ax, ay) / MCSI_(max)(big, MCS_(set)(FLT_MIN)), z = a * a;
-    MCSI_F t = a * (0.159154937f + z * (-0.0530508421f + z * (0.0318125151f + z * (-0.0225589965f + z * (0.016769575f +
+MCSI_CORE mcs_f mcsi_atan2_turns(mcs_f y, mcs_f x) {
+    mcs_f ax = mcsi_abs(x), ay = mcsi_abs(y), big = mcsi_max(ax, ay);
+    mcs_f a = mcsi_min(ax, ay) / mcsi_max(big, mcs_set(FLT_MIN)), z = a * a;
+    mcs_f t = a * (0.159154937f + z * (-0.0530508421f + z * (0.0318125151f + z * (-0.0225589965f + z * (0.016769575f +
                z * (-0.0116160437f + z * (0.00643095793f + z * (-0.00234468561f + z * 0.000402584235f))))))));
-    t = MCSI_(sel)(ay > ax, 0.25f - t, t);
-    t = MCSI_(sel)(x < 0.0f, 0.5f - t, t);
-    t = MCSI_(sel)(y < 0.0f, 1.0f - t, t);
-    return MCSI_(min)(t, MCS_(set)(0.99999994f));
+    t = mcsi_sel(ay > ax, 0.25f - t, t);
+    t = mcsi_sel(x < 0.0f, 0.5f - t, t);
+    t = mcsi_sel(y < 0.0f, 1.0f - t, t);
+    return mcsi_min(t, mcs_set(0.99999994f));
 }
 
 /* The exponent of a positive normal float's bits, for a significand in [sqrt(1/2), sqrt(2)), in its place: 2^23 of it. */
-MCSI_CORE MCSI_I MCSI_(exponent)(MCSI_I i) { return (i - 0x3f3504f3) & (-0x7fffffff - 1 + 0x7f800000); }
+MCSI_CORE mcs_i mcsi_exponent(mcs_i i) { return (i - 0x3f3504f3) & (-0x7fffffff - 1 + 0x7f800000); }
 /* ln(1 + f) + k ln(2), f in [sqrt(1/2) - 1, sqrt(2) - 1], k in its place. */
-MCSI_CORE MCSI_F MCSI_(log_series)(MCSI_F f, MCSI_I k) {
-    MCSI_F e = MCSI_(to_float)(k), ff = f * f;
-    MCSI_F p = ((0.333333313f + f * -0.250008196f) + ff * (0.200012416f + f * -0.166234091f)) +
+MCSI_CORE mcs_f mcsi_log_series(mcs_f f, mcs_i k) {
+    mcs_f e = mcsi_to_float(k), ff = f * f;
+    mcs_f p = ((0.333333313f + f * -0.250008196f) + ff * (0.200012416f + f * -0.166234091f)) +
                ff * ff * ((0.142015815f + f * -0.131596133f) + ff * (0.127621993f + f * -0.0763639957f));
     return e * (0.693145752f / 8388608) + (f + (f * ff * p + (e * (1.42860677e-06f / 8388608) - 0.5f * ff)));
 }
 /* ln(x), normal x > 0. 1 ulp. */
-MCSI_CORE MCSI_F MCSI_(log)(MCSI_F x) {
-    MCSI_I i = MCSI_(bits)(x), k = MCSI_(exponent)(i);
-    return MCSI_(log_series)(MCSI_(from_bits)(i - k) - 1.0f, k);
+MCSI_CORE mcs_f mcsi_log(mcs_f x) {
+    mcs_i i = mcsi_bits(x), k = mcsi_exponent(i);
+    return mcsi_log_series(mcsi_from_bits(i - k) - 1.0f, k);
 }
 /* ln(w + c) for w in [FLT_MIN, 1e38] and a correction |c| <= ulp(w). 1.5 ulp. */
-MCSI_CORE MCSI_F MCSI_(log_of_sum)(MCSI_F w, MCSI_F c) {
-    MCSI_I i = MCSI_(bits)(w), k = MCSI_(exponent)(i);
-    return MCSI_(log_series)((MCSI_(from_bits)(i - k) - 1.0f) + c * MCSI_(from_bits)(0x3f800000 - k), k);
+MCSI_CORE mcs_f mcsi_log_of_sum(mcs_f w, mcs_f c) {
+    mcs_i i = mcsi_bits(w), k = mcsi_exponent(i);
+    return mcsi_log_series((mcsi_from_bits(i - k) - 1.0f) + c * mcsi_from_bits(0x3f800000 - k), k);
 }
 /* ln(1 + x), x in (-1, 1e38]. */
-MCSI_CORE MCSI_F MCSI_(log1p)(MCSI_F x) {
-    MCSI_F w = MCSI_(stored)(1.0f + x);
-    return MCSI_(log_of_sum)(w, x - (w - 1.0f));
+MCSI_CORE mcs_f mcsi_log1p(mcs_f x) {
+    mcs_f w = mcsi_stored(1.0f + x);
+    return mcsi_log_of_sum(w, x - (w - 1.0f));
 }
 /* ln(1 - u), u in [0,1). */
-MCSI_CORE MCSI_F MCSI_(log1m)(MCSI_F u) {
-    MCSI_F w = MCSI_(stored)(1.0f - u);
-    return MCSI_(log_of_sum)(w, (1.0f - w) - u);
+MCSI_CORE mcs_f mcsi_log1m(mcs_f u) {
+    mcs_f w = mcsi_stored(1.0f - u);
+    return mcsi_log_of_sum(w, (1.0f - w) - u);
 }
 
 /* The reduction of both exponentials, x in [-104, 0]: returns e^r - 1 for r = x - k ln 2, |r| <= ln(2)/2. */
-MCSI_CORE MCSI_F MCSI_(exp_reduced)(MCSI_F x, MCSI_I *k) {
-    MCSI_F e = MCSI_(to_grid)(x * 1.44269504f, 1.0f, 12582912.0f, k), r, rr;
+MCSI_CORE mcs_f mcsi_exp_reduced(mcs_f x, mcs_i *k) {
+    mcs_f e = mcsi_to_grid(x * 1.44269504f, 1.0f, 12582912.0f, k), r, rr;
     r = (x - e * 0.693145752f) - e * 1.42860677e-06f;
     rr = r * r;
     return r + rr * ((0.5f + r * 0.166666657f) +
                      rr * ((0.0416664928f + r * 0.00833354425f) + rr * (0.00139323424f + r * 0.00019763397f)));
 }
 /* x 2^k, x in [1/2, 2], k in [-190, 63], rounded once where the result is subnormal; 0 where not some, all bits of it. */
-MCSI_CORE MCSI_F MCSI_(times_2_to)(MCSI_F x, MCSI_I k, MCSI_I some) {
+MCSI_CORE mcs_f mcsi_times_2_to(mcs_f x, mcs_i k, mcs_i some) {
 #if MCSI_W == 1
     if (k > -125) return x * mcsi_from_bits(((k + 127) << 23) & some);
 #endif
-    return x * MCSI_(from_bits)(((k + 191) << 23) & some) * 5.42101086e-20f;
+    return x * mcsi_from_bits(((k + 191) << 23) & some) * 5.42101086e-20f;
 }
 /* e^min(x, 0), subnormal results included; NaN gives 0. 1 ulp. */
-MCSI_CORE MCSI_F MCSI_(exp_neg)(MCSI_F x) {
-    MCSI_I k;
-    MCSI_F q = MCSI_(exp_reduced)(MCSI_(min)(MCSI_(max)(x, MCS_(set)(-104.0f)), MCS_(set)(0.0f)), &k);
-    return MCSI_(stored)(MCSI_(times_2_to)(1.0f + q, k, k | -1));
+MCSI_CORE mcs_f mcsi_exp_neg(mcs_f x) {
+    mcs_i k;
+    mcs_f q = mcsi_exp_reduced(mcsi_min(mcsi_max(x, mcs_set(-104.0f)), mcs_set(0.0f)), &k);
+    return mcsi_stored(mcsi_times_2_to(1.0f + q, k, k | -1));
 }
 /* e^x and e^x - 1, x in [-80, 0]. 1 ulp. */
-MCSI_CORE MCSI_F MCSI_(exp_both)(MCSI_F x, MCSI_F *minus_one) {
-    MCSI_I k;
-    MCSI_F q = MCSI_(exp_reduced)(x, &k), scale = MCSI_(from_bits)((k + 127) << 23);
+MCSI_CORE mcs_f mcsi_exp_both(mcs_f x, mcs_f *minus_one) {
+    mcs_i k;
+    mcs_f q = mcsi_exp_reduced(x, &k), scale = mcsi_from_bits((k + 127) << 23);
     *minus_one = scale * q + (scale - 1.0f);
     return (1.0f + q) * scale;
 }
@@ -872,10 +739,10 @@ MCSI_CORE MCSI_F MCSI_(exp_both)(MCSI_F x, MCSI_F *minus_one) {
 /* x^n, or x^(1/n) where root is set; x in [0,1], n in [0, 1e9 + 1] given as n - plus, plus 0 or 1. By binary logarithm, a series in
  * (m - 1)/(m + 1), and 2^r = cosh + sinh. In double, so that the product of exponent and logarithm loses nothing. 1 ulp. *over, for
  * roots, is x over the result, by 2^-r = cosh - sinh, relatively accurate where both are subnormal too. */
-MCSI_CORE MCSI_F MCSI_(pow_unit)(MCSI_F x, MCSI_F n, double plus, int root, MCSI_F *over) {
-    MCSI_I i = MCSI_(bits)(x * 16777216.0f), exponent = MCSI_(exponent)(i), some = -i >> 31, k, j;
-    MCSI_F head = MCSI_(from_bits)(i - exponent), q;
-    MCSI_D m = MCSI_WIDEN(head), e = MCSI_WIDEN(n) + plus, s = (m - 1.0) / (m + 1.0), z = s * s, y, r, whole, even, odd;
+MCSI_CORE mcs_f mcsi_pow_unit(mcs_f x, mcs_f n, double plus, int root, mcs_f *over) {
+    mcs_i i = mcsi_bits(x * 16777216.0f), exponent = mcsi_exponent(i), some = -i >> 31, k, j;
+    mcs_f head = mcsi_from_bits(i - exponent), q;
+    mcsi_d m = MCSI_WIDEN(head), e = MCSI_WIDEN(n) + plus, s = (m - 1.0) / (m + 1.0), z = s * s, y, r, whole, even, odd;
     k = (exponent >> 23) - 24;
     y = (MCSI_INT_WIDEN(k) + s * 2.885390081790086) +
         s * z * ((0.9617966733414772 + z * 0.577083585037472) + z * z * (0.4116727148603131 + z * 0.3407301768542072));
@@ -885,76 +752,79 @@ MCSI_CORE MCSI_F MCSI_(pow_unit)(MCSI_F x, MCSI_F n, double plus, int root, MCSI
     r = y - whole, z = r * r;
     even = (1.0 + z * 0.24022651084099645) + z * z * (0.009618030784745157 + z * 0.0001546973134150267);
     odd = r * ((0.6931471805350843 + z * 0.05550410975949026) + z * z * (0.001333342276368949 + z * 1.531643601070646e-05));
-    q = MCSI_(times_2_to)(MCSI_NARROW(even + odd), j, some);
-    if (root) *over = MCSI_(times_2_to)(head * MCSI_NARROW(even - odd), k - j, some);
-    if (!root) q = MCSI_(sel)(MCSI_NARROW(y) > -151.0f, q, MCS_(set)(0.0f));
-    return plus > 0.0 ? q : MCSI_(sel)(n > 0.0f, q, MCS_(set)(1.0f));
+    q = mcsi_times_2_to(MCSI_NARROW(even + odd), j, some);
+    if (root) *over = mcsi_times_2_to(head * MCSI_NARROW(even - odd), k - j, some);
+    if (!root) q = mcsi_sel(MCSI_NARROW(y) > -151.0f, q, mcs_set(0.0f));
+    return plus > 0.0 ? q : mcsi_sel(n > 0.0f, q, mcs_set(1.0f));
 }
 
 /* Phi(-y) = erfc(y / sqrt 2) / 2, y >= 0: the lower tail of the normal distribution. 8 ulp. The square is split so that e^(-y^2/2)
  * keeps its relative accuracy in the far tail. */
-MCSI_CORE MCSI_F MCSI_(normal_tail)(MCSI_F y) {
-    MCSI_F c = MCSI_(min)(y, MCS_(set)(14.5f)), v = 1.0f / (1.0f + 0.35f * c);
-    MCSI_F head = MCSI_(from_bits)(MCSI_(bits)(c) & ~0xfff), hi = -0.5f * head * head, lo = -0.5f * (c - head) * (c + head);
-    MCSI_F sum = hi + lo, rest = (hi - sum) + lo;
-    MCSI_F g = -1.45437423e-06f + v * (0.139653593f + v * (0.139561504f + v * (0.12138617f + v * (0.100589871f +
+MCSI_CORE mcs_f mcsi_normal_tail(mcs_f y) {
+    mcs_f c = mcsi_min(y, mcs_set(14.5f)), v = 1.0f / (1.0f + 0.35f * c);
+    mcs_f head = mcsi_from_bits(mcsi_bits(c) & ~0xfff), hi = -0.5f * head * head, lo = -0.5f * (c - head) * (c + head);
+    mcs_f sum = hi + lo, rest = (hi - sum) + lo;
+    mcs_f g = -1.45437423e-06f + v * (0.139653593f + v * (0.139561504f + v * (0.12138617f + v * (0.100589871f +
                v * (-0.0131919663f + v * (0.146392867f + v * (-0.245529339f + v * (0.139402911f + v * -0.0282641724f))))))));
-    return MCSI_(exp_neg)(sum) * (g + g * rest);
+    return mcsi_exp_neg(sum) * (g + g * rest);
 }
 /* The quantile of the normal distribution, p in [2^-126, 1). 6 ulp. */
-MCSI_CORE MCSI_F MCSI_(normal_quantile)(MCSI_F p) {
-    MCSI_F q = p - 0.5f, z = q * q, zz = z * z, t, v, vv, x;
-    MCSI_F high = (-5471.3335f + z * 53841.8203f) + zz * (-247008.5f + z * 567190.25f);
-    MCSI_F low = (5.76870966f + z * 16.0235748f) + zz * (30.976078f + z * 553.157715f);
-    MCSI_F centre = q * (2.50662827f + (z * 2.62494898f + zz * (low + zz * zz * high)));
+MCSI_CORE mcs_f mcsi_normal_quantile(mcs_f p) {
+    mcs_f q = p - 0.5f, z = q * q, zz = z * z, t, v, vv, x;
+    mcs_f high = (-5471.3335f + z * 53841.8203f) + zz * (-247008.5f + z * 567190.25f);
+    mcs_f low = (5.76870966f + z * 16.0235748f) + zz * (30.976078f + z * 553.157715f);
+    mcs_f centre = q * (2.50662827f + (z * 2.62494898f + zz * (low + zz * zz * high)));
 #if MCSI_W == 1
     if (z <= 0.140625f) return centre;
 #endif
-    t = MCSI_(sqrt)(-2.0f * MCSI_(log)(MCSI_(min)(MCSI_(min)(p, 1.0f - p), MCS_(set)(0.125f))));
+    t = mcsi_sqrt(-2.0f * mcsi_log(mcsi_min(mcsi_min(p, 1.0f - p), mcs_set(0.125f))));
     v = 1.0f / (1.0f + 0.3f * t), vv = v * v;
     high = (-3.61969185f + v * -1.00470293f) + vv * (9.96816254f + v * -12.2509031f + vv * 5.70157146f);
     low = (0.0152368257f + v * 1.39166832f) + vv * (-1.32426488f + v * 3.72064948f);
     x = t - (low + vv * vv * high);
-    return MCSI_(sel)(z <= 0.140625f, centre, MCSI_(with_sign)(x, q));
+    return mcsi_sel(z <= 0.140625f, centre, mcsi_with_sign(x, q));
 }
 
 /* clang-format on */
 /* ---- points ------------------------------------------------------------------------------------------------------------------ */
 
 typedef struct {
-    MCSI_F x, y;
-} MCS_(vec2);
+    mcs_f x, y;
+} mcs_vec2;
 typedef struct {
-    MCSI_F x, y, z;
-} MCS_(vec3);
+    mcs_f x, y, z;
+} mcs_vec3;
+#if MCSI_W == 1
+typedef mcs_vec3 mcsi_scalar_vec3;
+#endif
 typedef struct {
-    MCSI_F x, pdf;
-} MCS_(sample1);
+    mcs_f x, pdf;
+} mcs_sample1;
 typedef struct {
-    MCSI_F x, y, pdf;
-} MCS_(sample2);
+    mcs_f x, y, pdf;
+} mcs_sample2;
 typedef struct {
-    MCS_(vec3) w;
-    MCSI_F pdf;
-} MCS_(dir);
+    mcs_vec3 w;
+    mcs_f pdf;
+} mcs_dir;
 typedef struct {
-    MCS_(vec3) wi;
-    MCSI_F pdf, weight;
-} MCS_(brdf);
+    mcs_vec3 wi;
+    mcs_f pdf, weight;
+} mcs_brdf;
 
-MCSI_CORE MCS_(vec2) MCSI_(vec2)(MCSI_F x, MCSI_F y) {
-    MCS_(vec2) v;
+MCSI_CORE mcs_vec2 mcsi_vec2(mcs_f x, mcs_f y) {
+    mcs_vec2 v;
     v.x = x, v.y = y;
     return v;
 }
-MCSI_CORE MCS_(vec3) MCSI_(vec3)(MCSI_F x, MCSI_F y, MCSI_F z) {
-    MCS_(vec3) v;
+MCSI_CORE mcs_vec3 mcsi_vec3(mcs_f x, mcs_f y, mcs_f z) {
+    mcs_vec3 v;
     v.x = x, v.y = y, v.z = z;
     return v;
 }
-MCSI_CORE MCSI_F MCSI_(dot)(MCS_(vec3) a, MCS_(vec3) b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+MCSI_CORE mcs_f mcsi_dot(mcs_vec3 a, mcs_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 /* The same in double, for where it cancels. */
-MCSI_CORE MCSI_F MCSI_(exact_dot)(MCS_(vec3) a, MCS_(vec3) b) {
+MCSI_CORE mcs_f mcsi_exact_dot(mcs_vec3 a, mcs_vec3 b) {
     return MCSI_NARROW(MCSI_WIDEN(a.x) * MCSI_WIDEN(b.x) + MCSI_WIDEN(a.y) * MCSI_WIDEN(b.y) + MCSI_WIDEN(a.z) * MCSI_WIDEN(b.z));
 }
 /* What MCS_ASSERT takes for a unit vector. A careful caller normalises in float, which leaves |w|^2 within 2^-21 of 1, and turns
@@ -963,29 +833,61 @@ MCSI_CORE MCSI_F MCSI_(exact_dot)(MCS_(vec3) a, MCS_(vec3) b) {
  * 2^-10.4. All of these pass. */
 #define MCSI_IS_UNIT(length2) ((length2) >= 0.999f && (length2) <= 1.001f)
 /* A direction made safe: bad ones (not about unit length, NaN) become +z and leave *ok. */
-MCSI_CORE MCS_(vec3) MCSI_(direction)(MCS_(vec3) w, MCSI_I *ok) {
-    MCSI_F length2 = MCSI_(dot)(w, w);
-    MCSI_I good = (length2 > 0.25f) & (length2 < 4.0f);
+MCSI_CORE mcs_vec3 mcsi_direction(mcs_vec3 w, mcs_i *ok) {
+    mcs_f length2 = mcsi_dot(w, w);
+    mcs_i good = (length2 > 0.25f) & (length2 < 4.0f);
     MCSI_REQUIRE(MCSI_IS_UNIT(length2));
     *ok = *ok & good;
-    return MCSI_(vec3)(MCSI_(sel)(good, w.x, MCS_(set)(0.0f)), MCSI_(sel)(good, w.y, MCS_(set)(0.0f)),
-                       MCSI_(sel)(good, w.z, MCS_(set)(1.0f)));
+    return mcsi_vec3(mcsi_sel(good, w.x, mcs_set(0.0f)), mcsi_sel(good, w.y, mcs_set(0.0f)), mcsi_sel(good, w.z, mcs_set(1.0f)));
 }
 /* The same for a direction that must lie above the surface. */
-MCSI_CORE MCS_(vec3) MCSI_(above)(MCS_(vec3) w, MCSI_I *ok) {
-    MCSI_F length2 = MCSI_(dot)(w, w);
-    MCSI_I good = (length2 > 0.25f) & (length2 < 4.0f) & (w.z > 0.0f);
+MCSI_CORE mcs_vec3 mcsi_above(mcs_vec3 w, mcs_i *ok) {
+    mcs_f length2 = mcsi_dot(w, w);
+    mcs_i good = (length2 > 0.25f) & (length2 < 4.0f) & (w.z > 0.0f);
     MCSI_REQUIRE(MCSI_IS_UNIT(length2));
     *ok = *ok & good;
-    return MCSI_(vec3)(MCSI_(sel)(good, w.x, MCS_(set)(0.0f)), MCSI_(sel)(good, w.y, MCS_(set)(0.0f)),
-                       MCSI_(sel)(good, w.z, MCS_(set)(1.0f)));
+    return mcsi_vec3(mcsi_sel(good, w.x, mcs_set(0.0f)), mcsi_sel(good, w.y, mcs_set(0.0f)), mcsi_sel(good, w.z, mcs_set(1.0f)));
 }
 /* All lanes alike: how the array forms spread the scalars of a call, and a direction of it. */
-MCSI_CORE MCS_(vec3) MCSI_(spread)(mcs_vec3 v) { return MCSI_(vec3)(MCS_(set)(v.x), MCS_(set)(v.y), MCS_(set)(v.z)); }
-MCSI_CORE MCS_(vec3) MCSI_(spread_direction)(mcs_vec3 w) {
-    MCS_ASSERT(MCSI_IS_UNIT(mcsi_dot(w, w)));
-    return MCSI_(spread)(w);
+MCSI_CORE mcs_vec3 mcsi_spread(mcsi_scalar_vec3 v) { return mcsi_vec3(mcs_set(v.x), mcs_set(v.y), mcs_set(v.z)); }
+MCSI_CORE mcs_vec3 mcsi_spread_direction(mcsi_scalar_vec3 w) {
+    MCS_ASSERT(MCSI_IS_UNIT(w.x * w.x + w.y * w.y + w.z * w.z));
+    return mcsi_spread(w);
 }
+
+#ifdef MCSI_LOOPS
+/* What the loops of array functions consist of. MCSI_EACH is two loops, so that the inner one has a plain head: gcc then takes
+ * divisions and roots that are constant out of it. */
+#define MCSI_EACH(b)                                                       \
+    for ((b).more = 1; (b).more; (b).more = mcsi_batch_rest(&(b), MCSI_W)) \
+        for (; (b).i + MCSI_W <= (b).n; (b).i += MCSI_W)
+MCSI_CORE mcs_f mcsi_in(const mcsi_batch *b, int k) { return mcs_load(b->in[k] + b->i); }
+MCSI_CORE void mcsi_out(const mcsi_batch *b, int k, mcs_f v) {
+    if (b->out[k]) mcs_store(b->out[k] + b->i, v);
+}
+MCSI_CORE void mcsi_out_sample1(const mcsi_batch *b, mcs_sample1 s) {
+    mcsi_out(b, 0, s.x);
+    mcsi_out(b, 1, s.pdf);
+}
+MCSI_CORE void mcsi_out_sample2(const mcsi_batch *b, mcs_sample2 s) {
+    mcsi_out(b, 0, s.x);
+    mcsi_out(b, 1, s.y);
+    mcsi_out(b, 2, s.pdf);
+}
+MCSI_CORE void mcsi_out_dir(const mcsi_batch *b, mcs_dir s) {
+    mcsi_out(b, 0, s.w.x);
+    mcsi_out(b, 1, s.w.y);
+    mcsi_out(b, 2, s.w.z);
+    mcsi_out(b, 3, s.pdf);
+}
+MCSI_CORE void mcsi_out_brdf(const mcsi_batch *b, mcs_brdf s) {
+    mcsi_out(b, 0, s.wi.x);
+    mcsi_out(b, 1, s.wi.y);
+    mcsi_out(b, 2, s.wi.z);
+    mcsi_out(b, 3, s.pdf);
+    mcsi_out(b, 4, s.weight);
+}
+#endif
 
 #define MCSI_PI 3.14159274f
 #define MCSI_1_PI 0.318309873f
@@ -1008,8 +910,8 @@ MCSI_CORE MCS_(vec3) MCSI_(spread_direction)(mcs_vec3 w) {
  *                      on key and counter alone; no state to keep
  * fills                out[i] is the float of the i-th word: of the generator, or of word i mod 4 of block counter + i / 4 */
 
-MCSI_FN MCSI_F MCS_(u01)(MCSI_U bits) { return MCSI_(to_float)((MCSI_I)(bits >> 8)) * 5.9604644775390625e-08f; }
-MCSI_FN MCSI_F MCS_(u01_open)(MCSI_U bits) { return (MCSI_(to_float)((MCSI_I)(bits >> 9)) + 0.5f) * 1.1920928955078125e-07f; }
+MCSI_FN mcs_f mcs_u01(mcs_u bits) { return mcsi_to_float((mcs_i)(bits >> 8)) * 5.9604644775390625e-08f; }
+MCSI_FN mcs_f mcs_u01_open(mcs_u bits) { return (mcsi_to_float((mcs_i)(bits >> 9)) + 0.5f) * 1.1920928955078125e-07f; }
 
 #if MCSI_W == 1
 typedef struct {
@@ -1065,30 +967,30 @@ MCSI_CORE void mcsi_mul_wide(uint32_t a, uint32_t k, uint32_t *hi, uint32_t *lo)
 #else
 /* 64-bit products of the lower halves of 64-bit lanes; gcc does not see that the upper halves are 0. */
 #if defined(MCSI_X86) && !defined(__clang__) && MCSI_W == 4
-#define MCSI_MUL_HALVES(a, b) ((MCSI_Q)__builtin_ia32_pmuludq128((MCSI_I)(a), (MCSI_I)(b)))
+#define MCSI_MUL_HALVES(a, b) ((mcsi_q)__builtin_ia32_pmuludq128((mcs_i)(a), (mcs_i)(b)))
 #elif defined(MCSI_AVX) && defined(MCSI_LOOPS) && !defined(__clang__) /* the passes with loops have AVX2 */
-#define MCSI_MUL_HALVES(a, b) ((MCSI_Q)__builtin_ia32_pmuludq256((MCSI_I)(a), (MCSI_I)(b)))
+#define MCSI_MUL_HALVES(a, b) ((mcsi_q)__builtin_ia32_pmuludq256((mcs_i)(a), (mcs_i)(b)))
 #elif defined(MCSI_AVX512) && !defined(__clang__)
-typedef long long MCSI_(any) __attribute__((vector_size(64)));
-#define MCSI_MUL_HALVES(a, b) ((MCSI_Q)__builtin_ia32_pmuludq512_mask((MCSI_I)(a), (MCSI_I)(b), (MCSI_(any))(a), 255))
+typedef long long mcsi_any __attribute__((vector_size(64)));
+#define MCSI_MUL_HALVES(a, b) ((mcsi_q)__builtin_ia32_pmuludq512_mask((mcs_i)(a), (mcs_i)(b), (mcsi_any)(a), 255))
 #else
 #define MCSI_MUL_HALVES(a, b) (((a)&0xffffffffu) * ((b)&0xffffffffu))
 #endif
-MCSI_CORE void MCSI_(mul_wide)(MCSI_U a, uint32_t k, MCSI_U *hi, MCSI_U *lo) {
-    const MCSI_Q all = (MCSI_Q)a, zero = {0}, factor = zero + k;
-    const MCSI_Q p = MCSI_MUL_HALVES(all, factor), q = MCSI_MUL_HALVES(all >> 32, factor);
-    *hi = (MCSI_U)((p >> 32) | (q & ~(uint64_t)0xffffffffu)), *lo = (MCSI_U)((p & 0xffffffffu) | (q << 32));
+MCSI_CORE void mcsi_mul_wide(mcs_u a, uint32_t k, mcs_u *hi, mcs_u *lo) {
+    const mcsi_q all = (mcsi_q)a, zero = {0}, factor = zero + k;
+    const mcsi_q p = MCSI_MUL_HALVES(all, factor), q = MCSI_MUL_HALVES(all >> 32, factor);
+    *hi = (mcs_u)((p >> 32) | (q & ~(uint64_t)0xffffffffu)), *lo = (mcs_u)((p & 0xffffffffu) | (q << 32));
 }
 #undef MCSI_MUL_HALVES
 #endif
 /* The ten rounds on a block of four words. */
-MCSI_CORE void MCSI_(philox_rounds)(uint64_t key, MCSI_U v[4]) {
+MCSI_CORE void mcsi_philox_rounds(uint64_t key, mcs_u v[4]) {
     uint32_t k0 = (uint32_t)key, k1 = (uint32_t)(key >> 32);
     int round;
     for (round = 0; round < 10; round++, k0 += 0x9e3779b9u, k1 += 0xbb67ae85u) {
-        MCSI_U hi0, lo0, hi2, lo2;
-        MCSI_(mul_wide)(v[0], 0xd2511f53u, &hi0, &lo0);
-        MCSI_(mul_wide)(v[2], 0xcd9e8d57u, &hi2, &lo2);
+        mcs_u hi0, lo0, hi2, lo2;
+        mcsi_mul_wide(v[0], 0xd2511f53u, &hi0, &lo0);
+        mcsi_mul_wide(v[2], 0xcd9e8d57u, &hi2, &lo2);
         v[0] = hi2 ^ v[1] ^ k0, v[1] = lo2, v[2] = hi0 ^ v[3] ^ k1, v[3] = lo0;
     }
 }
@@ -1108,10 +1010,10 @@ MCS_FN mcs_pcg32 mcs_pcg32_for(uint64_t seed, uint64_t pixel, uint64_t sample) {
     return r;
 }
 #endif
-#ifndef MCS_NO_BATCH
+#ifdef MCSI_LOOPS
 /* A lane is a block: 4 W numbers, turned from lanes of words into blocks of words on the way to the array. */
-MCSI_CORE void MCSI_(philox_blocks)(uint64_t key, uint64_t counter, float *out) {
-    MCSI_U v[4];
+MCSI_CORE void mcsi_philox_blocks(uint64_t key, uint64_t counter, float *out) {
+    mcs_u v[4];
     float words[4][MCSI_W];
     int k, lane;
     for (lane = 0; lane < MCSI_W; lane++) {
@@ -1119,15 +1021,20 @@ MCSI_CORE void MCSI_(philox_blocks)(uint64_t key, uint64_t counter, float *out) 
         MCSI_LANE(v[1], lane) = (uint32_t)((counter + (unsigned)lane) >> 32);
     }
     v[3] = v[2] = v[0] & 0u;
-    MCSI_(philox_rounds)(key, v);
-    for (k = 0; k < 4; k++) MCS_(store)(words[k], MCS_(u01)(v[k]));
+    mcsi_philox_rounds(key, v);
+    for (k = 0; k < 4; k++) mcs_store(words[k], mcs_u01(v[k]));
     for (lane = 0; lane < MCSI_W; lane++, out += 4)
         out[0] = words[0][lane], out[1] = words[1][lane], out[2] = words[2][lane], out[3] = words[3][lane];
 }
-MCSI_BATCH(philox_fill_n, (uint64_t key, uint64_t counter, size_t n, float *out), (key, counter, n, out), float rest[4 * MCSI_W];
-           if (!out) return;
-           for (; n >= 4 * MCSI_W; n -= 4 * MCSI_W, out += 4 * MCSI_W, counter += MCSI_W) MCSI_(philox_blocks)(key, counter, out);
-           if (n) MCSI_(philox_blocks)(key, counter, rest), MCSI_COPY(out, rest, n * sizeof(float));)
+MCSI_LOOP void mcsi_philox_fill_loop(uint64_t key, uint64_t counter, size_t n, float *out) {
+    float rest[4 * MCSI_W];
+    if (!out) return;
+    for (; n >= 4 * MCSI_W; n -= 4 * MCSI_W, out += 4 * MCSI_W, counter += MCSI_W) mcsi_philox_blocks(key, counter, out);
+    if (n) {
+        mcsi_philox_blocks(key, counter, rest);
+        MCSI_COPY(out, rest, n * sizeof(float));
+    }
+}
 #endif
 
 /* ==== [points] well-spread points instead of independent ones ==================================================================
@@ -1147,14 +1054,17 @@ MCSI_BATCH(philox_fill_n, (uint64_t key, uint64_t counter, size_t n, float *out)
  * Karras 2011 and Burley 2020, "Practical hash-based Owen scrambling"; scrambling constants Vegdahl 2021; hash Wellons 2018; McKay,
  * Beckman, Conover 1979; Roberts 2018, "The unreasonable effectiveness of quasirandom sequences". */
 
-MCSI_CORE MCSI_U MCSI_(mix)(MCSI_U x) {
+MCSI_CORE mcs_u mcsi_mix(mcs_u x) {
     x = (x ^ (x >> 17)) * 0xed5ad4bbu;
     x = (x ^ (x >> 11)) * 0xac4c1b51u;
     x = (x ^ (x >> 15)) * 0x31848babu;
     return x ^ (x >> 14);
 }
-MCSI_FN MCSI_U MCS_(hash)(MCSI_U a, MCSI_U b) { return MCSI_(mix)(a ^ MCSI_(mix)(b + 0x9e3779b9u)); }
-MCSI_CORE MCSI_U MCSI_(reverse_bits)(MCSI_U x) {
+MCSI_FN mcs_u mcs_hash(mcs_u a, mcs_u b) { return mcsi_mix(a ^ mcsi_mix(b + 0x9e3779b9u)); }
+#if MCSI_W == 1
+MCS_FN uint32_t mcsi_scalar_hash(uint32_t a, uint32_t b) { return mcs_hash(a, b); }
+#endif
+MCSI_CORE mcs_u mcsi_reverse_bits(mcs_u x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
     x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
     x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
@@ -1162,13 +1072,13 @@ MCSI_CORE MCSI_U MCSI_(reverse_bits)(MCSI_U x) {
     return (x >> 16) | (x << 16);
 }
 /* Owen's scrambling of a number whose bits are reversed: every bit is flipped by a hash of those below it. */
-MCSI_CORE MCSI_U MCSI_(scramble_reversed)(MCSI_U x, uint32_t seed) {
+MCSI_CORE mcs_u mcsi_scramble_reversed(mcs_u x, uint32_t seed) {
     x = x ^ (x * 0x3d20adeau);
     x = (x + seed) * ((seed >> 16) | 1u);
     x = x ^ (x * 0x05526c56u);
     return x ^ (x * 0x53a22864u);
 }
-MCSI_FN MCSI_U MCS_(sobol_bits)(MCSI_U index, uint32_t dim, uint32_t seed) {
+MCSI_FN mcs_u mcs_sobol_bits(mcs_u index, uint32_t dim, uint32_t seed) {
     static const uint32_t matrix[3][32] = {
         /* columns of the generator matrices, bits reversed */
         {0x00000001u, 0x00000003u, 0x00000005u, 0x0000000fu, 0x00000011u, 0x00000033u, 0x00000055u, 0x000000ffu,
@@ -1184,27 +1094,32 @@ MCSI_FN MCSI_U MCS_(sobol_bits)(MCSI_U index, uint32_t dim, uint32_t seed) {
          0x0001f104u, 0x0002e28au, 0x000457dfu, 0x000c9baeu, 0x0011a105u, 0x002a7289u, 0x0079e7dbu, 0x00b6dba4u,
          0x0100011au, 0x030002a7u, 0x0400079eu, 0x0a000b6du, 0x1f001001u, 0x2e003003u, 0x45004004u, 0xc900a00au}};
     const uint32_t group = dim / 4u, axis = dim % 4u;
-    MCSI_U x = index;
+    mcs_u x = index;
     uint32_t k;
-    if (group) index = MCSI_(reverse_bits)(MCSI_(scramble_reversed)(MCSI_(reverse_bits)(index), mcs_hash(group, seed)));
+    if (group) index = mcsi_reverse_bits(mcsi_scramble_reversed(mcsi_reverse_bits(index), mcsi_scalar_hash(group, seed)));
     if (axis == 0) x = index;
     else
         for (x = index & 0u, k = 0; k < 32; k++) x = x ^ ((0u - ((index >> k) & 1u)) & matrix[axis - 1][k]);
-    return MCSI_(reverse_bits)(MCSI_(scramble_reversed)(x, mcs_hash(dim, ~seed)));
+    return mcsi_reverse_bits(mcsi_scramble_reversed(x, mcsi_scalar_hash(dim, ~seed)));
 }
-MCSI_FN MCSI_F MCS_(sobol)(MCSI_U index, uint32_t dim, uint32_t seed) { return MCS_(u01)(MCS_(sobol_bits)(index, dim, seed)); }
-MCSI_FN MCS_(vec2) MCS_(r2)(MCSI_U index, uint32_t seed) { /* steps 1/g and 1/g^2 of 2^32, g = 1.3247 the plastic number */
-    return MCSI_(vec2)(MCS_(u01)(index * 3242174889u + mcs_hash(0u, seed)), MCS_(u01)(index * 2447445414u + mcs_hash(1u, seed)));
+MCSI_FN mcs_f mcs_sobol(mcs_u index, uint32_t dim, uint32_t seed) { return mcs_u01(mcs_sobol_bits(index, dim, seed)); }
+MCSI_FN mcs_vec2 mcs_r2(mcs_u index, uint32_t seed) { /* steps 1/g and 1/g^2 of 2^32, g = 1.3247 the plastic number */
+    return mcsi_vec2(mcs_u01(index * 3242174889u + mcsi_scalar_hash(0u, seed)),
+                     mcs_u01(index * 2447445414u + mcsi_scalar_hash(1u, seed)));
 }
-#ifndef MCS_NO_BATCH
-/* clang-format off */
-MCSI_BATCH(sobol_n, (uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out), (first, dim, seed, n, out),
-           MCSI_U at; mcsi_batch b; int k;
-           for (k = 0; k < MCSI_W; k++) MCSI_LANE(at, k) = first + (uint32_t)k;
-           mcsi_batch_start(&b, n, NULL, NULL, NULL);
-           b.out[0] = out;
-           MCSI_EACH(b) { MCSI_OUT(b, 0, MCS_(sobol)(at, dim, seed)); at = at + (uint32_t)MCSI_W; })
-/* clang-format on */
+#ifdef MCSI_LOOPS
+MCSI_LOOP void mcsi_sobol_loop(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
+    mcs_u index;
+    mcsi_batch b;
+    int k;
+    for (k = 0; k < MCSI_W; k++) MCSI_LANE(index, k) = first + (uint32_t)k;
+    mcsi_batch_start(&b, n, NULL, NULL, NULL);
+    b.out[0] = out;
+    MCSI_EACH(b) {
+        mcsi_out(&b, 0, mcs_sobol(index, dim, seed));
+        index = index + (uint32_t)MCSI_W;
+    }
+}
 #endif
 
 #if MCSI_W == 1
@@ -1263,249 +1178,250 @@ MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed) 
  * 2^-25, the middle of that cell, because any smaller number would be drawn as often, but stand for less and weigh more. Source:
  * inverse CDFs, e.g. Pharr, Jakob, Humphreys 2023, appendix A; evenpower is slide 13 of the lecture for n = 2. */
 
-MCSI_CORE MCSI_F MCSI_(u_of)(MCSI_I ok, MCSI_F u) {
-    return MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u, MCS_(set)(0.0f)), MCS_(set)(0.99999994f)), MCS_(set)(0.0f));
+MCSI_CORE mcs_f mcsi_u_of(mcs_i ok, mcs_f u) {
+    return mcsi_sel(ok, mcsi_min(mcsi_max(u, mcs_set(0.0f)), mcs_set(0.99999994f)), mcs_set(0.0f));
 }
 /* u of a map that is unbounded at 0: at least the middle of the first of 2^24 cells. */
-MCSI_CORE MCSI_F MCSI_(off_zero)(MCSI_F u) { return MCSI_(max)(u, MCS_(set)(2.98023224e-08f)); }
-MCSI_CORE MCS_(sample1) MCSI_(sample1)(MCSI_I ok, MCSI_F x, MCSI_F pdf) {
-    MCS_(sample1) s;
-    s.x = MCSI_(sel)(ok, x, MCS_(set)(0.0f));
-    s.pdf = MCSI_(keep)(ok, pdf);
+MCSI_CORE mcs_f mcsi_off_zero(mcs_f u) { return mcsi_max(u, mcs_set(2.98023224e-08f)); }
+MCSI_CORE mcs_sample1 mcsi_sample1(mcs_i ok, mcs_f x, mcs_f pdf) {
+    mcs_sample1 s;
+    s.x = mcsi_sel(ok, x, mcs_set(0.0f));
+    s.pdf = mcsi_keep(ok, pdf);
     return s;
 }
 
 /* linear: weights a, b >= 0 times a power of two, in two halves, that brings the larger one to 2^60, or a subnormal one to 2^38 at
  * least: then no square overflows, and that of the smaller one underflows only where it is below 2^-101 of the larger. */
-MCSI_CORE MCSI_I MCSI_(linear_ends)(MCSI_F *a, MCSI_F *b) {
-    MCSI_F top = MCSI_(max)(*a, *b), one, other;
-    MCSI_I ok = (*a >= 0.0f) & (*b >= 0.0f) & (top > 0.0f) & (top <= FLT_MAX);
-    MCSI_I power = 0x5d800000 - (MCSI_(bits)(top) & 0x7f800000), first = (power >> 1) & -0x800000;
+MCSI_CORE mcs_i mcsi_linear_ends(mcs_f *a, mcs_f *b) {
+    mcs_f top = mcsi_max(*a, *b), one, other;
+    mcs_i ok = (*a >= 0.0f) & (*b >= 0.0f) & (top > 0.0f) & (top <= FLT_MAX);
+    mcs_i power = 0x5d800000 - (mcsi_bits(top) & 0x7f800000), first = (power >> 1) & -0x800000;
     MCSI_REQUIRE(ok);
-    one = MCSI_(from_bits)(first + 0x3f800000), other = MCSI_(from_bits)(power - first + 0x3f800000);
+    one = mcsi_from_bits(first + 0x3f800000), other = mcsi_from_bits(power - first + 0x3f800000);
     *a = *a * one * other, *b = *b * one * other;
     return ok;
 }
 /* x is the root of a x + (b - a) x^2 / 2 = u (a + b) / 2, which has the slope r = a + (b - a) x there. The closed form in float is
  * some ulp off and may fall from one u to the next. One step of Newton's with the missing part in double leaves 2^-43 of an error;
  * the next u is 2^-25 of x further, so rounding cannot bring x below the last one. */
-MCSI_SAMPLE MCS_(sample1) MCS_(linear_sample)(MCSI_F a, MCSI_F b, MCSI_F u) {
-    MCSI_I ok = MCSI_(linear_ends)(&a, &b);
-    MCSI_F r, steep, inverse, x;
-    MCSI_D da, db, dx, missing;
-    u = MCSI_(unit)(u, &ok);
-    r = MCSI_(sqrt)((1.0f - u) * (a * a) + u * (b * b));
-    steep = MCSI_(max)(r, MCS_(set)(8.67361738e-19f)); /* at least 2^-60, for u = 0 where a = 0 */
+MCSI_SAMPLE mcs_sample1 mcs_linear_sample(mcs_f a, mcs_f b, mcs_f u) {
+    mcs_i ok = mcsi_linear_ends(&a, &b);
+    mcs_f r, steep, inverse, x;
+    mcsi_d da, db, dx, missing;
+    u = mcsi_unit(u, &ok);
+    r = mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b));
+    steep = mcsi_max(r, mcs_set(8.67361738e-19f)); /* at least 2^-60, for u = 0 where a = 0 */
     inverse = 1.0f / ((a + steep) * steep);
     x = u * (a + b) * (inverse * steep);
     da = MCSI_WIDEN(a), db = MCSI_WIDEN(b), dx = MCSI_WIDEN(x);
     missing = MCSI_WIDEN(u) * (da + db) - dx * ((da + da) + (db - da) * dx);
-    x = MCSI_(stored)(x + 0.5f * MCSI_NARROW(missing) * (inverse * (a + steep)));
-    return MCSI_(sample1)(ok, MCSI_(min)(x, MCS_(set)(1.0f)), r * (2.0f / (a + b)));
+    x = mcsi_stored(x + 0.5f * MCSI_NARROW(missing) * (inverse * (a + steep)));
+    return mcsi_sample1(ok, mcsi_min(x, mcs_set(1.0f)), r * (2.0f / (a + b)));
 }
-MCSI_FN MCSI_F MCS_(linear_pdf)(MCSI_F a, MCSI_F b, MCSI_F x) {
-    MCSI_I ok = MCSI_(linear_ends)(&a, &b);
-    MCSI_F t = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), MCS_(set)(1.0f));
-    return MCSI_(keep)(ok & (t == x), 2.0f * (((1.0f - t) * a + t * b) / (a + b)));
+MCSI_FN mcs_f mcs_linear_pdf(mcs_f a, mcs_f b, mcs_f x) {
+    mcs_i ok = mcsi_linear_ends(&a, &b);
+    mcs_f t = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1.0f));
+    return mcsi_keep(ok & (t == x), 2.0f * (((1.0f - t) * a + t * b) / (a + b)));
 }
-MCSI_FN MCSI_F MCS_(linear_invert)(MCSI_F a, MCSI_F b, MCSI_F x) {
-    MCSI_I ok = MCSI_(linear_ends)(&a, &b);
-    x = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), MCS_(set)(1.0f));
-    return MCSI_(u_of)(ok, x * ((a * (2.0f - x) + b * x) / (a + b)));
-}
-
-MCSI_SAMPLE MCS_(sample1) MCS_(tent_sample)(MCSI_F r, MCSI_F u) {
-    MCSI_I ok = MCSI_(scale_ok)(r);
-    MCSI_F v, q;
-    MCSI_REQUIRE(ok);
-    u = MCSI_(unit)(u, &ok);
-    v = 2.0f * MCSI_(min)(u, 1.0f - u), q = MCSI_(sqrt)(v);
-    return MCSI_(sample1)(ok, MCSI_(with_sign)(r * (1.0f - q), u - 0.5f), q / r);
-}
-MCSI_FN MCSI_F MCS_(tent_pdf)(MCSI_F r, MCSI_F x) {
-    MCSI_I ok = MCSI_(scale_ok)(r);
-    MCSI_REQUIRE(ok);
-    return MCSI_(keep)(ok, (r - MCSI_(min)(MCSI_(abs)(x), r)) / r / r);
-}
-MCSI_FN MCSI_F MCS_(tent_invert)(MCSI_F r, MCSI_F x) {
-    MCSI_I ok = MCSI_(scale_ok)(r);
-    MCSI_F t = MCSI_(max)((r - MCSI_(min)(MCSI_(abs)(x), r)) / r, MCS_(set)(0.0f)), below = 0.5f * t * t;
-    MCSI_REQUIRE(ok);
-    return MCSI_(u_of)(ok & (x == x), MCSI_(sel)(x < 0.0f, below, 1.0f - below));
+MCSI_FN mcs_f mcs_linear_invert(mcs_f a, mcs_f b, mcs_f x) {
+    mcs_i ok = mcsi_linear_ends(&a, &b);
+    x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1.0f));
+    return mcsi_u_of(ok, x * ((a * (2.0f - x) + b * x) / (a + b)));
 }
 
-MCSI_SAMPLE MCS_(sample1) MCS_(exponential_sample)(MCSI_F rate, MCSI_F u) {
-    MCSI_I ok = MCSI_(scale_ok)(rate);
+MCSI_SAMPLE mcs_sample1 mcs_tent_sample(mcs_f r, mcs_f u) {
+    mcs_i ok = mcsi_scale_ok(r);
+    mcs_f v, q;
     MCSI_REQUIRE(ok);
-    u = MCSI_(unit)(u, &ok);
-    return MCSI_(sample1)(ok, MCSI_(log1m)(u) / -rate, rate * (1.0f - u));
+    u = mcsi_unit(u, &ok);
+    v = 2.0f * mcsi_min(u, 1.0f - u), q = mcsi_sqrt(v);
+    return mcsi_sample1(ok, mcsi_with_sign(r * (1.0f - q), u - 0.5f), q / r);
 }
-MCSI_FN MCSI_F MCS_(exponential_pdf)(MCSI_F rate, MCSI_F x) {
-    MCSI_I ok = MCSI_(scale_ok)(rate);
+MCSI_FN mcs_f mcs_tent_pdf(mcs_f r, mcs_f x) {
+    mcs_i ok = mcsi_scale_ok(r);
     MCSI_REQUIRE(ok);
-    x = MCSI_(min)(x, MCS_(set)(1e20f)); /* the density is 0 there at every rate */
-    return MCSI_(keep)(ok & (x >= 0.0f), rate * MCSI_(exp_neg)(-rate * MCSI_(max)(x, MCS_(set)(0.0f))));
+    return mcsi_keep(ok, (r - mcsi_min(mcsi_abs(x), r)) / r / r);
 }
-MCSI_FN MCSI_F MCS_(exponential_invert)(MCSI_F rate, MCSI_F x) {
-    MCSI_I ok = MCSI_(scale_ok)(rate);
-    MCSI_F minus_one;
+MCSI_FN mcs_f mcs_tent_invert(mcs_f r, mcs_f x) {
+    mcs_i ok = mcsi_scale_ok(r);
+    mcs_f t = mcsi_max((r - mcsi_min(mcsi_abs(x), r)) / r, mcs_set(0.0f)), below = 0.5f * t * t;
     MCSI_REQUIRE(ok);
-    x = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), MCS_(set)(1e20f));
-    MCSI_(exp_both)(-MCSI_(min)(MCSI_(max)(rate * x, MCS_(set)(0.0f)), MCS_(set)(80.0f)), &minus_one);
-    return MCSI_(u_of)(ok, -minus_one);
+    return mcsi_u_of(ok & (x == x), mcsi_sel(x < 0.0f, below, 1.0f - below));
+}
+
+MCSI_SAMPLE mcs_sample1 mcs_exponential_sample(mcs_f rate, mcs_f u) {
+    mcs_i ok = mcsi_scale_ok(rate);
+    MCSI_REQUIRE(ok);
+    u = mcsi_unit(u, &ok);
+    return mcsi_sample1(ok, mcsi_log1m(u) / -rate, rate * (1.0f - u));
+}
+MCSI_FN mcs_f mcs_exponential_pdf(mcs_f rate, mcs_f x) {
+    mcs_i ok = mcsi_scale_ok(rate);
+    MCSI_REQUIRE(ok);
+    x = mcsi_min(x, mcs_set(1e20f)); /* the density is 0 there at every rate */
+    return mcsi_keep(ok & (x >= 0.0f), rate * mcsi_exp_neg(-rate * mcsi_max(x, mcs_set(0.0f))));
+}
+MCSI_FN mcs_f mcs_exponential_invert(mcs_f rate, mcs_f x) {
+    mcs_i ok = mcsi_scale_ok(rate);
+    mcs_f minus_one;
+    MCSI_REQUIRE(ok);
+    x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1e20f));
+    mcsi_exp_both(-mcsi_min(mcsi_max(rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &minus_one);
+    return mcsi_u_of(ok, -minus_one);
 }
 
 /* truncexp: rate m -> e^(-rate m) and its distance to 1; `flat` where the density is uniform to float precision. There the rate and
  * the distance become 1, as divisors that are not used. */
-MCSI_CORE MCSI_I MCSI_(truncexp_ends)(MCSI_F *rate, MCSI_F m, MCSI_F *e, MCSI_F *one_minus_e, MCSI_I *flat) {
-    MCSI_I ok = (*rate >= 0.0f) & (*rate <= 1e18f) & MCSI_(scale_ok)(m);
-    MCSI_F t = *rate * m;
+MCSI_CORE mcs_i mcsi_truncexp_ends(mcs_f *rate, mcs_f m, mcs_f *e, mcs_f *one_minus_e, mcs_i *flat) {
+    mcs_i ok = (*rate >= 0.0f) & (*rate <= 1e18f) & mcsi_scale_ok(m);
+    mcs_f t = *rate * m;
     MCSI_REQUIRE(ok);
     *flat = t < 1e-8f;
-    *e = MCSI_(exp_both)(-MCSI_(sel)(ok & (t < 80.0f), t, MCS_(set)(80.0f)), one_minus_e);
-    *one_minus_e = MCSI_(sel)(*flat, MCS_(set)(1.0f), -*one_minus_e), *rate = MCSI_(sel)(*flat, MCS_(set)(1.0f), *rate);
+    *e = mcsi_exp_both(-mcsi_sel(ok & (t < 80.0f), t, mcs_set(80.0f)), one_minus_e);
+    *one_minus_e = mcsi_sel(*flat, mcs_set(1.0f), -*one_minus_e), *rate = mcsi_sel(*flat, mcs_set(1.0f), *rate);
     return ok;
 }
-MCSI_SAMPLE MCS_(sample1) MCS_(truncexp_sample)(MCSI_F rate, MCSI_F m, MCSI_F u) {
-    MCSI_F e, d, w, c, x;
-    MCSI_I flat, ok = MCSI_(truncexp_ends)(&rate, m, &e, &d, &flat);
-    u = MCSI_(unit)(u, &ok);
-    w = MCSI_(stored)((1.0f - u) + u * e); /* 1 - u d = e^(-rate x); u d itself has more digits of it where it is small */
-    c = MCSI_(blend)((0x3effffff - MCSI_(bits)(w)) >> 31, (1.0f - w) - u * d, MCS_(set)(0.0f)); /* where w >= 1/2 */
-    x = MCSI_(min)(MCSI_(log_of_sum)(w, c) / -rate, m);
-    return MCSI_(sample1)(ok, MCSI_(sel)(flat, u * m, x), MCSI_(sel)(flat, 1.0f / m, w * (rate / d)));
+MCSI_SAMPLE mcs_sample1 mcs_truncexp_sample(mcs_f rate, mcs_f m, mcs_f u) {
+    mcs_f e, d, w, c, x;
+    mcs_i flat, ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
+    u = mcsi_unit(u, &ok);
+    w = mcsi_stored((1.0f - u) + u * e); /* 1 - u d = e^(-rate x); u d itself has more digits of it where it is small */
+    c = mcsi_blend((0x3effffff - mcsi_bits(w)) >> 31, (1.0f - w) - u * d, mcs_set(0.0f)); /* where w >= 1/2 */
+    x = mcsi_min(mcsi_log_of_sum(w, c) / -rate, m);
+    return mcsi_sample1(ok, mcsi_sel(flat, u * m, x), mcsi_sel(flat, 1.0f / m, w * (rate / d)));
 }
-MCSI_FN MCSI_F MCS_(truncexp_pdf)(MCSI_F rate, MCSI_F m, MCSI_F x) {
-    MCSI_F e, d;
-    MCSI_I flat, ok = MCSI_(truncexp_ends)(&rate, m, &e, &d, &flat);
-    MCSI_F t = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), m);
-    return MCSI_(keep)(ok & (t == x), MCSI_(sel)(flat, 1.0f / m, rate * MCSI_(exp_neg)(-rate * t) / d));
+MCSI_FN mcs_f mcs_truncexp_pdf(mcs_f rate, mcs_f m, mcs_f x) {
+    mcs_f e, d;
+    mcs_i flat, ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
+    mcs_f t = mcsi_min(mcsi_max(x, mcs_set(0.0f)), m);
+    return mcsi_keep(ok & (t == x), mcsi_sel(flat, 1.0f / m, rate * mcsi_exp_neg(-rate * t) / d));
 }
-MCSI_FN MCSI_F MCS_(truncexp_invert)(MCSI_F rate, MCSI_F m, MCSI_F x) {
-    MCSI_F e, d, p;
-    MCSI_I flat, ok = MCSI_(truncexp_ends)(&rate, m, &e, &d, &flat);
-    x = MCSI_(min)(MCSI_(max)(x, MCS_(set)(0.0f)), m);
-    MCSI_(exp_both)(-MCSI_(min)(MCSI_(max)(rate * x, MCS_(set)(0.0f)), MCS_(set)(80.0f)), &p);
-    return MCSI_(u_of)(ok, MCSI_(sel)(flat, x / m, -p / d));
+MCSI_FN mcs_f mcs_truncexp_invert(mcs_f rate, mcs_f m, mcs_f x) {
+    mcs_f e, d, p;
+    mcs_i flat, ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
+    x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), m);
+    mcsi_exp_both(-mcsi_min(mcsi_max(rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &p);
+    return mcsi_u_of(ok, mcsi_sel(flat, x / m, -p / d));
 }
 
-MCSI_SAMPLE MCS_(sample1) MCS_(normal_sample)(MCSI_F mean, MCSI_F sd, MCSI_F u) {
-    MCSI_I ok = MCSI_(scale_ok)(sd) & (MCSI_(abs)(mean) <= 1e30f);
-    MCSI_F z;
+MCSI_SAMPLE mcs_sample1 mcs_normal_sample(mcs_f mean, mcs_f sd, mcs_f u) {
+    mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
+    mcs_f z;
     MCSI_REQUIRE(ok);
-    u = MCSI_(unit)(u, &ok);
-    z = MCSI_(normal_quantile)(MCSI_(off_zero)(u));
-    return MCSI_(sample1)(ok, mean + sd * z, MCSI_(exp_neg)(-0.5f * z * z) * (0.398942280f / sd));
+    u = mcsi_unit(u, &ok);
+    z = mcsi_normal_quantile(mcsi_off_zero(u));
+    return mcsi_sample1(ok, mean + sd * z, mcsi_exp_neg(-0.5f * z * z) * (0.398942280f / sd));
 }
 /* |x - mean| / scale, at most 200: both densities are 0 there. */
-MCSI_CORE MCSI_F MCSI_(deviation)(MCSI_F mean, MCSI_F scale, MCSI_F x) {
-    return MCSI_(min)(MCSI_(abs)(x - mean), 200.0f * scale) / scale;
-}
-MCSI_FN MCSI_F MCS_(normal_pdf)(MCSI_F mean, MCSI_F sd, MCSI_F x) {
-    MCSI_I ok = MCSI_(scale_ok)(sd) & (MCSI_(abs)(mean) <= 1e30f);
-    MCSI_F z = MCSI_(deviation)(mean, sd, x);
+MCSI_CORE mcs_f mcsi_deviation(mcs_f mean, mcs_f scale, mcs_f x) { return mcsi_min(mcsi_abs(x - mean), 200.0f * scale) / scale; }
+MCSI_FN mcs_f mcs_normal_pdf(mcs_f mean, mcs_f sd, mcs_f x) {
+    mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
+    mcs_f z = mcsi_deviation(mean, sd, x);
     MCSI_REQUIRE(ok);
-    return MCSI_(keep)(ok & (x == x), 0.398942280f * MCSI_(exp_neg)(-0.5f * z * z) / sd);
+    return mcsi_keep(ok & (x == x), 0.398942280f * mcsi_exp_neg(-0.5f * z * z) / sd);
 }
-MCSI_FN MCSI_F MCS_(normal_invert)(MCSI_F mean, MCSI_F sd, MCSI_F x) {
-    MCSI_I ok = MCSI_(scale_ok)(sd) & (MCSI_(abs)(mean) <= 1e30f);
-    MCSI_F tail = MCSI_(normal_tail)(MCSI_(deviation)(mean, sd, x));
+MCSI_FN mcs_f mcs_normal_invert(mcs_f mean, mcs_f sd, mcs_f x) {
+    mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
+    mcs_f tail = mcsi_normal_tail(mcsi_deviation(mean, sd, x));
     MCSI_REQUIRE(ok);
-    return MCSI_(u_of)(ok & (x == x), MCSI_(sel)(x < mean, tail, 1.0f - tail));
+    return mcsi_u_of(ok & (x == x), mcsi_sel(x < mean, tail, 1.0f - tail));
 }
 
-MCSI_SAMPLE MCS_(sample1) MCS_(logistic_sample)(MCSI_F mean, MCSI_F s, MCSI_F u) {
-    MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
-    MCSI_F v;
+MCSI_SAMPLE mcs_sample1 mcs_logistic_sample(mcs_f mean, mcs_f s, mcs_f u) {
+    mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
+    mcs_f v;
     MCSI_REQUIRE(ok);
-    v = MCSI_(off_zero)(MCSI_(unit)(u, &ok));
-    return MCSI_(sample1)(ok, mean + s * MCSI_(log)(v / (1.0f - v)), v * (1.0f - v) / s);
+    v = mcsi_off_zero(mcsi_unit(u, &ok));
+    return mcsi_sample1(ok, mean + s * mcsi_log(v / (1.0f - v)), v * (1.0f - v) / s);
 }
-MCSI_FN MCSI_F MCS_(logistic_pdf)(MCSI_F mean, MCSI_F s, MCSI_F x) {
-    MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
-    MCSI_F e = MCSI_(exp_neg)(-MCSI_(deviation)(mean, s, x));
+MCSI_FN mcs_f mcs_logistic_pdf(mcs_f mean, mcs_f s, mcs_f x) {
+    mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
+    mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, s, x));
     MCSI_REQUIRE(ok);
-    return MCSI_(keep)(ok & (x == x), e / ((1.0f + e) * (1.0f + e)) / s);
+    return mcsi_keep(ok & (x == x), e / ((1.0f + e) * (1.0f + e)) / s);
 }
-MCSI_FN MCSI_F MCS_(logistic_invert)(MCSI_F mean, MCSI_F s, MCSI_F x) {
-    MCSI_I ok = MCSI_(scale_ok)(s) & (MCSI_(abs)(mean) <= 1e30f);
-    MCSI_F e = MCSI_(exp_neg)(-MCSI_(deviation)(mean, s, x));
+MCSI_FN mcs_f mcs_logistic_invert(mcs_f mean, mcs_f s, mcs_f x) {
+    mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
+    mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, s, x));
     MCSI_REQUIRE(ok);
-    return MCSI_(u_of)(ok & (x == x), MCSI_(sel)(x < mean, e, MCS_(set)(1.0f)) / (1.0f + e));
+    return mcsi_u_of(ok & (x == x), mcsi_sel(x < mean, e, mcs_set(1.0f)) / (1.0f + e));
 }
 
-MCSI_CORE MCSI_I MCSI_(exponent_ok)(MCSI_F n) { return (n >= 0.0f) & (n <= 1e9f); }
+MCSI_CORE mcs_i mcsi_exponent_ok(mcs_f n) { return (n >= 0.0f) & (n <= 1e9f); }
 /* v^(1/(n+1)) and the density (n+1) x^n = (n+1) v / x there. */
-MCSI_CORE MCSI_F MCSI_(root)(MCSI_F n, MCSI_F v, MCSI_F *density) {
-    MCSI_F over, x = MCSI_(pow_unit)(v, n, 1.0, 1, &over);
-    *density = MCSI_(sel)(n > 0.0f, (n + 1.0f) * over, MCS_(set)(1.0f));
+MCSI_CORE mcs_f mcsi_root(mcs_f n, mcs_f v, mcs_f *density) {
+    mcs_f over, x = mcsi_pow_unit(v, n, 1.0, 1, &over);
+    *density = mcsi_sel(n > 0.0f, (n + 1.0f) * over, mcs_set(1.0f));
     return x;
 }
-MCSI_CORE MCSI_F MCSI_(power)(MCSI_F n, double plus, MCSI_F x) { return MCSI_(pow_unit)(x, n, plus, 0, NULL); }
-MCSI_SAMPLE MCS_(sample1) MCS_(power_sample)(MCSI_F n, MCSI_F u) {
-    MCSI_I ok = MCSI_(exponent_ok)(n);
-    MCSI_F x, pdf;
+MCSI_CORE mcs_f mcsi_power(mcs_f n, double plus, mcs_f x) { return mcsi_pow_unit(x, n, plus, 0, NULL); }
+MCSI_SAMPLE mcs_sample1 mcs_power_sample(mcs_f n, mcs_f u) {
+    mcs_i ok = mcsi_exponent_ok(n);
+    mcs_f x, pdf;
     MCSI_REQUIRE(ok);
-    n = MCSI_(sel)(ok, n, MCS_(set)(0.0f)), u = MCSI_(unit)(u, &ok);
-    x = MCSI_(root)(n, u, &pdf);
-    return MCSI_(sample1)(ok, x, pdf);
+    n = mcsi_sel(ok, n, mcs_set(0.0f)), u = mcsi_unit(u, &ok);
+    x = mcsi_root(n, u, &pdf);
+    return mcsi_sample1(ok, x, pdf);
 }
-MCSI_FN MCSI_F MCS_(power_pdf)(MCSI_F n, MCSI_F x) {
-    MCSI_I ok = MCSI_(exponent_ok)(n);
+MCSI_FN mcs_f mcs_power_pdf(mcs_f n, mcs_f x) {
+    mcs_i ok = mcsi_exponent_ok(n);
     MCSI_REQUIRE(ok);
-    ok = ok & (x >= 0.0f) & (x <= 1.0f), n = MCSI_(within)(ok, n, 0.0f, 1e9f);
-    return MCSI_(keep)(ok, (n + 1.0f) * MCSI_(power)(n, 0.0, MCSI_(within)(ok, x, 0.0f, 1.0f)));
+    ok = ok & (x >= 0.0f) & (x <= 1.0f), n = mcsi_within(ok, n, 0.0f, 1e9f);
+    return mcsi_keep(ok, (n + 1.0f) * mcsi_power(n, 0.0, mcsi_within(ok, x, 0.0f, 1.0f)));
 }
-MCSI_FN MCSI_F MCS_(power_invert)(MCSI_F n, MCSI_F x) {
-    MCSI_I ok = MCSI_(exponent_ok)(n);
+MCSI_FN mcs_f mcs_power_invert(mcs_f n, mcs_f x) {
+    mcs_i ok = mcsi_exponent_ok(n);
     MCSI_REQUIRE(ok);
-    ok = ok & (x == x), n = MCSI_(within)(ok, n, 0.0f, 1e9f);
-    return MCSI_(u_of)(ok, MCSI_(power)(n, 1.0, MCSI_(within)(ok, x, 0.0f, 1.0f)));
-}
-
-MCSI_SAMPLE MCS_(sample1) MCS_(evenpower_sample)(MCSI_F n, MCSI_F u) {
-    MCSI_I ok = MCSI_(exponent_ok)(n);
-    MCSI_F d, x, pdf;
-    MCSI_REQUIRE(ok);
-    n = MCSI_(sel)(ok, n, MCS_(set)(0.0f)), d = 2.0f * MCSI_(unit)(u, &ok) - 1.0f;
-    x = MCSI_(root)(n, MCSI_(abs)(d), &pdf);
-    return MCSI_(sample1)(ok, MCSI_(with_sign)(x, d), 0.5f * pdf);
-}
-MCSI_FN MCSI_F MCS_(evenpower_pdf)(MCSI_F n, MCSI_F x) { return 0.5f * MCS_(power_pdf)(n, MCSI_(abs)(x)); }
-MCSI_FN MCSI_F MCS_(evenpower_invert)(MCSI_F n, MCSI_F x) {
-    MCSI_I ok = MCSI_(exponent_ok)(n);
-    MCSI_F beside;
-    MCSI_REQUIRE(ok);
-    ok = ok & (x == x), n = MCSI_(within)(ok, n, 0.0f, 1e9f);
-    beside = 0.5f * MCSI_(power)(n, 1.0, MCSI_(within)(ok, MCSI_(abs)(x), 0.0f, 1.0f));
-    return MCSI_(u_of)(ok, MCSI_(sel)(x < 0.0f, 0.5f - beside, 0.5f + beside));
+    ok = ok & (x == x), n = mcsi_within(ok, n, 0.0f, 1e9f);
+    return mcsi_u_of(ok, mcsi_power(n, 1.0, mcsi_within(ok, x, 0.0f, 1.0f)));
 }
 
-#ifndef MCS_NO_BATCH
-/* clang-format off */
-/* x_sample_n(parameters, n, u, x, pdf) */
-#define MCSI_BATCH_1D(NAME, PARAMS, ARGS, SPREAD) \
-    MCSI_BATCH(NAME##_sample_n, PARAMS, ARGS, mcsi_batch b; mcsi_batch_start(&b, n, u, NULL, NULL); b.out[0] = x, b.out[1] = pdf; \
-               MCSI_EACH(b) { \
-                   MCS_(sample1) s = MCS_(NAME##_sample)(SPREAD, MCSI_IN(b, 0)); \
-                   MCSI_OUT(b, 0, s.x); \
-                   MCSI_OUT(b, 1, s.pdf); \
-               })
-#define MCSI_BATCH_1D_1(NAME, P) \
-    MCSI_BATCH_1D(NAME, (float P, size_t n, const float *u, float *x, float *pdf), (P, n, u, x, pdf), MCS_(set)(P))
-#define MCSI_COMMA ,
-#define MCSI_BATCH_1D_2(NAME, P, Q) \
-    MCSI_BATCH_1D(NAME, (float P, float Q, size_t n, const float *u, float *x, float *pdf), (P, Q, n, u, x, pdf), \
-                  MCS_(set)(P) MCSI_COMMA MCS_(set)(Q))
-/* clang-format on */
-MCSI_BATCH_1D_2(linear, a, b_)
-MCSI_BATCH_1D_1(tent, r)
-MCSI_BATCH_1D_1(exponential, rate)
-MCSI_BATCH_1D_2(truncexp, rate, m)
-MCSI_BATCH_1D_2(normal, mean, sd)
-MCSI_BATCH_1D_2(logistic, mean, scale)
-MCSI_BATCH_1D_1(power, e)
-MCSI_BATCH_1D_1(evenpower, e)
+MCSI_SAMPLE mcs_sample1 mcs_evenpower_sample(mcs_f n, mcs_f u) {
+    mcs_i ok = mcsi_exponent_ok(n);
+    mcs_f d, x, pdf;
+    MCSI_REQUIRE(ok);
+    n = mcsi_sel(ok, n, mcs_set(0.0f)), d = 2.0f * mcsi_unit(u, &ok) - 1.0f;
+    x = mcsi_root(n, mcsi_abs(d), &pdf);
+    return mcsi_sample1(ok, mcsi_with_sign(x, d), 0.5f * pdf);
+}
+MCSI_FN mcs_f mcs_evenpower_pdf(mcs_f n, mcs_f x) { return 0.5f * mcs_power_pdf(n, mcsi_abs(x)); }
+MCSI_FN mcs_f mcs_evenpower_invert(mcs_f n, mcs_f x) {
+    mcs_i ok = mcsi_exponent_ok(n);
+    mcs_f beside;
+    MCSI_REQUIRE(ok);
+    ok = ok & (x == x), n = mcsi_within(ok, n, 0.0f, 1e9f);
+    beside = 0.5f * mcsi_power(n, 1.0, mcsi_within(ok, mcsi_abs(x), 0.0f, 1.0f));
+    return mcsi_u_of(ok, mcsi_sel(x < 0.0f, 0.5f - beside, 0.5f + beside));
+}
+
+#ifdef MCSI_LOOPS
+/* Loops of the densities with one parameter and with two. */
+#define MCSI_LOOP_LINE(NAME)                                                                     \
+    MCSI_LOOP void mcsi_##NAME##_loop(float a, size_t n, const float *u, float *x, float *pdf) { \
+        mcsi_batch b;                                                                            \
+        mcsi_batch_start(&b, n, u, NULL, NULL);                                                  \
+        b.out[0] = x;                                                                            \
+        b.out[1] = pdf;                                                                          \
+        MCSI_EACH(b) { mcsi_out_sample1(&b, mcs_##NAME##_sample(mcs_set(a), mcsi_in(&b, 0))); }  \
+    }
+#define MCSI_LOOP_LINE_2(NAME)                                                                                \
+    MCSI_LOOP void mcsi_##NAME##_loop(float a1, float a2, size_t n, const float *u, float *x, float *pdf) {   \
+        mcsi_batch b;                                                                                         \
+        mcsi_batch_start(&b, n, u, NULL, NULL);                                                               \
+        b.out[0] = x;                                                                                         \
+        b.out[1] = pdf;                                                                                       \
+        MCSI_EACH(b) { mcsi_out_sample1(&b, mcs_##NAME##_sample(mcs_set(a1), mcs_set(a2), mcsi_in(&b, 0))); } \
+    }
+MCSI_LOOP_LINE_2(linear)
+MCSI_LOOP_LINE(tent)
+MCSI_LOOP_LINE(exponential)
+MCSI_LOOP_LINE_2(truncexp)
+MCSI_LOOP_LINE_2(normal)
+MCSI_LOOP_LINE_2(logistic)
+MCSI_LOOP_LINE(power)
+MCSI_LOOP_LINE(evenpower)
+#undef MCSI_LOOP_LINE
+#undef MCSI_LOOP_LINE_2
 #endif
 #endif /* MCS_NO_1D */
 
@@ -1516,64 +1432,63 @@ MCSI_BATCH_1D_1(evenpower, e)
  *               Source: Shirley and Chiu 1997, "A low distortion map between disk and square".
  * Accuracy: coordinates within 2^-23 R, pdf 0.1 E. Both are continuous but for the polar seam. `_invert`: 1 atan2. */
 
-MCSI_CORE MCS_(sample2) MCSI_(sample2)(MCSI_I ok, MCSI_F R, MCSI_F r, MCSI_F turns) {
-    MCS_(sample2) d;
-    MCSI_F s, c;
-    ok = ok & MCSI_(scale_ok)(R);
-    MCSI_REQUIRE(MCSI_(scale_ok)(R));
-    r = MCSI_(sel)(ok, R * r, MCS_(set)(0.0f));
-    MCSI_(sincos_turns)(turns, &s, &c);
+MCSI_CORE mcs_sample2 mcsi_sample2(mcs_i ok, mcs_f R, mcs_f r, mcs_f turns) {
+    mcs_sample2 d;
+    mcs_f s, c;
+    ok = ok & mcsi_scale_ok(R);
+    MCSI_REQUIRE(mcsi_scale_ok(R));
+    r = mcsi_sel(ok, R * r, mcs_set(0.0f));
+    mcsi_sincos_turns(turns, &s, &c);
     d.x = r * c, d.y = r * s;
-    d.pdf = MCSI_(keep)(ok, MCSI_1_PI / R / R);
+    d.pdf = mcsi_keep(ok, MCSI_1_PI / R / R);
     return d;
 }
 /* A coordinate in units of the radius, but no further than 4, which is outside. */
-MCSI_CORE MCSI_F MCSI_(in_radii)(MCSI_F R, MCSI_F x) { return MCSI_(min)(MCSI_(max)(x, -4.0f * R), 4.0f * R) / R; }
-MCSI_CORE MCSI_F MCSI_(disk_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) {
-    MCSI_F p = MCSI_(in_radii)(R, x), q = MCSI_(in_radii)(R, y);
-    MCSI_REQUIRE(MCSI_(scale_ok)(R));
-    return MCSI_(keep)(MCSI_(scale_ok)(R) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / R / R);
+MCSI_CORE mcs_f mcsi_in_radii(mcs_f R, mcs_f x) { return mcsi_min(mcsi_max(x, -4.0f * R), 4.0f * R) / R; }
+MCSI_CORE mcs_f mcsi_disk_pdf(mcs_f R, mcs_f x, mcs_f y) {
+    mcs_f p = mcsi_in_radii(R, x), q = mcsi_in_radii(R, y);
+    MCSI_REQUIRE(mcsi_scale_ok(R));
+    return mcsi_keep(mcsi_scale_ok(R) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / R / R);
 }
-MCSI_CORE MCS_(vec2) MCSI_(uv)(MCSI_I ok, MCSI_F u1, MCSI_F u2) {
-    MCSI_F top = MCS_(set)(0.99999994f), zero = MCS_(set)(0.0f);
-    return MCSI_(vec2)(MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u1, zero), top), zero),
-                       MCSI_(sel)(ok, MCSI_(min)(MCSI_(max)(u2, zero), top), zero));
-}
-
-MCSI_SAMPLE MCS_(sample2) MCS_(disk_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    return MCSI_(sample2)(ok, R, MCSI_(sqrt)(u1), u2);
-}
-MCSI_FN MCSI_F MCS_(disk_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) { return MCSI_(disk_pdf)(R, x, y); }
-MCSI_FN MCS_(vec2) MCS_(disk_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
-    MCSI_F p = MCSI_(in_radii)(R, x), q = MCSI_(in_radii)(R, y);
-    MCSI_REQUIRE(MCSI_(scale_ok)(R));
-    return MCSI_(uv)(MCSI_(scale_ok)(R) & (p * p + q * q < 4.0f), p * p + q * q, MCSI_(atan2_turns)(q, p));
+MCSI_CORE mcs_vec2 mcsi_uv(mcs_i ok, mcs_f u1, mcs_f u2) {
+    mcs_f top = mcs_set(0.99999994f), zero = mcs_set(0.0f);
+    return mcsi_vec2(mcsi_sel(ok, mcsi_min(mcsi_max(u1, zero), top), zero), mcsi_sel(ok, mcsi_min(mcsi_max(u2, zero), top), zero));
 }
 
-MCSI_SAMPLE MCS_(sample2) MCS_(concentric_sample)(MCSI_F R, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)(), wide;
-    MCSI_F a, b, r, q, axis;
-    u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
+MCSI_SAMPLE mcs_sample2 mcs_disk_sample(mcs_f R, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    return mcsi_sample2(ok, R, mcsi_sqrt(u1), u2);
+}
+MCSI_FN mcs_f mcs_disk_pdf(mcs_f R, mcs_f x, mcs_f y) { return mcsi_disk_pdf(R, x, y); }
+MCSI_FN mcs_vec2 mcs_disk_invert(mcs_f R, mcs_f x, mcs_f y) {
+    mcs_f p = mcsi_in_radii(R, x), q = mcsi_in_radii(R, y);
+    MCSI_REQUIRE(mcsi_scale_ok(R));
+    return mcsi_uv(mcsi_scale_ok(R) & (p * p + q * q < 4.0f), p * p + q * q, mcsi_atan2_turns(q, p));
+}
+
+MCSI_SAMPLE mcs_sample2 mcs_concentric_sample(mcs_f R, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always(), wide;
+    mcs_f a, b, r, q, axis;
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
     a = 2.0f * u1 - 1.0f, b = 2.0f * u2 - 1.0f;
-    wide = MCSI_(abs)(a) > MCSI_(abs)(b);
-    r = MCSI_(sel)(wide, a, b), q = MCSI_(sel)(wide, b, -a);
-    axis = MCSI_(sel)(wide, MCS_(set)(0.0f), MCS_(set)(0.25f));
-    q = 0.125f * (q / MCSI_(sel)(r == 0.0f, MCS_(set)(1.0f), r));
-    return MCSI_(sample2)(ok, R, r, axis + q); /* the radius has a sign: angles stay within an eighth of a turn of +x or +y */
+    wide = mcsi_abs(a) > mcsi_abs(b);
+    r = mcsi_sel(wide, a, b), q = mcsi_sel(wide, b, -a);
+    axis = mcsi_sel(wide, mcs_set(0.0f), mcs_set(0.25f));
+    q = 0.125f * (q / mcsi_sel(r == 0.0f, mcs_set(1.0f), r));
+    return mcsi_sample2(ok, R, r, axis + q); /* the radius has a sign: angles stay within an eighth of a turn of +x or +y */
 }
-MCSI_FN MCSI_F MCS_(concentric_pdf)(MCSI_F R, MCSI_F x, MCSI_F y) { return MCSI_(disk_pdf)(R, x, y); }
-MCSI_FN MCS_(vec2) MCS_(concentric_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
-    MCSI_F p = MCSI_(stored)(MCSI_(in_radii)(R, x)), q = MCSI_(stored)(MCSI_(in_radii)(R, y)), r2 = p * p + q * q,
-           r = MCSI_(sqrt)(MCSI_(sel)(r2 < 4.0f, r2, MCS_(set)(0.0f)));
-    MCSI_I wide = MCSI_(abs)(p) > MCSI_(abs)(q);
-    MCSI_F along = MCSI_(sel)(wide, p, q), across = MCSI_(sel)(wide, q, p); /* the nearer axis, and the other one */
-    MCSI_F eighths = 8.0f * MCSI_(atan2_turns)(MCSI_(abs)(across), MCSI_(abs)(along));
-    MCSI_F longer = MCSI_(with_sign)(r, along), shorter = MCSI_(with_sign)(r * eighths, across);
-    MCSI_REQUIRE(MCSI_(scale_ok)(R));
-    return MCSI_(uv)(MCSI_(scale_ok)(R) & (r2 < 4.0f), 0.5f + 0.5f * MCSI_(sel)(wide, longer, shorter),
-                     0.5f + 0.5f * MCSI_(sel)(wide, shorter, longer));
+MCSI_FN mcs_f mcs_concentric_pdf(mcs_f R, mcs_f x, mcs_f y) { return mcsi_disk_pdf(R, x, y); }
+MCSI_FN mcs_vec2 mcs_concentric_invert(mcs_f R, mcs_f x, mcs_f y) {
+    mcs_f p = mcsi_stored(mcsi_in_radii(R, x)), q = mcsi_stored(mcsi_in_radii(R, y)), r2 = p * p + q * q,
+          r = mcsi_sqrt(mcsi_sel(r2 < 4.0f, r2, mcs_set(0.0f)));
+    mcs_i wide = mcsi_abs(p) > mcsi_abs(q);
+    mcs_f along = mcsi_sel(wide, p, q), across = mcsi_sel(wide, q, p); /* the nearer axis, and the other one */
+    mcs_f eighths = 8.0f * mcsi_atan2_turns(mcsi_abs(across), mcsi_abs(along));
+    mcs_f longer = mcsi_with_sign(r, along), shorter = mcsi_with_sign(r * eighths, across);
+    MCSI_REQUIRE(mcsi_scale_ok(R));
+    return mcsi_uv(mcsi_scale_ok(R) & (r2 < 4.0f), 0.5f + 0.5f * mcsi_sel(wide, longer, shorter),
+                   0.5f + 0.5f * mcsi_sel(wide, shorter, longer));
 }
 
 /* ==== [sphere] [hemisphere] [cosine] [cone] directions about +z ================================================================
@@ -1587,133 +1502,122 @@ MCSI_FN MCS_(vec2) MCS_(concentric_invert)(MCSI_F R, MCSI_F x, MCSI_F y) {
  *               hold a narrow cone (mcs_cone_from_sin2 gives k from sin^2(theta_max), theta_max up to 90 degrees)
  * pdf 0 below the hemisphere, outside the cone and for bad input. */
 
-MCSI_CORE MCS_(dir) MCSI_(around_z)(MCSI_I ok, MCSI_F sine, MCSI_F z, MCSI_F turns, MCSI_F pdf) {
-    MCS_(dir) d;
-    MCSI_F s, c;
-    MCSI_(sincos_turns)(turns, &s, &c);
-    d.w = MCSI_(vec3)(sine * c, sine * s, z);
-    d.pdf = MCSI_(keep)(ok, pdf);
+MCSI_CORE mcs_dir mcsi_around_z(mcs_i ok, mcs_f sine, mcs_f z, mcs_f turns, mcs_f pdf) {
+    mcs_dir d;
+    mcs_f s, c;
+    mcsi_sincos_turns(turns, &s, &c);
+    d.w = mcsi_vec3(sine * c, sine * s, z);
+    d.pdf = mcsi_keep(ok, pdf);
     return d;
 }
 /* 1 - cos(theta) and 1 + cos(theta) of a direction, each accurate where it is small. */
-MCSI_CORE MCSI_F MCSI_(one_minus_z)(MCS_(vec3) w) {
-    MCSI_F s = w.x * w.x + w.y * w.y;
-    return MCSI_(sel)(w.z > 0.0f, s / (1.0f + MCSI_(abs)(w.z)), 1.0f - w.z);
+MCSI_CORE mcs_f mcsi_one_minus_z(mcs_vec3 w) {
+    mcs_f s = w.x * w.x + w.y * w.y;
+    return mcsi_sel(w.z > 0.0f, s / (1.0f + mcsi_abs(w.z)), 1.0f - w.z);
 }
 
-MCSI_SAMPLE MCS_(dir) MCS_(sphere_sample)(MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    return MCSI_(around_z)(ok, 2.0f * MCSI_(sqrt)(u1 * (1.0f - u1)), 1.0f - 2.0f * u1, u2, MCS_(set)(MCSI_1_4PI));
+MCSI_SAMPLE mcs_dir mcs_sphere_sample(mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    return mcsi_around_z(ok, 2.0f * mcsi_sqrt(u1 * (1.0f - u1)), 1.0f - 2.0f * u1, u2, mcs_set(MCSI_1_4PI));
 }
-MCSI_FN MCSI_F MCS_(sphere_pdf)(MCS_(vec3) w) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_(direction)(w, &ok);
-    return MCSI_(keep)(ok, MCS_(set)(MCSI_1_4PI));
+MCSI_FN mcs_f mcs_sphere_pdf(mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    mcsi_direction(w, &ok);
+    return mcsi_keep(ok, mcs_set(MCSI_1_4PI));
 }
-MCSI_FN MCS_(vec2) MCS_(sphere_invert)(MCS_(vec3) w) {
-    MCSI_I ok = MCSI_(always)();
-    w = MCSI_(direction)(w, &ok);
-    return MCSI_(uv)(ok, 0.5f * MCSI_(one_minus_z)(w), MCSI_(atan2_turns)(w.y, w.x));
-}
-
-MCSI_SAMPLE MCS_(dir) MCS_(hemisphere_sample)(MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    return MCSI_(around_z)(ok, MCSI_(sqrt)(u1 * (2.0f - u1)), 1.0f - u1, u2, MCS_(set)(MCSI_1_2PI));
-}
-MCSI_FN MCSI_F MCS_(hemisphere_pdf)(MCS_(vec3) w) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_(above)(w, &ok);
-    return MCSI_(keep)(ok, MCS_(set)(MCSI_1_2PI));
-}
-MCSI_FN MCS_(vec2) MCS_(hemisphere_invert)(MCS_(vec3) w) {
-    MCSI_I ok = MCSI_(always)();
-    w = MCSI_(above)(w, &ok);
-    return MCSI_(uv)(ok, MCSI_(one_minus_z)(w), MCSI_(atan2_turns)(w.y, w.x));
+MCSI_FN mcs_vec2 mcs_sphere_invert(mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    w = mcsi_direction(w, &ok);
+    return mcsi_uv(ok, 0.5f * mcsi_one_minus_z(w), mcsi_atan2_turns(w.y, w.x));
 }
 
-MCSI_SAMPLE MCS_(dir) MCS_(cosine_sample)(MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F z;
-    u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok), z = MCSI_(sqrt)(1.0f - u1);
-    return MCSI_(around_z)(ok, MCSI_(sqrt)(u1), z, u2, MCSI_1_PI * z);
+MCSI_SAMPLE mcs_dir mcs_hemisphere_sample(mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    return mcsi_around_z(ok, mcsi_sqrt(u1 * (2.0f - u1)), 1.0f - u1, u2, mcs_set(MCSI_1_2PI));
 }
-MCSI_FN MCSI_F MCS_(cosine_pdf)(MCS_(vec3) w) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_(above)(w, &ok);
-    return MCSI_(keep)(ok, MCSI_1_PI * w.z);
+MCSI_FN mcs_f mcs_hemisphere_pdf(mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    mcsi_above(w, &ok);
+    return mcsi_keep(ok, mcs_set(MCSI_1_2PI));
 }
-MCSI_FN MCS_(vec2) MCS_(cosine_invert)(MCS_(vec3) w) {
-    MCSI_I ok = MCSI_(always)();
-    w = MCSI_(above)(w, &ok);
-    return MCSI_(uv)(ok, w.x * w.x + w.y * w.y, MCSI_(atan2_turns)(w.y, w.x));
+MCSI_FN mcs_vec2 mcs_hemisphere_invert(mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    w = mcsi_above(w, &ok);
+    return mcsi_uv(ok, mcsi_one_minus_z(w), mcsi_atan2_turns(w.y, w.x));
 }
 
-MCSI_FN MCSI_F MCS_(cone_from_sin2)(MCSI_F sin2) {
-    MCSI_F s = MCSI_(min)(MCSI_(max)(sin2, MCS_(set)(0.0f)), MCS_(set)(1.0f));
-    return s / (1.0f + MCSI_(sqrt)(1.0f - s));
+MCSI_SAMPLE mcs_dir mcs_cosine_sample(mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    mcs_f z;
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok), z = mcsi_sqrt(1.0f - u1);
+    return mcsi_around_z(ok, mcsi_sqrt(u1), z, u2, MCSI_1_PI * z);
 }
-MCSI_CORE MCSI_I MCSI_(cone_ok)(MCSI_F k) { return (k >= 1e-30f) & (k <= 2.0f); }
-MCSI_SAMPLE MCS_(dir) MCS_(cone_sample)(MCSI_F k, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(cone_ok)(k);
-    MCSI_F t;
+MCSI_FN mcs_f mcs_cosine_pdf(mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    mcsi_above(w, &ok);
+    return mcsi_keep(ok, MCSI_1_PI * w.z);
+}
+MCSI_FN mcs_vec2 mcs_cosine_invert(mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    w = mcsi_above(w, &ok);
+    return mcsi_uv(ok, w.x * w.x + w.y * w.y, mcsi_atan2_turns(w.y, w.x));
+}
+
+MCSI_FN mcs_f mcs_cone_from_sin2(mcs_f sin2) {
+    mcs_f s = mcsi_min(mcsi_max(sin2, mcs_set(0.0f)), mcs_set(1.0f));
+    return s / (1.0f + mcsi_sqrt(1.0f - s));
+}
+MCSI_CORE mcs_i mcsi_cone_ok(mcs_f k) { return (k >= 1e-30f) & (k <= 2.0f); }
+MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_cone_ok(k);
+    mcs_f t;
     MCSI_REQUIRE(ok);
-    k = MCSI_(sel)(ok, k, MCS_(set)(1e-30f)), u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok), t = k * u1;
-    return MCSI_(around_z)(ok, MCSI_(sqrt)(t * ((2.0f - k) + k * (1.0f - u1))), 1.0f - t, u2, MCSI_1_2PI / k);
+    k = mcsi_sel(ok, k, mcs_set(1e-30f)), u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok), t = k * u1;
+    return mcsi_around_z(ok, mcsi_sqrt(t * ((2.0f - k) + k * (1.0f - u1))), 1.0f - t, u2, MCSI_1_2PI / k);
 }
-MCSI_FN MCSI_F MCS_(cone_pdf)(MCSI_F k, MCS_(vec3) w) {
-    MCSI_I ok = MCSI_(cone_ok)(k);
+MCSI_FN mcs_f mcs_cone_pdf(mcs_f k, mcs_vec3 w) {
+    mcs_i ok = mcsi_cone_ok(k);
     MCSI_REQUIRE(ok);
-    w = MCSI_(direction)(w, &ok);
-    return MCSI_(keep)(ok & (MCSI_(one_minus_z)(w) <= k * 1.0000005f), MCSI_1_2PI / k);
+    w = mcsi_direction(w, &ok);
+    return mcsi_keep(ok & (mcsi_one_minus_z(w) <= k * 1.0000005f), MCSI_1_2PI / k);
 }
-MCSI_FN MCS_(vec2) MCS_(cone_invert)(MCSI_F k, MCS_(vec3) w) {
-    MCSI_I ok = MCSI_(cone_ok)(k);
+MCSI_FN mcs_vec2 mcs_cone_invert(mcs_f k, mcs_vec3 w) {
+    mcs_i ok = mcsi_cone_ok(k);
     MCSI_REQUIRE(ok);
-    w = MCSI_(direction)(w, &ok);
-    return MCSI_(uv)(ok, MCSI_(one_minus_z)(w) / k, MCSI_(atan2_turns)(w.y, w.x));
+    w = mcsi_direction(w, &ok);
+    return mcsi_uv(ok, mcsi_one_minus_z(w) / k, mcsi_atan2_turns(w.y, w.x));
 }
 
-#ifndef MCS_NO_BATCH
-/* clang-format off */
-/* Loops over (u1, u2), after the parameters and n: to x, y, pdf on a plane, to x, y, z, pdf for directions. */
-#define MCSI_LOOP_PLANE(CALL) \
-    mcsi_batch b; \
-    mcsi_batch_start(&b, n, u1, u2, NULL); \
-    b.out[0] = x, b.out[1] = y, b.out[2] = pdf; \
-    MCSI_EACH(b) { \
-        MCSI_F p = MCSI_IN(b, 0), q = MCSI_IN(b, 1); \
-        MCS_(sample2) s = CALL; \
-        MCSI_OUT(b, 0, s.x); \
-        MCSI_OUT(b, 1, s.y); \
-        MCSI_OUT(b, 2, s.pdf); \
+#ifdef MCSI_LOOPS
+#define MCSI_LOOP_DISK(NAME)                                                                                                 \
+    MCSI_LOOP void mcsi_##NAME##_loop(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf) { \
+        mcsi_batch b;                                                                                                        \
+        mcsi_batch_start(&b, n, u1, u2, NULL);                                                                               \
+        b.out[0] = x;                                                                                                        \
+        b.out[1] = y;                                                                                                        \
+        b.out[2] = pdf;                                                                                                      \
+        MCSI_EACH(b) { mcsi_out_sample2(&b, mcs_##NAME##_sample(mcs_set(R), mcsi_in(&b, 0), mcsi_in(&b, 1))); }              \
     }
-#define MCSI_LOOP_DIR(CALL) \
-    mcsi_batch b; \
-    mcsi_batch_start(&b, n, u1, u2, NULL); \
-    b.out[0] = x, b.out[1] = y, b.out[2] = z, b.out[3] = pdf; \
-    MCSI_EACH(b) { \
-        MCSI_F p = MCSI_IN(b, 0), q = MCSI_IN(b, 1); \
-        MCS_(dir) s = CALL; \
-        MCSI_OUT(b, 0, s.w.x); \
-        MCSI_OUT(b, 1, s.w.y); \
-        MCSI_OUT(b, 2, s.w.z); \
-        MCSI_OUT(b, 3, s.pdf); \
+#define MCSI_LOOP_SPHERE(NAME)                                                                                                \
+    MCSI_LOOP void mcsi_##NAME##_loop(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) { \
+        mcsi_batch b;                                                                                                         \
+        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                          \
+        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcsi_in(&b, 0), mcsi_in(&b, 1))); }                               \
     }
-#define MCSI_BATCH_PLANE(NAME) \
-    MCSI_BATCH(NAME##_sample_n, (float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf), \
-               (R, n, u1, u2, x, y, pdf), MCSI_LOOP_PLANE(MCS_(NAME##_sample)(MCS_(set)(R), p, q)))
-#define MCSI_BATCH_DIR(NAME) \
-    MCSI_BATCH(NAME##_sample_n, (size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf), \
-               (n, u1, u2, x, y, z, pdf), MCSI_LOOP_DIR(MCS_(NAME##_sample)(p, q)))
-MCSI_BATCH_PLANE(disk)
-MCSI_BATCH_PLANE(concentric)
-MCSI_BATCH_DIR(sphere)
-MCSI_BATCH_DIR(hemisphere)
-MCSI_BATCH_DIR(cosine)
-MCSI_BATCH(cone_sample_n, (float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf),
-           (k, n, u1, u2, x, y, z, pdf), MCSI_LOOP_DIR(MCS_(cone_sample)(MCS_(set)(k), p, q)))
+MCSI_LOOP_DISK(disk)
+MCSI_LOOP_DISK(concentric)
+MCSI_LOOP_SPHERE(sphere)
+MCSI_LOOP_SPHERE(hemisphere)
+MCSI_LOOP_SPHERE(cosine)
+#undef MCSI_LOOP_DISK
+#undef MCSI_LOOP_SPHERE
+MCSI_LOOP void mcsi_cone_loop(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+    mcsi_batch b;
+    mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);
+    MCSI_EACH(b) { mcsi_out_dir(&b, mcs_cone_sample(mcs_set(k), mcsi_in(&b, 0), mcsi_in(&b, 1))); }
+}
 #endif
 
 /* ==== [frame] an orthonormal frame from a normal ===============================================================================
@@ -1722,33 +1626,36 @@ MCSI_BATCH(cone_sample_n, (float k, size_t n, const float *u1, const float *u2, 
  * Source: Duff et al. 2017, "Building an orthonormal basis, revisited", listing 3. */
 
 typedef struct {
-    MCS_(vec3) s, t, n;
-} MCS_(frame);
-MCSI_FN MCS_(frame) MCS_(frame_make)(MCS_(vec3) n) {
-    MCS_(frame) f;
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F sign, a, b;
-    n = MCSI_(direction)(n, &ok);
-    sign = MCSI_(with_sign)(MCS_(set)(1.0f), n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-    f.s = MCSI_(vec3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    f.t = MCSI_(vec3)(b, sign + n.y * n.y * a, -n.y);
+    mcs_vec3 s, t, n;
+} mcs_frame;
+#if MCSI_W == 1
+typedef mcs_frame mcsi_scalar_frame;
+#endif
+MCSI_FN mcs_frame mcs_frame_make(mcs_vec3 n) {
+    mcs_frame f;
+    mcs_i ok = mcsi_always();
+    mcs_f sign, a, b;
+    n = mcsi_direction(n, &ok);
+    sign = mcsi_with_sign(mcs_set(1.0f), n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+    f.s = mcsi_vec3(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    f.t = mcsi_vec3(b, sign + n.y * n.y * a, -n.y);
     f.n = n;
     return f;
 }
 /* Any finite v; components that are NaN or beyond 1e37 count as 0. */
-MCSI_CORE MCSI_F MCSI_(finite)(MCSI_F x) { return MCSI_(sel)(MCSI_(abs)(x) <= 1e37f, x, MCS_(set)(0.0f)); }
-MCSI_CORE MCS_(vec3) MCSI_(to_world)(const MCS_(frame) * f, MCS_(vec3) v) {
-    return MCSI_(vec3)(f->s.x * v.x + f->t.x * v.y + f->n.x * v.z, f->s.y * v.x + f->t.y * v.y + f->n.y * v.z,
-                       f->s.z * v.x + f->t.z * v.y + f->n.z * v.z);
+MCSI_CORE mcs_f mcsi_finite(mcs_f x) { return mcsi_sel(mcsi_abs(x) <= 1e37f, x, mcs_set(0.0f)); }
+MCSI_CORE mcs_vec3 mcsi_to_world(const mcs_frame *f, mcs_vec3 v) {
+    return mcsi_vec3(f->s.x * v.x + f->t.x * v.y + f->n.x * v.z, f->s.y * v.x + f->t.y * v.y + f->n.y * v.z,
+                     f->s.z * v.x + f->t.z * v.y + f->n.z * v.z);
 }
-MCSI_FN MCS_(vec3) MCS_(to_world)(const MCS_(frame) * f, MCS_(vec3) v) {
-    return MCSI_(to_world)(f, MCSI_(vec3)(MCSI_(finite)(v.x), MCSI_(finite)(v.y), MCSI_(finite)(v.z)));
+MCSI_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v) {
+    return mcsi_to_world(f, mcsi_vec3(mcsi_finite(v.x), mcsi_finite(v.y), mcsi_finite(v.z)));
 }
-MCSI_CORE MCS_(vec3) MCSI_(to_local)(const MCS_(frame) * f, MCS_(vec3) v) {
-    return MCSI_(vec3)(MCSI_(dot)(f->s, v), MCSI_(dot)(f->t, v), MCSI_(dot)(f->n, v));
+MCSI_CORE mcs_vec3 mcsi_to_local(const mcs_frame *f, mcs_vec3 v) {
+    return mcsi_vec3(mcsi_dot(f->s, v), mcsi_dot(f->t, v), mcsi_dot(f->n, v));
 }
-MCSI_FN MCS_(vec3) MCS_(to_local)(const MCS_(frame) * f, MCS_(vec3) v) {
-    return MCSI_(to_local)(f, MCSI_(vec3)(MCSI_(finite)(v.x), MCSI_(finite)(v.y), MCSI_(finite)(v.z)));
+MCSI_FN mcs_vec3 mcs_to_local(const mcs_frame *f, mcs_vec3 v) {
+    return mcsi_to_local(f, mcsi_vec3(mcsi_finite(v.x), mcsi_finite(v.y), mcsi_finite(v.z)));
 }
 
 #ifndef MCS_NO_LOBES
@@ -1763,62 +1670,62 @@ MCSI_FN MCS_(vec3) MCS_(to_local)(const MCS_(frame) * f, MCS_(vec3) v) {
  * its components need no normalisation. The accuracies below hold where the cosines of wo, wi and h to the normal, and Phong's to
  * R, are 1e-15 or more. Nearer the horizon squares of cosines underflow; results are finite and not negative there, no more. */
 
-MCSI_CORE MCS_(vec3) MCSI_(sum)(MCS_(vec3) a, MCS_(vec3) b) { return MCSI_(vec3)(a.x + b.x, a.y + b.y, a.z + b.z); }
-MCSI_FN MCS_(vec3) MCS_(reflect)(MCS_(vec3) wo, MCS_(vec3) h) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F d;
-    wo = MCSI_(direction)(wo, &ok), h = MCSI_(direction)(h, &ok);
-    d = 2.0f * MCSI_(dot)(wo, h);
-    return MCSI_(vec3)(d * h.x - wo.x, d * h.y - wo.y, d * h.z - wo.z);
+MCSI_CORE mcs_vec3 mcsi_sum(mcs_vec3 a, mcs_vec3 b) { return mcsi_vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
+MCSI_FN mcs_vec3 mcs_reflect(mcs_vec3 wo, mcs_vec3 h) {
+    mcs_i ok = mcsi_always();
+    mcs_f d;
+    wo = mcsi_direction(wo, &ok), h = mcsi_direction(h, &ok);
+    d = 2.0f * mcsi_dot(wo, h);
+    return mcsi_vec3(d * h.x - wo.x, d * h.y - wo.y, d * h.z - wo.z);
 }
-MCSI_FN MCSI_F MCS_(reflect_pdf)(MCSI_F pdf_h, MCSI_F cos_d) {
-    return MCSI_(keep)((pdf_h > 0.0f) & (cos_d > 0.0f), MCSI_(quotient)(pdf_h, 4.0f * cos_d));
+MCSI_FN mcs_f mcs_reflect_pdf(mcs_f pdf_h, mcs_f cos_d) {
+    return mcsi_keep((pdf_h > 0.0f) & (cos_d > 0.0f), mcsi_quotient(pdf_h, 4.0f * cos_d));
 }
-MCSI_FN MCS_(vec3) MCS_(half)(MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)(), some;
-    MCS_(vec3) h;
-    MCSI_F l;
-    wo = MCSI_(direction)(wo, &ok), wi = MCSI_(direction)(wi, &ok);
-    h = MCSI_(sum)(wo, wi);
-    l = MCSI_(max)(MCSI_(max)(MCSI_(abs)(h.x), MCSI_(abs)(h.y)), MCSI_(abs)(h.z)), some = l > 0.0f;
-    l = MCSI_(sel)(some, l, MCS_(set)(1.0f));
-    h = MCSI_(vec3)(h.x / l, h.y / l, MCSI_(sel)(some, h.z / l, MCS_(set)(1.0f)));
-    l = MCSI_(sqrt)(MCSI_(dot)(h, h));
-    return MCSI_(vec3)(h.x / l, h.y / l, h.z / l);
+MCSI_FN mcs_vec3 mcs_half(mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = mcsi_always(), some;
+    mcs_vec3 h;
+    mcs_f l;
+    wo = mcsi_direction(wo, &ok), wi = mcsi_direction(wi, &ok);
+    h = mcsi_sum(wo, wi);
+    l = mcsi_max(mcsi_max(mcsi_abs(h.x), mcsi_abs(h.y)), mcsi_abs(h.z)), some = l > 0.0f;
+    l = mcsi_sel(some, l, mcs_set(1.0f));
+    h = mcsi_vec3(h.x / l, h.y / l, mcsi_sel(some, h.z / l, mcs_set(1.0f)));
+    l = mcsi_sqrt(mcsi_dot(h, h));
+    return mcsi_vec3(h.x / l, h.y / l, h.z / l);
 }
-MCSI_FN MCSI_F MCS_(cos_d)(MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)();
-    MCS_(vec3) h;
-    wo = MCSI_(direction)(wo, &ok), wi = MCSI_(direction)(wi, &ok);
-    h = MCSI_(sum)(wo, wi);
-    return MCSI_(keep)(ok, 0.5f * MCSI_(sqrt)(MCSI_(dot)(h, h)));
+MCSI_FN mcs_f mcs_cos_d(mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = mcsi_always();
+    mcs_vec3 h;
+    wo = mcsi_direction(wo, &ok), wi = mcsi_direction(wi, &ok);
+    h = mcsi_sum(wo, wi);
+    return mcsi_keep(ok, 0.5f * mcsi_sqrt(mcsi_dot(h, h)));
 }
-MCSI_FN MCSI_F MCS_(schlick)(MCSI_F f0, MCSI_F cos_d) {
-    MCSI_F zero = MCS_(set)(0.0f), one = MCS_(set)(1.0f), m, m2;
-    f0 = MCSI_(min)(MCSI_(max)(f0, zero), one), m = 1.0f - MCSI_(min)(MCSI_(max)(cos_d, zero), one), m2 = m * m;
+MCSI_FN mcs_f mcs_schlick(mcs_f f0, mcs_f cos_d) {
+    mcs_f zero = mcs_set(0.0f), one = mcs_set(1.0f), m, m2;
+    f0 = mcsi_min(mcsi_max(f0, zero), one), m = 1.0f - mcsi_min(mcsi_max(cos_d, zero), one), m2 = m * m;
     return f0 + (1.0f - f0) * (m2 * m2 * m);
 }
 
 /* A direction of almost unit length brought to it, by one Newton step of 1/sqrt. */
-MCSI_CORE MCS_(vec3) MCSI_(to_unit)(MCS_(vec3) w) {
-    MCSI_F s = 1.5f - 0.5f * MCSI_(dot)(w, w);
-    return MCSI_(vec3)(w.x * s, w.y * s, w.z * s);
+MCSI_CORE mcs_vec3 mcsi_to_unit(mcs_vec3 w) {
+    mcs_f s = 1.5f - 0.5f * mcsi_dot(w, w);
+    return mcsi_vec3(w.x * s, w.y * s, w.z * s);
 }
 /* What a BRDF sampler returns: samples below the surface are lost. */
-MCSI_CORE MCS_(brdf) MCSI_(brdf)(MCSI_I ok, MCS_(vec3) wi, MCSI_F pdf, MCSI_F weight) {
-    MCS_(brdf) s;
+MCSI_CORE mcs_brdf mcsi_brdf(mcs_i ok, mcs_vec3 wi, mcs_f pdf, mcs_f weight) {
+    mcs_brdf s;
     s.wi = wi;
-    s.pdf = MCSI_(keep)(ok & (wi.z > 0.0f), pdf);
-    s.weight = MCSI_(keep)(s.pdf > 0.0f, weight);
+    s.pdf = mcsi_keep(ok & (wi.z > 0.0f), pdf);
+    s.weight = mcsi_keep(s.pdf > 0.0f, weight);
     return s;
 }
 /* wo mirrored at a half-vector p; s = 2 (p.wo)/|p|^2. */
-MCSI_CORE MCS_(vec3) MCSI_(mirror)(MCS_(vec3) wo, MCS_(vec3) p, MCSI_F s) {
-    return MCSI_(to_unit)(MCSI_(vec3)(s * p.x - wo.x, s * p.y - wo.y, s * p.z - wo.z));
+MCSI_CORE mcs_vec3 mcsi_mirror(mcs_vec3 wo, mcs_vec3 p, mcs_f s) {
+    return mcsi_to_unit(mcsi_vec3(s * p.x - wo.x, s * p.y - wo.y, s * p.z - wo.z));
 }
 
 /* Is any lane of a mask set? For detours that few samples need; compilers are told so, as the detours would cost registers. */
-MCSI_CORE int MCSI_(rarely)(MCSI_I m) {
+MCSI_CORE int mcsi_rarely(mcs_i m) {
 #if MCSI_W == 1 && defined(MCSI_GNU)
     return (int)__builtin_expect(m, 0);
 #elif MCSI_W == 1
@@ -1826,9 +1733,9 @@ MCSI_CORE int MCSI_(rarely)(MCSI_I m) {
 #elif defined(MCSI_REDUCE_OR)
     return (int)__builtin_expect(__builtin_reduce_or(m) != 0, 0);
 #elif defined(MCSI_X86) && MCSI_W == 4
-    return (int)__builtin_expect(__builtin_ia32_movmskps((MCSI_F)m), 0);
+    return (int)__builtin_expect(__builtin_ia32_movmskps((mcs_f)m), 0);
 #elif defined(MCSI_AVX)
-    return (int)__builtin_expect(__builtin_ia32_movmskps256((MCSI_F)m), 0);
+    return (int)__builtin_expect(__builtin_ia32_movmskps256((mcs_f)m), 0);
 #elif defined(MCSI_AVX512) && !defined(__clang__)
     return (int)__builtin_expect(__builtin_ia32_ptestmd512(m, m, 0xffff), 0);
 #else
@@ -1860,55 +1767,48 @@ MCS_FN float mcsi_project(double a, double b, float t) {
 #endif
 /* Where wo.h needs a detour: a density has it as divisor, and below 1/8 its terms cancel too much. d = p.wo of a half-vector p
  * with p2 = |p|^2; lanes that reflect below the surface are lost in any case. No wo.z above 1/4 gets here. */
-MCSI_CORE MCSI_I MCSI_(cancelled)(MCSI_F wo_z, MCSI_F d, MCSI_F p2) { return (2.0f * d > wo_z * p2) & (64.0f * d * d < p2); }
+MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d > wo_z * p2) & (64.0f * d * d < p2); }
 
-#ifndef MCS_NO_BATCH
-/* clang-format off */
-/* Array forms of a BRDF with material type NAME: x_sample_n, x_pdf_n, x_eval_n(material, wo, n, ...) with one wo for all. */
-#define MCSI_BATCH_SAMPLE(NAME, MATERIAL) \
-    MCSI_BATCH(NAME##_sample_n, (const mcs_##MATERIAL *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, \
-                                 float *y, float *z, float *pdf, float *weight), (m, wo, n, u1, u2, x, y, z, pdf, weight), \
-        const MCS_(MATERIAL) material = MCSI_(MATERIAL##_spread)(m); \
-        const MCS_(vec3) eye = MCSI_(spread_direction)(wo); \
-        mcsi_batch b; \
-        mcsi_batch_start(&b, n, u1, u2, NULL); \
-        b.out[0] = x, b.out[1] = y, b.out[2] = z, b.out[3] = pdf, b.out[4] = weight; \
-        MCSI_EACH(b) { \
-            MCS_(brdf) s = MCS_(NAME##_sample)(&material, eye, MCSI_IN(b, 0), MCSI_IN(b, 1)); \
-            MCSI_OUT(b, 0, s.wi.x); \
-            MCSI_OUT(b, 1, s.wi.y); \
-            MCSI_OUT(b, 2, s.wi.z); \
-            MCSI_OUT(b, 3, s.pdf); \
-            MCSI_OUT(b, 4, s.weight); \
-        })
-#define MCSI_BATCH_VALUE(FORM, MATERIAL) \
-    MCSI_BATCH(FORM##_n, (const mcs_##MATERIAL *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z, \
-                          float *value), \
-               (m, wo, n, x, y, z, value), \
-        const MCS_(MATERIAL) material = MCSI_(MATERIAL##_spread)(m); \
-        const MCS_(vec3) eye = MCSI_(spread_direction)(wo); \
-        mcsi_batch b; \
-        mcsi_batch_start(&b, n, x, y, z); \
-        b.out[0] = value; \
-        MCSI_EACH(b) { MCSI_OUT(b, 0, MCS_(FORM)(&material, eye, MCSI_(vec3)(MCSI_IN(b, 0), MCSI_IN(b, 1), MCSI_IN(b, 2)))); })
-#define MCSI_BATCH_LOBE(NAME, MATERIAL) \
-    MCSI_BATCH(NAME##_sample_n, (const mcs_##MATERIAL *m, size_t n, const float *u1, const float *u2, float *x, float *y, \
-                                 float *z, float *pdf), \
-               (m, n, u1, u2, x, y, z, pdf), \
-        const MCS_(MATERIAL) material = MCSI_(MATERIAL##_spread)(m); \
-        MCSI_LOOP_DIR(MCS_(NAME##_sample)(&material, p, q)))
-#define MCSI_BATCH_VISIBLE(NAME, MATERIAL) \
-    MCSI_BATCH(NAME##_sample_n, (const mcs_##MATERIAL *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, \
-                                 float *y, float *z, float *pdf), (m, wo, n, u1, u2, x, y, z, pdf), \
-        const MCS_(MATERIAL) material = MCSI_(MATERIAL##_spread)(m); \
-        const MCS_(vec3) eye = MCSI_(spread_direction)(wo); \
-        MCSI_LOOP_DIR(MCS_(NAME##_sample)(&material, eye, p, q)))
-/* clang-format on */
-#else
-#define MCSI_BATCH_SAMPLE(NAME, MATERIAL)
-#define MCSI_BATCH_VALUE(FORM, MATERIAL)
-#define MCSI_BATCH_LOBE(NAME, MATERIAL)
-#define MCSI_BATCH_VISIBLE(NAME, MATERIAL)
+#ifdef MCSI_LOOPS
+/* The loops of a BRDF, one material and one wo for all: samples, values (_pdf, _eval), lobes about +z, and visible normals. Each
+ * spreads the scalars of the call over lanes first. */
+#define MCSI_LOOP_SAMPLE(NAME, MATERIAL)                                                                                      \
+    MCSI_LOOP void mcsi_##NAME##_sample_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *u1, \
+                                             const float *u2, float *x, float *y, float *z, float *pdf, float *weight) {      \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                          \
+        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                                       \
+        mcsi_batch b;                                                                                                         \
+        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                          \
+        b.out[4] = weight;                                                                                                    \
+        MCSI_EACH(b) { mcsi_out_brdf(&b, mcs_##NAME##_sample(&material, eye, mcsi_in(&b, 0), mcsi_in(&b, 1))); }              \
+    }
+#define MCSI_LOOP_VALUE(FORM, MATERIAL)                                                                                          \
+    MCSI_LOOP void mcsi_##FORM##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *x,            \
+                                      const float *y, const float *z, float *value) {                                            \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                             \
+        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                                          \
+        mcsi_batch b;                                                                                                            \
+        mcsi_batch_start(&b, n, x, y, z);                                                                                        \
+        b.out[0] = value;                                                                                                        \
+        MCSI_EACH(b) { mcsi_out(&b, 0, mcs_##FORM(&material, eye, mcsi_vec3(mcsi_in(&b, 0), mcsi_in(&b, 1), mcsi_in(&b, 2)))); } \
+    }
+#define MCSI_LOOP_LOBE(NAME, MATERIAL)                                                                                       \
+    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, size_t n, const float *u1, const float *u2, float *x, \
+                                      float *y, float *z, float *pdf) {                                                      \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                         \
+        mcsi_batch b;                                                                                                        \
+        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                         \
+        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(&material, mcsi_in(&b, 0), mcsi_in(&b, 1))); }                   \
+    }
+#define MCSI_LOOP_VISIBLE(NAME, MATERIAL)                                                                              \
+    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *u1, \
+                                      const float *u2, float *x, float *y, float *z, float *pdf) {                     \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                   \
+        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                                \
+        mcsi_batch b;                                                                                                  \
+        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                   \
+        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(&material, eye, mcsi_in(&b, 0), mcsi_in(&b, 1))); }        \
+    }
 #endif
 
 /* ==== [phong] the cosine-power lobe ============================================================================================
@@ -1925,144 +1825,148 @@ MCSI_CORE MCSI_I MCSI_(cancelled)(MCSI_F wo_z, MCSI_F d, MCSI_F p2) { return (2.
  * prefer             GGX for anything measured: this lobe loses up to half its mass at grazing incidence */
 
 typedef struct {
-    MCSI_F n, power, lobe, value, gain;
-} MCS_(phong);
-MCSI_FN MCS_(phong) MCS_(phong_make)(MCSI_F n) {
-    MCS_(phong) m;
-    MCSI_I ok = n >= 0.0f;
-    MCSI_F none = MCS_(set)(0.0f);
+    mcs_f n, power, lobe, value, gain;
+} mcs_phong;
+#if MCSI_W == 1
+typedef mcs_phong mcsi_scalar_phong;
+#endif
+MCSI_FN mcs_phong mcs_phong_make(mcs_f n) {
+    mcs_phong m;
+    mcs_i ok = n >= 0.0f;
+    mcs_f none = mcs_set(0.0f);
     MCSI_REQUIRE(ok);
-    m.n = MCSI_(within)(ok, n, 0.0f, 1e9f);
+    m.n = mcsi_within(ok, n, 0.0f, 1e9f);
     m.power = 1.0f / (m.n + 1.0f);
-    m.lobe = MCSI_(sel)(ok, (m.n + 1.0f) * MCSI_1_2PI, none);
-    m.value = MCSI_(sel)(ok, (m.n + 2.0f) * MCSI_1_2PI, none);
-    m.gain = MCSI_(sel)(ok, (m.n + 2.0f) * m.power, none);
+    m.lobe = mcsi_sel(ok, (m.n + 1.0f) * MCSI_1_2PI, none);
+    m.value = mcsi_sel(ok, (m.n + 2.0f) * MCSI_1_2PI, none);
+    m.gain = mcsi_sel(ok, (m.n + 2.0f) * m.power, none);
     return m;
 }
 /* cos^n from tan^2. */
-MCSI_CORE MCSI_F MCSI_(cos_power)(MCSI_F n, MCSI_F tan2) {
-    return MCSI_(exp_neg)(-0.5f * n * MCSI_(log1p)(MCSI_(min)(tan2, MCS_(set)(1e37f))));
+MCSI_CORE mcs_f mcsi_cos_power(mcs_f n, mcs_f tan2) { return mcsi_exp_neg(-0.5f * n * mcsi_log1p(mcsi_min(tan2, mcs_set(1e37f)))); }
+
+MCSI_SAMPLE mcs_dir mcs_phong_lobe_sample(const mcs_phong *m, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    mcs_f c, d;
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    c = mcsi_exp_both(m->power * mcsi_log1p(-u1), &d); /* d = c - 1; c^n = c^(n+1) / c = (1 - u1) / c */
+    return mcsi_around_z(ok, mcsi_sqrt(-d * (2.0f + d)), c, u2, m->lobe * (1.0f - u1) / c);
+}
+MCSI_FN mcs_f mcs_phong_lobe_pdf(const mcs_phong *m, mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    w = mcsi_above(w, &ok);
+    return mcsi_keep(ok, m->lobe * mcsi_cos_power(m->n, (w.x * w.x + w.y * w.y) / (w.z * w.z)));
+}
+MCSI_FN mcs_vec2 mcs_phong_lobe_invert(const mcs_phong *m, mcs_vec3 w) {
+    mcs_i ok = m->lobe > 0.0f;
+    mcs_f tan2, d;
+    w = mcsi_above(w, &ok);
+    tan2 = mcsi_min((w.x * w.x + w.y * w.y) / (w.z * w.z), mcs_set(1e37f));
+    mcsi_exp_both(mcsi_max(-0.5f * (m->n + 1.0f) * mcsi_log1p(tan2), mcs_set(-80.0f)), &d);
+    return mcsi_uv(ok, -d, mcsi_atan2_turns(w.y, w.x));
 }
 
-MCSI_SAMPLE MCS_(dir) MCS_(phong_lobe_sample)(const MCS_(phong) * m, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F c, d;
-    u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    c = MCSI_(exp_both)(m->power * MCSI_(log1p)(-u1), &d); /* d = c - 1; c^n = c^(n+1) / c = (1 - u1) / c */
-    return MCSI_(around_z)(ok, MCSI_(sqrt)(-d * (2.0f + d)), c, u2, m->lobe * (1.0f - u1) / c);
-}
-MCSI_FN MCSI_F MCS_(phong_lobe_pdf)(const MCS_(phong) * m, MCS_(vec3) w) {
-    MCSI_I ok = MCSI_(always)();
-    w = MCSI_(above)(w, &ok);
-    return MCSI_(keep)(ok, m->lobe * MCSI_(cos_power)(m->n, (w.x * w.x + w.y * w.y) / (w.z * w.z)));
-}
-MCSI_FN MCS_(vec2) MCS_(phong_lobe_invert)(const MCS_(phong) * m, MCS_(vec3) w) {
-    MCSI_I ok = m->lobe > 0.0f;
-    MCSI_F tan2, d;
-    w = MCSI_(above)(w, &ok);
-    tan2 = MCSI_(min)((w.x * w.x + w.y * w.y) / (w.z * w.z), MCS_(set)(1e37f));
-    MCSI_(exp_both)(MCSI_(max)(-0.5f * (m->n + 1.0f) * MCSI_(log1p)(tan2), MCS_(set)(-80.0f)), &d);
-    return MCSI_(uv)(ok, -d, MCSI_(atan2_turns)(w.y, w.x));
-}
-
-MCSI_SAMPLE MCS_(brdf) MCS_(phong_sample)(const MCS_(phong) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    MCS_(frame) f;
-    MCS_(dir) l;
-    wo = MCSI_(above)(wo, &ok);
-    f = MCS_(frame_make)(MCSI_(vec3)(-wo.x, -wo.y, wo.z));
-    l = MCS_(phong_lobe_sample)(m, u1, u2);
-    l.w = MCSI_(to_unit)(MCSI_(to_world)(&f, l.w)); /* the frame is as far from orthonormal as wo is from unit, and 5 roundings */
-    return MCSI_(brdf)(ok, l.w, l.pdf, m->gain * l.w.z);
+MCSI_SAMPLE mcs_brdf mcs_phong_sample(const mcs_phong *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    mcs_frame f;
+    mcs_dir l;
+    wo = mcsi_above(wo, &ok);
+    f = mcs_frame_make(mcsi_vec3(-wo.x, -wo.y, wo.z));
+    l = mcs_phong_lobe_sample(m, u1, u2);
+    l.w = mcsi_to_unit(mcsi_to_world(&f, l.w)); /* the frame is as far from orthonormal as wo is from unit, and 5 roundings */
+    return mcsi_brdf(ok, l.w, l.pdf, m->gain * l.w.z);
 }
 /* tan^2 of the angle between wi and R: |R x wi|^2 / (R.wi)^2 with R x wi = R x (wi - R), whose difference is exact nearby. */
-MCSI_CORE MCSI_F MCSI_(phong_power)(const MCS_(phong) * m, MCS_(vec3) wo, MCS_(vec3) wi, MCSI_I *ok) {
-    MCS_(vec3) r, d, c;
-    MCSI_F cosine;
-    wo = MCSI_(above)(wo, ok), wi = MCSI_(above)(wi, ok);
-    r = MCSI_(vec3)(-wo.x, -wo.y, wo.z), d = MCSI_(vec3)(wi.x - r.x, wi.y - r.y, wi.z - r.z);
-    c = MCSI_(vec3)(r.y * d.z - r.z * d.y, r.z * d.x - r.x * d.z, r.x * d.y - r.y * d.x);
-    cosine = MCSI_(exact_dot)(r, wi), *ok = *ok & (cosine > 0.0f);
-    return MCSI_(cos_power)(m->n, MCSI_(dot)(c, c) / (cosine * cosine));
+MCSI_CORE mcs_f mcsi_phong_power(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi, mcs_i *ok) {
+    mcs_vec3 r, d, c;
+    mcs_f cosine;
+    wo = mcsi_above(wo, ok), wi = mcsi_above(wi, ok);
+    r = mcsi_vec3(-wo.x, -wo.y, wo.z), d = mcsi_vec3(wi.x - r.x, wi.y - r.y, wi.z - r.z);
+    c = mcsi_vec3(r.y * d.z - r.z * d.y, r.z * d.x - r.x * d.z, r.x * d.y - r.y * d.x);
+    cosine = mcsi_exact_dot(r, wi), *ok = *ok & (cosine > 0.0f);
+    return mcsi_cos_power(m->n, mcsi_dot(c, c) / (cosine * cosine));
 }
-MCSI_FN MCSI_F MCS_(phong_pdf)(const MCS_(phong) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F p = MCSI_(phong_power)(m, wo, wi, &ok);
-    return MCSI_(keep)(ok, m->lobe * p);
+MCSI_FN mcs_f mcs_phong_pdf(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = mcsi_always();
+    mcs_f p = mcsi_phong_power(m, wo, wi, &ok);
+    return mcsi_keep(ok, m->lobe * p);
 }
-MCSI_FN MCSI_F MCS_(phong_eval)(const MCS_(phong) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F p = MCSI_(phong_power)(m, wo, wi, &ok);
-    return MCSI_(keep)(ok, m->value * p);
+MCSI_FN mcs_f mcs_phong_eval(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = mcsi_always();
+    mcs_f p = mcsi_phong_power(m, wo, wi, &ok);
+    return mcsi_keep(ok, m->value * p);
 }
-MCSI_FN MCSI_F MCS_(phong_weight)(const MCS_(phong) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)();
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok);
-    return MCSI_(keep)(ok & (MCSI_(exact_dot)(MCSI_(vec3)(-wo.x, -wo.y, wo.z), wi) > 0.0f), m->gain * wi.z);
+MCSI_FN mcs_f mcs_phong_weight(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = mcsi_always();
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok);
+    return mcsi_keep(ok & (mcsi_exact_dot(mcsi_vec3(-wo.x, -wo.y, wo.z), wi) > 0.0f), m->gain * wi.z);
 }
-#ifndef MCS_NO_BATCH
-MCSI_CORE MCS_(phong) MCSI_(phong_spread)(const mcs_phong *m) {
-    MCS_(phong) all;
-    all.n = MCS_(set)(m->n), all.power = MCS_(set)(m->power), all.lobe = MCS_(set)(m->lobe);
-    all.value = MCS_(set)(m->value), all.gain = MCS_(set)(m->gain);
+#ifdef MCSI_LOOPS
+MCSI_CORE mcs_phong mcsi_phong_spread(const mcsi_scalar_phong *m) {
+    mcs_phong all;
+    all.n = mcs_set(m->n), all.power = mcs_set(m->power), all.lobe = mcs_set(m->lobe);
+    all.value = mcs_set(m->value), all.gain = mcs_set(m->gain);
     return all;
 }
+MCSI_LOOP_LOBE(phong_lobe, phong)
+MCSI_LOOP_SAMPLE(phong, phong)
+MCSI_LOOP_VALUE(phong_pdf, phong)
+MCSI_LOOP_VALUE(phong_eval, phong)
 #endif
-MCSI_BATCH_LOBE(phong_lobe, phong)
-MCSI_BATCH_SAMPLE(phong, phong)
-MCSI_BATCH_VALUE(phong_pdf, phong)
-MCSI_BATCH_VALUE(phong_eval, phong)
 
 /* ---- lobes of slopes: Ward, Beckmann and GGX draw the slopes of h = normalize(sx, sy, 1), so that no angle, no arctangent and no
  * quadrant appears. norm = 1/(pi ax ay), 0 for bad alphas; alphas outside [1e-7, 1e4] count as the nearer end. */
 
 typedef struct {
-    MCSI_F ax, ay, inv_ax, inv_ay, norm;
-} MCSI_(slopes);
-MCSI_CORE MCSI_(slopes) MCSI_(slopes_make)(MCSI_F ax, MCSI_F ay) {
-    MCSI_(slopes) m;
-    MCSI_I ok = (ax > 0.0f) & (ay > 0.0f);
+    mcs_f ax, ay, inv_ax, inv_ay, norm;
+} mcsi_slopes;
+#if MCSI_W == 1
+typedef mcsi_slopes mcsi_scalar_slopes;
+#endif
+MCSI_CORE mcsi_slopes mcsi_slopes_make(mcs_f ax, mcs_f ay) {
+    mcsi_slopes m;
+    mcs_i ok = (ax > 0.0f) & (ay > 0.0f);
     MCSI_REQUIRE(ok);
-    m.ax = MCSI_(within)(ok, ax, 1e-7f, 1e4f), m.ay = MCSI_(within)(ok, ay, 1e-7f, 1e4f);
+    m.ax = mcsi_within(ok, ax, 1e-7f, 1e4f), m.ay = mcsi_within(ok, ay, 1e-7f, 1e4f);
     m.inv_ax = 1.0f / m.ax, m.inv_ay = 1.0f / m.ay;
-    m.norm = MCSI_(sel)(ok, MCSI_1_PI * m.inv_ax * m.inv_ay, MCS_(set)(0.0f));
+    m.norm = mcsi_sel(ok, MCSI_1_PI * m.inv_ax * m.inv_ay, mcs_set(0.0f));
     return m;
 }
-#ifndef MCS_NO_BATCH
-MCSI_CORE MCSI_(slopes) MCSI_(slopes_spread)(const mcsi_slopes *m) {
-    MCSI_(slopes) all;
-    all.ax = MCS_(set)(m->ax), all.ay = MCS_(set)(m->ay), all.norm = MCS_(set)(m->norm);
-    all.inv_ax = MCS_(set)(m->inv_ax), all.inv_ay = MCS_(set)(m->inv_ay);
+#ifdef MCSI_LOOPS
+MCSI_CORE mcsi_slopes mcsi_slopes_spread(const mcsi_scalar_slopes *m) {
+    mcsi_slopes all;
+    all.ax = mcs_set(m->ax), all.ay = mcs_set(m->ay), all.norm = mcs_set(m->norm);
+    all.inv_ax = mcs_set(m->inv_ax), all.inv_ay = mcs_set(m->inv_ay);
     return all;
 }
 #endif
 /* Slopes of radius r (in units of alpha) as the unnormalised half-vector (sx, sy, 1). */
-MCSI_CORE MCS_(vec3) MCSI_(slope_vector)(const MCSI_(slopes) * m, MCSI_F r, MCSI_F turns) {
-    MCSI_F s, c;
-    MCSI_(sincos_turns)(turns, &s, &c);
-    return MCSI_(vec3)(m->ax * (r * c), m->ay * (r * s), MCS_(set)(1.0f));
+MCSI_CORE mcs_vec3 mcsi_slope_vector(const mcsi_slopes *m, mcs_f r, mcs_f turns) {
+    mcs_f s, c;
+    mcsi_sincos_turns(turns, &s, &c);
+    return mcsi_vec3(m->ax * (r * c), m->ay * (r * s), mcs_set(1.0f));
 }
 /* The half-vector of slopes of radius r with density g / cos^3 per solid angle. */
-MCSI_CORE MCS_(dir) MCSI_(slope_dir)(const MCSI_(slopes) * m, MCSI_I ok, MCSI_F r, MCSI_F g, MCSI_F u2) {
-    MCS_(dir) d;
-    MCS_(vec3) p;
-    MCSI_F p2, length, c;
-    u2 = MCSI_(unit)(u2, &ok), p = MCSI_(slope_vector)(m, r, u2);
-    p2 = MCSI_(dot)(p, p), length = MCSI_(sqrt)(p2), c = 1.0f / length;
-    d.w = MCSI_(vec3)(p.x * c, p.y * c, c);
-    d.pdf = MCSI_(keep)(ok, g * (p2 * length));
+MCSI_CORE mcs_dir mcsi_slope_dir(const mcsi_slopes *m, mcs_i ok, mcs_f r, mcs_f g, mcs_f u2) {
+    mcs_dir d;
+    mcs_vec3 p;
+    mcs_f p2, length, c;
+    u2 = mcsi_unit(u2, &ok), p = mcsi_slope_vector(m, r, u2);
+    p2 = mcsi_dot(p, p), length = mcsi_sqrt(p2), c = 1.0f / length;
+    d.w = mcsi_vec3(p.x * c, p.y * c, c);
+    d.pdf = mcsi_keep(ok, g * (p2 * length));
     return d;
 }
 /* e = (sx/ax)^2 + (sy/ay)^2 of a direction's slopes, at most 2e36. */
-MCSI_CORE MCSI_F MCSI_(slope_square)(const MCSI_(slopes) * m, MCS_(vec3) h) {
-    MCSI_F x = h.x * m->inv_ax / h.z, y = h.y * m->inv_ay / h.z, most = MCS_(set)(1e18f);
-    x = MCSI_(min)(MCSI_(abs)(x), most), y = MCSI_(min)(MCSI_(abs)(y), most);
+MCSI_CORE mcs_f mcsi_slope_square(const mcsi_slopes *m, mcs_vec3 h) {
+    mcs_f x = h.x * m->inv_ax / h.z, y = h.y * m->inv_ay / h.z, most = mcs_set(1e18f);
+    x = mcsi_min(mcsi_abs(x), most), y = mcsi_min(mcsi_abs(y), most);
     return x * x + y * y;
 }
 /* 1/cos^2 of a direction, at most 1e18: slopes of 1e9 are 1e5 alphas at least, where a Gaussian is 0. */
-MCSI_CORE MCSI_F MCSI_(secant2)(MCS_(vec3) h) { return MCSI_(min)(MCSI_(dot)(h, h) / (h.z * h.z), MCS_(set)(1e18f)); }
+MCSI_CORE mcs_f mcsi_secant2(mcs_vec3 h) { return mcsi_min(mcsi_dot(h, h) / (h.z * h.z), mcs_set(1e18f)); }
 /* p.wo of the lanes `off` again: by value, as a vector that is indexed cannot stay in a register. */
-MCSI_CORE MCSI_F MCSI_(slope_cosine)(MCSI_(slopes) m, MCS_(vec3) wo, MCSI_F r, MCSI_F turns, MCSI_I off, MCSI_F d) {
+MCSI_CORE mcs_f mcsi_slope_cosine(mcsi_slopes m, mcs_vec3 wo, mcs_f r, mcs_f turns, mcs_i off, mcs_f d) {
     int k;
     for (k = 0; k < MCSI_W; k++) {
         double a = (double)MCSI_LANE(m.ax, k) * (double)MCSI_LANE(wo.x, k);
@@ -2072,20 +1976,19 @@ MCSI_CORE MCSI_F MCSI_(slope_cosine)(MCSI_(slopes) m, MCS_(vec3) wo, MCSI_F r, M
     return d;
 }
 /* The BRDF sample that reflects wo at slopes p of radius r with density g / cos^3 of the half-vector; *d = p.wo, *p2 = |p|^2. */
-MCSI_CORE MCS_(brdf)
-    MCSI_(slope_brdf)(const MCSI_(slopes) * m, MCSI_I ok, MCS_(vec3) wo, MCSI_F r, MCSI_F g, MCSI_F u2, MCSI_F *d, MCSI_F *p2) {
-    MCS_(vec3) p;
-    u2 = MCSI_(unit)(u2, &ok), p = MCSI_(slope_vector)(m, r, u2);
-    *d = MCSI_(dot)(p, wo), *p2 = MCSI_(dot)(p, p);
-    if (MCSI_(rarely)(wo.z < 0.25f)) {
-        MCSI_I off = MCSI_(cancelled)(wo.z, *d, *p2);
-        if (MCSI_(rarely)(off)) *d = MCSI_(slope_cosine)(*m, wo, r, u2, off, *d);
+MCSI_CORE mcs_brdf mcsi_slope_brdf(const mcsi_slopes *m, mcs_i ok, mcs_vec3 wo, mcs_f r, mcs_f g, mcs_f u2, mcs_f *d, mcs_f *p2) {
+    mcs_vec3 p;
+    u2 = mcsi_unit(u2, &ok), p = mcsi_slope_vector(m, r, u2);
+    *d = mcsi_dot(p, wo), *p2 = mcsi_dot(p, p);
+    if (mcsi_rarely(wo.z < 0.25f)) {
+        mcs_i off = mcsi_cancelled(wo.z, *d, *p2);
+        if (mcsi_rarely(off)) *d = mcsi_slope_cosine(*m, wo, r, u2, off, *d);
     }
-    return MCSI_(brdf)(ok & (*d > 0.0f), MCSI_(mirror)(wo, p, 2.0f * *d / *p2),
-                       g * (*p2 * *p2) / MCSI_(sel)(*d > 0.0f, 4.0f * *d, MCS_(set)(1.0f)), MCS_(set)(1.0f));
+    return mcsi_brdf(ok & (*d > 0.0f), mcsi_mirror(wo, p, 2.0f * *d / *p2),
+                     g * (*p2 * *p2) / mcsi_sel(*d > 0.0f, 4.0f * *d, mcs_set(1.0f)), mcs_set(1.0f));
 }
-MCSI_CORE MCS_(vec2) MCSI_(slope_invert)(const MCSI_(slopes) * m, MCSI_I ok, MCS_(vec3) h, MCSI_F u1) {
-    return MCSI_(uv)(ok & (m->norm > 0.0f), u1, MCSI_(atan2_turns)(h.y * m->inv_ay, h.x * m->inv_ax));
+MCSI_CORE mcs_vec2 mcsi_slope_invert(const mcsi_slopes *m, mcs_i ok, mcs_vec3 h, mcs_f u1) {
+    return mcsi_uv(ok & (m->norm > 0.0f), u1, mcsi_atan2_turns(h.y * m->inv_ay, h.x * m->inv_ax));
 }
 
 /* ==== [ward] Gaussian of slopes ================================================================================================
@@ -2106,105 +2009,106 @@ MCSI_CORE MCS_(vec2) MCSI_(slope_invert)(const MCSI_(slopes) * m, MCSI_I ok, MCS
  * prefer             GGX visible normals for rough surfaces at grazing incidence: half the samples of this one are lost there */
 
 typedef struct {
-    MCSI_(slopes) s;
+    mcsi_slopes s;
     mcs_ward_model model;
-} MCS_(ward);
-MCSI_FN MCS_(ward) MCS_(ward_make)(MCSI_F ax, MCSI_F ay, mcs_ward_model model) {
-    MCS_(ward) m;
-    m.s = MCSI_(slopes_make)(ax, ay);
+} mcs_ward;
+#if MCSI_W == 1
+typedef mcs_ward mcsi_scalar_ward;
+#endif
+MCSI_FN mcs_ward mcs_ward_make(mcs_f ax, mcs_f ay, mcs_ward_model model) {
+    mcs_ward m;
+    m.s = mcsi_slopes_make(ax, ay);
     m.model = model;
     return m;
 }
 /* Radius of a Gaussian's slopes; *g is the density times cos^3. */
-MCSI_CORE MCSI_F MCSI_(gauss_radius)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_I *ok, MCSI_F *g) {
-    u1 = MCSI_(unit)(u1, ok);
+MCSI_CORE mcs_f mcsi_gauss_radius(const mcsi_slopes *m, mcs_f u1, mcs_i *ok, mcs_f *g) {
+    u1 = mcsi_unit(u1, ok);
     *g = m->norm * (1.0f - u1);
-    return MCSI_(sqrt)(-MCSI_(log1p)(-u1));
+    return mcsi_sqrt(-mcsi_log1p(-u1));
 }
-MCSI_CORE MCS_(dir) MCSI_(gauss_h_sample)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F g, r = MCSI_(gauss_radius)(m, u1, &ok, &g);
-    return MCSI_(slope_dir)(m, ok, r, g, u2);
+MCSI_CORE mcs_dir mcsi_gauss_h_sample(const mcsi_slopes *m, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    mcs_f g, r = mcsi_gauss_radius(m, u1, &ok, &g);
+    return mcsi_slope_dir(m, ok, r, g, u2);
 }
-MCSI_CORE MCSI_F MCSI_(gauss_h_pdf)(const MCSI_(slopes) * m, MCS_(vec3) h) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F q;
-    h = MCSI_(above)(h, &ok), q = MCSI_(secant2)(h);
-    return MCSI_(keep)(ok, m->norm * (MCSI_(exp_neg)(-MCSI_(slope_square)(m, h)) * (q * MCSI_(sqrt)(q))));
+MCSI_CORE mcs_f mcsi_gauss_h_pdf(const mcsi_slopes *m, mcs_vec3 h) {
+    mcs_i ok = mcsi_always();
+    mcs_f q;
+    h = mcsi_above(h, &ok), q = mcsi_secant2(h);
+    return mcsi_keep(ok, m->norm * (mcsi_exp_neg(-mcsi_slope_square(m, h)) * (q * mcsi_sqrt(q))));
 }
-MCSI_CORE MCS_(vec2) MCSI_(gauss_h_invert)(const MCSI_(slopes) * m, MCS_(vec3) h) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F d;
-    h = MCSI_(above)(h, &ok);
-    MCSI_(exp_both)(-MCSI_(min)(MCSI_(slope_square)(m, h), MCS_(set)(80.0f)), &d);
-    return MCSI_(slope_invert)(m, ok, h, -d);
+MCSI_CORE mcs_vec2 mcsi_gauss_h_invert(const mcsi_slopes *m, mcs_vec3 h) {
+    mcs_i ok = mcsi_always();
+    mcs_f d;
+    h = mcsi_above(h, &ok);
+    mcsi_exp_both(-mcsi_min(mcsi_slope_square(m, h), mcs_set(80.0f)), &d);
+    return mcsi_slope_invert(m, ok, h, -d);
 }
 /* norm g / denominator, g a multiple of exp(-e). Both sides are taken 2^40 times as large: for alphas of thousands norm exp(-e) may
  * be subnormal where the quotient is not. */
-MCSI_CORE MCSI_F MCSI_(gauss_over)(const MCSI_(slopes) * m, MCSI_F g, MCSI_F denominator) {
-    return MCSI_(quotient)(g * (m->norm * 1.09951163e12f), denominator * 1.09951163e12f);
+MCSI_CORE mcs_f mcsi_gauss_over(const mcsi_slopes *m, mcs_f g, mcs_f denominator) {
+    return mcsi_quotient(g * (m->norm * 1.09951163e12f), denominator * 1.09951163e12f);
 }
 /* Density of wi = p_h/(4 wo.h) = norm exp(-e) |H|^2/(2 H.z^3). Large alphas have a norm so small that norm exp(-e) would underflow
  * where the density does not, so the norm comes last. */
-MCSI_CORE MCSI_F MCSI_(gauss_pdf)(const MCSI_(slopes) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)();
-    MCS_(vec3) h;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
-    return MCSI_(keep)(ok, m->norm * (MCSI_(exp_neg)(-MCSI_(slope_square)(m, h)) * MCSI_(secant2)(h) / (2.0f * h.z)));
+MCSI_CORE mcs_f mcsi_gauss_pdf(const mcsi_slopes *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = mcsi_always();
+    mcs_vec3 h;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
+    return mcsi_keep(ok, m->norm * (mcsi_exp_neg(-mcsi_slope_square(m, h)) * mcsi_secant2(h) / (2.0f * h.z)));
 }
 
-MCSI_SAMPLE MCS_(dir) MCS_(ward_h_sample)(const MCS_(ward) * m, MCSI_F u1, MCSI_F u2) {
-    return MCSI_(gauss_h_sample)(&m->s, u1, u2);
-}
-MCSI_FN MCSI_F MCS_(ward_h_pdf)(const MCS_(ward) * m, MCS_(vec3) h) { return MCSI_(gauss_h_pdf)(&m->s, h); }
-MCSI_FN MCS_(vec2) MCS_(ward_h_invert)(const MCS_(ward) * m, MCS_(vec3) h) { return MCSI_(gauss_h_invert)(&m->s, h); }
-MCSI_SAMPLE MCS_(brdf) MCS_(ward_sample)(const MCS_(ward) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F g, d, p2, r = MCSI_(gauss_radius)(&m->s, u1, &ok, &g);
-    MCS_(brdf) s;
-    wo = MCSI_(above)(wo, &ok);
-    s = MCSI_(slope_brdf)(&m->s, ok, wo, r, g, u2, &d, &p2);
-    if (m->model == MCS_WARD_GMD) g = 2.0f * s.wi.z / (wo.z + MCSI_(abs)(s.wi.z));
+MCSI_SAMPLE mcs_dir mcs_ward_h_sample(const mcs_ward *m, mcs_f u1, mcs_f u2) { return mcsi_gauss_h_sample(&m->s, u1, u2); }
+MCSI_FN mcs_f mcs_ward_h_pdf(const mcs_ward *m, mcs_vec3 h) { return mcsi_gauss_h_pdf(&m->s, h); }
+MCSI_FN mcs_vec2 mcs_ward_h_invert(const mcs_ward *m, mcs_vec3 h) { return mcsi_gauss_h_invert(&m->s, h); }
+MCSI_SAMPLE mcs_brdf mcs_ward_sample(const mcs_ward *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    mcs_f g, d, p2, r = mcsi_gauss_radius(&m->s, u1, &ok, &g);
+    mcs_brdf s;
+    wo = mcsi_above(wo, &ok);
+    s = mcsi_slope_brdf(&m->s, ok, wo, r, g, u2, &d, &p2);
+    if (m->model == MCS_WARD_GMD) g = 2.0f * s.wi.z / (wo.z + mcsi_abs(s.wi.z));
     else if (m->model == MCS_WARD_DUER) g = d / (p2 * p2 * wo.z);
-    else g = d / (p2 * p2) * MCSI_(sqrt)(MCSI_(abs)(s.wi.z) / wo.z);
-    s.weight = MCSI_(keep)(s.pdf > 0.0f, g);
+    else g = d / (p2 * p2) * mcsi_sqrt(mcsi_abs(s.wi.z) / wo.z);
+    s.weight = mcsi_keep(s.pdf > 0.0f, g);
     return s;
 }
-MCSI_FN MCSI_F MCS_(ward_pdf)(const MCS_(ward) * m, MCS_(vec3) wo, MCS_(vec3) wi) { return MCSI_(gauss_pdf)(&m->s, wo, wi); }
-MCSI_FN MCSI_F MCS_(ward_eval)(const MCS_(ward) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = m->s.norm > 0.0f;
-    MCS_(vec3) h;
-    MCSI_F f;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
-    f = MCSI_(exp_neg)(-MCSI_(slope_square)(&m->s, h));
-    if (m->model == MCS_WARD_GMD) f = MCSI_(gauss_over)(&m->s, f * MCSI_(secant2)(h), h.z * h.z);
-    else if (m->model == MCS_WARD_DUER) f = MCSI_(gauss_over)(&m->s, f, 4.0f * wo.z * wi.z);
-    else f = MCSI_(gauss_over)(&m->s, f, 4.0f * MCSI_(sqrt)(wo.z * wi.z));
-    return MCSI_(keep)(ok, f);
+MCSI_FN mcs_f mcs_ward_pdf(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_gauss_pdf(&m->s, wo, wi); }
+MCSI_FN mcs_f mcs_ward_eval(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = m->s.norm > 0.0f;
+    mcs_vec3 h;
+    mcs_f f;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
+    f = mcsi_exp_neg(-mcsi_slope_square(&m->s, h));
+    if (m->model == MCS_WARD_GMD) f = mcsi_gauss_over(&m->s, f * mcsi_secant2(h), h.z * h.z);
+    else if (m->model == MCS_WARD_DUER) f = mcsi_gauss_over(&m->s, f, 4.0f * wo.z * wi.z);
+    else f = mcsi_gauss_over(&m->s, f, 4.0f * mcsi_sqrt(wo.z * wi.z));
+    return mcsi_keep(ok, f);
 }
-MCSI_FN MCSI_F MCS_(ward_weight)(const MCS_(ward) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = m->s.norm > 0.0f;
-    MCS_(vec3) h;
-    MCSI_F c;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
-    c = h.z * (h.z * h.z / (2.0f * MCSI_(dot)(h, h)));
+MCSI_FN mcs_f mcs_ward_weight(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = m->s.norm > 0.0f;
+    mcs_vec3 h;
+    mcs_f c;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
+    c = h.z * (h.z * h.z / (2.0f * mcsi_dot(h, h)));
     if (m->model == MCS_WARD_GMD) c = 2.0f * wi.z / h.z;
     else if (m->model == MCS_WARD_DUER) c = c / wo.z;
-    else c = c * MCSI_(sqrt)(wi.z / wo.z);
-    return MCSI_(keep)(ok, c);
+    else c = c * mcsi_sqrt(wi.z / wo.z);
+    return mcsi_keep(ok, c);
 }
-#ifndef MCS_NO_BATCH
-MCSI_CORE MCS_(ward) MCSI_(ward_spread)(const mcs_ward *m) {
-    MCS_(ward) all;
-    all.s = MCSI_(slopes_spread)(&m->s);
+#ifdef MCSI_LOOPS
+MCSI_CORE mcs_ward mcsi_ward_spread(const mcsi_scalar_ward *m) {
+    mcs_ward all;
+    all.s = mcsi_slopes_spread(&m->s);
     all.model = m->model;
     return all;
 }
+MCSI_LOOP_LOBE(ward_h, ward)
+MCSI_LOOP_SAMPLE(ward, ward)
+MCSI_LOOP_VALUE(ward_pdf, ward)
+MCSI_LOOP_VALUE(ward_eval, ward)
 #endif
-MCSI_BATCH_LOBE(ward_h, ward)
-MCSI_BATCH_SAMPLE(ward, ward)
-MCSI_BATCH_VALUE(ward_pdf, ward)
-MCSI_BATCH_VALUE(ward_eval, ward)
 
 /* ==== [beckmann] Ward's Gaussian as a microfacet BRDF ==========================================================================
  * The half-vectors are Ward's: p_h = D cos. f = D G2/(4 wo.z wi.z), G2 = 1/(1 + L(wo) + L(wi)) height-correlated (Heitz 2014,
@@ -2213,68 +2117,67 @@ MCSI_BATCH_VALUE(ward_eval, ward)
  * 2007. */
 
 typedef struct {
-    MCSI_(slopes) s;
-} MCS_(beckmann);
-MCSI_FN MCS_(beckmann) MCS_(beckmann_make)(MCSI_F ax, MCSI_F ay) {
-    MCS_(beckmann) m;
-    m.s = MCSI_(slopes_make)(ax, ay);
+    mcsi_slopes s;
+} mcs_beckmann;
+#if MCSI_W == 1
+typedef mcs_beckmann mcsi_scalar_beckmann;
+#endif
+MCSI_FN mcs_beckmann mcs_beckmann_make(mcs_f ax, mcs_f ay) {
+    mcs_beckmann m;
+    m.s = mcsi_slopes_make(ax, ay);
     return m;
 }
 /* z L(w): L = exp(-a^2)/(2 a sqrt pi) - erfc(a)/2 with a = z/t, t = |(ax x, ay y)|; times z it stays finite at the horizon. It is 0
  * for a of 1000, and below the horizon it is not asked for. */
-MCSI_CORE MCSI_F MCSI_(beckmann_shadow)(const MCSI_(slopes) * m, MCS_(vec3) w) {
-    MCSI_F x = m->ax * w.x, y = m->ay * w.y, z = MCSI_(max)(w.z, MCS_(set)(0.0f)), t = MCSI_(sqrt)(x * x + y * y);
-    MCSI_F a = z / MCSI_(max)(t, z * 1e-3f + FLT_MIN);
-    MCSI_F l = t * 0.282094792f * MCSI_(exp_neg)(-a * a) - z * MCSI_(normal_tail)(a * 1.41421356f);
-    return MCSI_(max)(l, MCS_(set)(0.0f));
+MCSI_CORE mcs_f mcsi_beckmann_shadow(const mcsi_slopes *m, mcs_vec3 w) {
+    mcs_f x = m->ax * w.x, y = m->ay * w.y, z = mcsi_max(w.z, mcs_set(0.0f)), t = mcsi_sqrt(x * x + y * y);
+    mcs_f a = z / mcsi_max(t, z * 1e-3f + FLT_MIN);
+    mcs_f l = t * 0.282094792f * mcsi_exp_neg(-a * a) - z * mcsi_normal_tail(a * 1.41421356f);
+    return mcsi_max(l, mcs_set(0.0f));
 }
-MCSI_SAMPLE MCS_(dir) MCS_(beckmann_h_sample)(const MCS_(beckmann) * m, MCSI_F u1, MCSI_F u2) {
-    return MCSI_(gauss_h_sample)(&m->s, u1, u2);
-}
-MCSI_FN MCSI_F MCS_(beckmann_h_pdf)(const MCS_(beckmann) * m, MCS_(vec3) h) { return MCSI_(gauss_h_pdf)(&m->s, h); }
-MCSI_FN MCS_(vec2) MCS_(beckmann_h_invert)(const MCS_(beckmann) * m, MCS_(vec3) h) { return MCSI_(gauss_h_invert)(&m->s, h); }
-MCSI_SAMPLE MCS_(brdf) MCS_(beckmann_sample)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F g, d, p2, lo, li, r = MCSI_(gauss_radius)(&m->s, u1, &ok, &g);
-    MCS_(brdf) s;
-    wo = MCSI_(above)(wo, &ok);
-    s = MCSI_(slope_brdf)(&m->s, ok, wo, r, g, u2, &d, &p2);
-    lo = MCSI_(beckmann_shadow)(&m->s, wo), li = MCSI_(beckmann_shadow)(&m->s, s.wi);
-    s.weight = MCSI_(keep)(s.pdf > 0.0f, s.wi.z * d / (wo.z * s.wi.z + s.wi.z * lo + wo.z * li));
+MCSI_SAMPLE mcs_dir mcs_beckmann_h_sample(const mcs_beckmann *m, mcs_f u1, mcs_f u2) { return mcsi_gauss_h_sample(&m->s, u1, u2); }
+MCSI_FN mcs_f mcs_beckmann_h_pdf(const mcs_beckmann *m, mcs_vec3 h) { return mcsi_gauss_h_pdf(&m->s, h); }
+MCSI_FN mcs_vec2 mcs_beckmann_h_invert(const mcs_beckmann *m, mcs_vec3 h) { return mcsi_gauss_h_invert(&m->s, h); }
+MCSI_SAMPLE mcs_brdf mcs_beckmann_sample(const mcs_beckmann *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    mcs_f g, d, p2, lo, li, r = mcsi_gauss_radius(&m->s, u1, &ok, &g);
+    mcs_brdf s;
+    wo = mcsi_above(wo, &ok);
+    s = mcsi_slope_brdf(&m->s, ok, wo, r, g, u2, &d, &p2);
+    lo = mcsi_beckmann_shadow(&m->s, wo), li = mcsi_beckmann_shadow(&m->s, s.wi);
+    s.weight = mcsi_keep(s.pdf > 0.0f, s.wi.z * d / (wo.z * s.wi.z + s.wi.z * lo + wo.z * li));
     return s;
 }
-MCSI_FN MCSI_F MCS_(beckmann_pdf)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    return MCSI_(gauss_pdf)(&m->s, wo, wi);
+MCSI_FN mcs_f mcs_beckmann_pdf(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_gauss_pdf(&m->s, wo, wi); }
+MCSI_FN mcs_f mcs_beckmann_eval(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = m->s.norm > 0.0f;
+    mcs_vec3 h;
+    mcs_f q, lo, li;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
+    q = mcsi_secant2(h);
+    lo = mcsi_beckmann_shadow(&m->s, wo), li = mcsi_beckmann_shadow(&m->s, wi);
+    return mcsi_keep(ok, mcsi_gauss_over(&m->s, mcsi_exp_neg(-mcsi_slope_square(&m->s, h)) * (q * q),
+                                         4.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
 }
-MCSI_FN MCSI_F MCS_(beckmann_eval)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = m->s.norm > 0.0f;
-    MCS_(vec3) h;
-    MCSI_F q, lo, li;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
-    q = MCSI_(secant2)(h);
-    lo = MCSI_(beckmann_shadow)(&m->s, wo), li = MCSI_(beckmann_shadow)(&m->s, wi);
-    return MCSI_(keep)(ok, MCSI_(gauss_over)(&m->s, MCSI_(exp_neg)(-MCSI_(slope_square)(&m->s, h)) * (q * q),
-                                             4.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
+MCSI_FN mcs_f mcs_beckmann_weight(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = m->s.norm > 0.0f;
+    mcs_vec3 h;
+    mcs_f lo, li;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
+    lo = mcsi_beckmann_shadow(&m->s, wo), li = mcsi_beckmann_shadow(&m->s, wi);
+    return mcsi_keep(ok, wi.z * (mcsi_dot(h, h) / h.z) / (2.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
 }
-MCSI_FN MCSI_F MCS_(beckmann_weight)(const MCS_(beckmann) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = m->s.norm > 0.0f;
-    MCS_(vec3) h;
-    MCSI_F lo, li;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
-    lo = MCSI_(beckmann_shadow)(&m->s, wo), li = MCSI_(beckmann_shadow)(&m->s, wi);
-    return MCSI_(keep)(ok, wi.z * (MCSI_(dot)(h, h) / h.z) / (2.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
-}
-#ifndef MCS_NO_BATCH
-MCSI_CORE MCS_(beckmann) MCSI_(beckmann_spread)(const mcs_beckmann *m) {
-    MCS_(beckmann) all;
-    all.s = MCSI_(slopes_spread)(&m->s);
+#ifdef MCSI_LOOPS
+MCSI_CORE mcs_beckmann mcsi_beckmann_spread(const mcsi_scalar_beckmann *m) {
+    mcs_beckmann all;
+    all.s = mcsi_slopes_spread(&m->s);
     return all;
 }
+MCSI_LOOP_LOBE(beckmann_h, beckmann)
+MCSI_LOOP_SAMPLE(beckmann, beckmann)
+MCSI_LOOP_VALUE(beckmann_pdf, beckmann)
+MCSI_LOOP_VALUE(beckmann_eval, beckmann)
 #endif
-MCSI_BATCH_LOBE(beckmann_h, beckmann)
-MCSI_BATCH_SAMPLE(beckmann, beckmann)
-MCSI_BATCH_VALUE(beckmann_pdf, beckmann)
-MCSI_BATCH_VALUE(beckmann_eval, beckmann)
 
 /* ==== [ggx] GGX (Trowbridge-Reitz), isotropic and anisotropic ==================================================================
  * mcs_ggx_h_*        half-vectors by p_h = D cos: slopes (ax r cos, ay r sin)(2 pi u2), r = sqrt(u1/(1-u1)) (slide 18); z > 0.
@@ -2298,112 +2201,115 @@ MCSI_BATCH_VALUE(beckmann_eval, beckmann)
  *                    Tokuyoshi and Eto 2024, "Bounded VNDF sampling for the Smith-GGX BRDF" */
 
 typedef struct {
-    MCSI_(slopes) s;
-    MCSI_F wide; /* 1/16 of the larger alpha squared where that is more than the least square of (ax x, ay y, z) unit, else 0 */
-} MCS_(ggx);
-MCSI_FN MCS_(ggx) MCS_(ggx_make)(MCSI_F ax, MCSI_F ay) {
-    MCS_(ggx) m;
-    MCSI_F wide, least;
-    m.s = MCSI_(slopes_make)(ax, ay);
-    wide = 0.25f * MCSI_(max)(m.s.ax, m.s.ay), least = MCSI_(min)(MCSI_(min)(m.s.ax, m.s.ay), MCS_(set)(1.0f));
-    m.wide = MCSI_(sel)(wide > least, wide * wide, MCS_(set)(0.0f));
+    mcsi_slopes s;
+    mcs_f wide; /* 1/16 of the larger alpha squared where that is more than the least square of (ax x, ay y, z) unit, else 0 */
+} mcs_ggx;
+#if MCSI_W == 1
+typedef mcs_ggx mcsi_scalar_ggx;
+#endif
+MCSI_FN mcs_ggx mcs_ggx_make(mcs_f ax, mcs_f ay) {
+    mcs_ggx m;
+    mcs_f wide, least;
+    m.s = mcsi_slopes_make(ax, ay);
+    wide = 0.25f * mcsi_max(m.s.ax, m.s.ay), least = mcsi_min(mcsi_min(m.s.ax, m.s.ay), mcs_set(1.0f));
+    m.wide = mcsi_sel(wide > least, wide * wide, mcs_set(0.0f));
     return m;
 }
-MCSI_FN MCSI_I MCS_(is_mirror)(MCSI_F ax, MCSI_F ay) { return (ax < 1e-7f) & (ay < 1e-7f); }
-MCSI_CORE MCSI_F MCSI_(ggx_d)(const MCSI_(slopes) * m, MCS_(vec3) h) {
-    MCSI_F x = h.x * m->inv_ax, y = h.y * m->inv_ay, q = MCSI_(dot)(h, h) / (x * x + y * y + h.z * h.z);
+MCSI_FN mcs_i mcs_is_mirror(mcs_f ax, mcs_f ay) { return (ax < 1e-7f) & (ay < 1e-7f); }
+MCSI_CORE mcs_f mcsi_ggx_d(const mcsi_slopes *m, mcs_vec3 h) {
+    mcs_f x = h.x * m->inv_ax, y = h.y * m->inv_ay, q = mcsi_dot(h, h) / (x * x + y * y + h.z * h.z);
     return m->norm * (q * q);
 }
 /* t = |(ax x, ay y, z)|. */
-MCSI_CORE MCSI_F MCSI_(ggx_t)(const MCSI_(slopes) * m, MCS_(vec3) w) {
-    MCSI_F x = m->ax * w.x, y = m->ay * w.y;
-    return MCSI_(sqrt)(x * x + y * y + w.z * w.z);
+MCSI_CORE mcs_f mcsi_ggx_t(const mcsi_slopes *m, mcs_vec3 w) {
+    mcs_f x = m->ax * w.x, y = m->ay * w.y;
+    return mcsi_sqrt(x * x + y * y + w.z * w.z);
 }
-MCSI_FN MCSI_F MCS_(ggx_d)(const MCS_(ggx) * m, MCS_(vec3) h) {
-    MCSI_I ok = MCSI_(always)();
-    h = MCSI_(above)(h, &ok);
-    return MCSI_(keep)(ok, MCSI_(ggx_d)(&m->s, h));
+MCSI_FN mcs_f mcs_ggx_d(const mcs_ggx *m, mcs_vec3 h) {
+    mcs_i ok = mcsi_always();
+    h = mcsi_above(h, &ok);
+    return mcsi_keep(ok, mcsi_ggx_d(&m->s, h));
 }
-MCSI_FN MCSI_F MCS_(ggx_g1)(const MCS_(ggx) * m, MCS_(vec3) w) {
-    MCSI_I ok = m->s.norm > 0.0f;
-    w = MCSI_(above)(w, &ok);
-    return MCSI_(keep)(ok, 2.0f * w.z / (w.z + MCSI_(ggx_t)(&m->s, w)));
+MCSI_FN mcs_f mcs_ggx_g1(const mcs_ggx *m, mcs_vec3 w) {
+    mcs_i ok = m->s.norm > 0.0f;
+    w = mcsi_above(w, &ok);
+    return mcsi_keep(ok, 2.0f * w.z / (w.z + mcsi_ggx_t(&m->s, w)));
 }
-MCSI_FN MCSI_F MCS_(ggx_g2)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = m->s.norm > 0.0f;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok);
-    return MCSI_(keep)(ok, 2.0f * wo.z * wi.z / (wo.z * MCSI_(ggx_t)(&m->s, wi) + wi.z * MCSI_(ggx_t)(&m->s, wo)));
+MCSI_FN mcs_f mcs_ggx_g2(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = m->s.norm > 0.0f;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok);
+    return mcsi_keep(ok, 2.0f * wo.z * wi.z / (wo.z * mcsi_ggx_t(&m->s, wi) + wi.z * mcsi_ggx_t(&m->s, wo)));
 }
 
-MCSI_CORE MCSI_F MCSI_(ggx_radius)(const MCSI_(slopes) * m, MCSI_F u1, MCSI_I *ok, MCSI_F *g) {
-    MCSI_F v;
-    u1 = MCSI_(unit)(u1, ok), v = 1.0f - u1;
+MCSI_CORE mcs_f mcsi_ggx_radius(const mcsi_slopes *m, mcs_f u1, mcs_i *ok, mcs_f *g) {
+    mcs_f v;
+    u1 = mcsi_unit(u1, ok), v = 1.0f - u1;
     *g = m->norm * (v * v);
-    return MCSI_(sqrt)(u1 / v);
+    return mcsi_sqrt(u1 / v);
 }
-MCSI_SAMPLE MCS_(dir) MCS_(ggx_h_sample)(const MCS_(ggx) * m, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F g, r = MCSI_(ggx_radius)(&m->s, u1, &ok, &g);
-    return MCSI_(slope_dir)(&m->s, ok, r, g, u2);
+MCSI_SAMPLE mcs_dir mcs_ggx_h_sample(const mcs_ggx *m, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    mcs_f g, r = mcsi_ggx_radius(&m->s, u1, &ok, &g);
+    return mcsi_slope_dir(&m->s, ok, r, g, u2);
 }
-MCSI_FN MCSI_F MCS_(ggx_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) h) {
-    MCSI_I ok = MCSI_(always)();
-    h = MCSI_(above)(h, &ok);
-    return MCSI_(keep)(ok, MCSI_(ggx_d)(&m->s, h) * (h.z / MCSI_(sqrt)(MCSI_(dot)(h, h))));
+MCSI_FN mcs_f mcs_ggx_h_pdf(const mcs_ggx *m, mcs_vec3 h) {
+    mcs_i ok = mcsi_always();
+    h = mcsi_above(h, &ok);
+    return mcsi_keep(ok, mcsi_ggx_d(&m->s, h) * (h.z / mcsi_sqrt(mcsi_dot(h, h))));
 }
-MCSI_FN MCS_(vec2) MCS_(ggx_h_invert)(const MCS_(ggx) * m, MCS_(vec3) h) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F e;
-    h = MCSI_(above)(h, &ok), e = MCSI_(min)(MCSI_(slope_square)(&m->s, h), MCS_(set)(1e30f));
-    return MCSI_(slope_invert)(&m->s, ok, h, e / (1.0f + e));
+MCSI_FN mcs_vec2 mcs_ggx_h_invert(const mcs_ggx *m, mcs_vec3 h) {
+    mcs_i ok = mcsi_always();
+    mcs_f e;
+    h = mcsi_above(h, &ok), e = mcsi_min(mcsi_slope_square(&m->s, h), mcs_set(1e30f));
+    return mcsi_slope_invert(&m->s, ok, h, e / (1.0f + e));
 }
-MCSI_SAMPLE MCS_(brdf) MCS_(ggx_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F g, d, p2, to, ti, r = MCSI_(ggx_radius)(&m->s, u1, &ok, &g);
-    MCS_(brdf) s;
-    wo = MCSI_(above)(wo, &ok);
-    s = MCSI_(slope_brdf)(&m->s, ok, wo, r, g, u2, &d, &p2);
-    to = MCSI_(ggx_t)(&m->s, wo), ti = MCSI_(ggx_t)(&m->s, s.wi);
-    s.weight = MCSI_(keep)(s.pdf > 0.0f, 2.0f * s.wi.z * d / (wo.z * ti + s.wi.z * to));
+MCSI_SAMPLE mcs_brdf mcs_ggx_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    mcs_f g, d, p2, to, ti, r = mcsi_ggx_radius(&m->s, u1, &ok, &g);
+    mcs_brdf s;
+    wo = mcsi_above(wo, &ok);
+    s = mcsi_slope_brdf(&m->s, ok, wo, r, g, u2, &d, &p2);
+    to = mcsi_ggx_t(&m->s, wo), ti = mcsi_ggx_t(&m->s, s.wi);
+    s.weight = mcsi_keep(s.pdf > 0.0f, 2.0f * s.wi.z * d / (wo.z * ti + s.wi.z * to));
     return s;
 }
-MCSI_FN MCSI_F MCS_(ggx_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)();
-    MCS_(vec3) h;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
-    return MCSI_(keep)(ok, MCSI_(ggx_d)(&m->s, h) * (h.z / (2.0f * MCSI_(dot)(h, h))));
+MCSI_FN mcs_f mcs_ggx_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = mcsi_always();
+    mcs_vec3 h;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
+    return mcsi_keep(ok, mcsi_ggx_d(&m->s, h) * (h.z / (2.0f * mcsi_dot(h, h))));
 }
-MCSI_FN MCSI_F MCS_(ggx_eval)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F d;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), d = MCSI_(ggx_d)(&m->s, MCSI_(sum)(wo, wi));
-    return MCSI_(keep)(ok, d / (2.0f * (wo.z * MCSI_(ggx_t)(&m->s, wi) + wi.z * MCSI_(ggx_t)(&m->s, wo))));
+MCSI_FN mcs_f mcs_ggx_eval(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = mcsi_always();
+    mcs_f d;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), d = mcsi_ggx_d(&m->s, mcsi_sum(wo, wi));
+    return mcsi_keep(ok, d / (2.0f * (wo.z * mcsi_ggx_t(&m->s, wi) + wi.z * mcsi_ggx_t(&m->s, wo))));
 }
-MCSI_FN MCSI_F MCS_(ggx_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = m->s.norm > 0.0f;
-    MCS_(vec3) h;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
-    return MCSI_(keep)(ok, wi.z * (MCSI_(dot)(h, h) / h.z) / (wo.z * MCSI_(ggx_t)(&m->s, wi) + wi.z * MCSI_(ggx_t)(&m->s, wo)));
+MCSI_FN mcs_f mcs_ggx_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = m->s.norm > 0.0f;
+    mcs_vec3 h;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
+    return mcsi_keep(ok, wi.z * (mcsi_dot(h, h) / h.z) / (wo.z * mcsi_ggx_t(&m->s, wi) + wi.z * mcsi_ggx_t(&m->s, wo)));
 }
 
 /* Visible normals. In the frame stretched by alpha the lobe is a sphere lit from i = (ax x, ay y, z)/t; the map draws c in the cap
  * c.z > -k i.z uniformly, and c + i is the half-vector there. Everything here is constant for one wo. */
 typedef struct {
-    MCSI_F z, t, x_dir, y_dir;                  /* wo.z; the length t; the azimuth of i */
-    MCSI_F i_sin, i_z, one_minus_iz, cap, lift; /* i's sine and cosine; 1 - i.z; 1 + k i.z, the height of the cap; (1 - k) i.z */
-    MCSI_F denominator;                         /* k wo.z + t */
-} MCSI_(visible);
-MCSI_CORE MCSI_(visible) MCSI_(visible_make)(const MCSI_(slopes) * m, MCS_(vec3) wo, int bounded) {
-    MCSI_(visible) v;
-    MCSI_F x = m->ax * wo.x * 1.09951163e12f, y = m->ay * wo.y * 1.09951163e12f,
-           r = MCSI_(sqrt)(x * x + y * y); /* 2^40: no underflow */
-    MCSI_I off_axis = r > 0.0f;
-    MCSI_F inv = 1.0f / MCSI_(sel)(off_axis, r, MCS_(set)(1.0f)), less = MCS_(set)(0.0f); /* 1 - k */
-    v.x_dir = MCSI_(sel)(off_axis, x * inv, MCS_(set)(1.0f)), v.y_dir = y * inv;
-    r = r * 9.09494702e-13f, v.z = wo.z, v.t = MCSI_(sqrt)(r * r + wo.z * wo.z);
+    mcs_f z, t, x_dir, y_dir;                  /* wo.z; the length t; the azimuth of i */
+    mcs_f i_sin, i_z, one_minus_iz, cap, lift; /* i's sine and cosine; 1 - i.z; 1 + k i.z, the height of the cap; (1 - k) i.z */
+    mcs_f denominator;                         /* k wo.z + t */
+} mcsi_visible;
+MCSI_CORE mcsi_visible mcsi_visible_make(const mcsi_slopes *m, mcs_vec3 wo, int bounded) {
+    mcsi_visible v;
+    mcs_f x = m->ax * wo.x * 1.09951163e12f, y = m->ay * wo.y * 1.09951163e12f,
+          r = mcsi_sqrt(x * x + y * y); /* 2^40: no underflow */
+    mcs_i off_axis = r > 0.0f;
+    mcs_f inv = 1.0f / mcsi_sel(off_axis, r, mcs_set(1.0f)), less = mcs_set(0.0f); /* 1 - k */
+    v.x_dir = mcsi_sel(off_axis, x * inv, mcs_set(1.0f)), v.y_dir = y * inv;
+    r = r * 9.09494702e-13f, v.z = wo.z, v.t = mcsi_sqrt(r * r + wo.z * wo.z);
     v.i_sin = r / v.t, v.i_z = wo.z / v.t, v.one_minus_iz = v.i_sin * v.i_sin / (1.0f + v.i_z);
     if (bounded) {
-        MCSI_F a = MCSI_(min)(MCSI_(min)(m->ax, m->ay), MCS_(set)(1.0f)), s = 1.0f + MCSI_(sqrt)(wo.x * wo.x + wo.y * wo.y);
+        mcs_f a = mcsi_min(mcsi_min(m->ax, m->ay), mcs_set(1.0f)), s = 1.0f + mcsi_sqrt(wo.x * wo.x + wo.y * wo.y);
         less = a * a * (s * s + wo.z * wo.z) / (s * s + a * a * wo.z * wo.z);
     }
     v.cap = 1.0f + (1.0f - less) * v.i_z, v.lift = less * v.i_z, v.denominator = (1.0f - less) * wo.z + v.t;
@@ -2427,12 +2333,12 @@ MCS_FN void mcsi_visible_d(double ax, double ay, double x, double y, double z, d
 #endif
 /* The unnormalised half-vector p, p2 = |p|^2 and, in the stretched frame, n2 = scale^2 |c + i|^2; p is `scale` times too long. */
 typedef struct {
-    MCS_(vec3) p;
-    MCSI_F p2, n2, scale;
-} MCSI_(visible_half);
+    mcs_vec3 p;
+    mcs_f p2, n2, scale;
+} mcsi_visible_half;
 /* The lanes `off` again. */
-MCSI_CORE MCSI_(visible_half)
-    MCSI_(visible_detour)(MCSI_(slopes) m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded, MCSI_I off, MCSI_(visible_half) h) {
+MCSI_CORE mcsi_visible_half mcsi_visible_detour(mcsi_slopes m, mcs_vec3 wo, mcs_f u1, mcs_f u2, int bounded, mcs_i off,
+                                                mcsi_visible_half h) {
     double p[5];
     int k;
     for (k = 0; k < MCSI_W; k++) {
@@ -2448,137 +2354,127 @@ MCSI_CORE MCSI_(visible_half)
 /* The azimuth is measured from i's; where c nearly cancels i, the mirror at grazing incidence, 1 + cos(phi) and i_sin - s enter,
  * the latter as (i_sin^2 - s^2)/(i_sin + s) with the divisor left to the scale, so c + i stays accurate. Where the larger alpha
  * magnifies the rounding of c + i more than 4 times, p comes from the detour. */
-MCSI_CORE MCSI_(visible_half)
-    MCSI_(visible_draw)(const MCS_(ggx) * m, const MCSI_(visible) * v, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded) {
-    MCSI_(visible_half) h;
-    MCSI_I behind;
-    MCSI_F sine, cosine, one_plus, q = u2 * v->cap, hz = v->cap * (1.0f - u2) + v->lift;
-    MCSI_F s = MCSI_(sqrt)(q * (v->one_minus_iz + hz)), r, along, across; /* sin^2 = (1 - c.z) (1 + c.z) */
-    MCSI_(sincos_behind)(u1, &sine, &cosine, &behind, &one_plus);
+MCSI_CORE mcsi_visible_half mcsi_visible_draw(const mcs_ggx *m, const mcsi_visible *v, mcs_vec3 wo, mcs_f u1, mcs_f u2,
+                                              int bounded) {
+    mcsi_visible_half h;
+    mcs_i behind;
+    mcs_f sine, cosine, one_plus, q = u2 * v->cap, hz = v->cap * (1.0f - u2) + v->lift;
+    mcs_f s = mcsi_sqrt(q * (v->one_minus_iz + hz)), r, along, across; /* sin^2 = (1 - c.z) (1 + c.z) */
+    mcsi_sincos_behind(u1, &sine, &cosine, &behind, &one_plus);
     behind = behind & (hz < 1.0f);
-    h.scale = MCSI_(sel)(behind, v->i_sin + s, MCS_(set)(1.0f));
+    h.scale = mcsi_sel(behind, v->i_sin + s, mcs_set(1.0f));
     r = s * h.scale;
-    along = MCSI_(sel)(behind, r * one_plus + (hz - 2.0f * v->i_z) * hz, s * cosine + v->i_sin);
+    along = mcsi_sel(behind, r * one_plus + (hz - 2.0f * v->i_z) * hz, s * cosine + v->i_sin);
     across = r * sine, hz = hz * h.scale;
     h.n2 = along * along + across * across + hz * hz;
-    h.p = MCSI_(vec3)(m->s.ax * (along * v->x_dir - across * v->y_dir), m->s.ay * (along * v->y_dir + across * v->x_dir), hz);
-    h.p2 = MCSI_(dot)(h.p, h.p);
-    if (MCSI_(rarely)(m->wide > 0.0f)) {
-        MCSI_I off = m->wide * h.n2 > h.p2;
-        if (MCSI_(rarely)(off)) h = MCSI_(visible_detour)(m->s, wo, u1, u2, bounded, off, h);
+    h.p = mcsi_vec3(m->s.ax * (along * v->x_dir - across * v->y_dir), m->s.ay * (along * v->y_dir + across * v->x_dir), hz);
+    h.p2 = mcsi_dot(h.p, h.p);
+    if (mcsi_rarely(m->wide > 0.0f)) {
+        mcs_i off = m->wide * h.n2 > h.p2;
+        if (mcsi_rarely(off)) h = mcsi_visible_detour(m->s, wo, u1, u2, bounded, off, h);
     }
     return h;
 }
-MCSI_CORE MCS_(brdf) MCSI_(visible_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_(visible) v;
-    MCSI_(visible_half) h;
-    MCS_(vec3) wi;
-    MCSI_F inv, q, s;
-    wo = MCSI_(above)(wo, &ok), v = MCSI_(visible_make)(&m->s, wo, bounded);
-    u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    h = MCSI_(visible_draw)(m, &v, wo, u1, u2, bounded);
+MCSI_CORE mcs_brdf mcsi_visible_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2, int bounded) {
+    mcs_i ok = mcsi_always();
+    mcsi_visible v;
+    mcsi_visible_half h;
+    mcs_vec3 wi;
+    mcs_f inv, q, s;
+    wo = mcsi_above(wo, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    h = mcsi_visible_draw(m, &v, wo, u1, u2, bounded);
     /* q = p2/n2, and s = 2 (p.wo)/p2 as p.wo = t n2/2, where scale is 1 */
     inv = 1.0f / (h.p2 * (h.n2 * h.scale)), q = h.p2 * h.scale * (h.p2 * inv), s = v.t * h.n2 * h.n2 * inv;
-    wi = MCSI_(mirror)(wo, h.p, s);
-    return MCSI_(brdf)(ok, wi, m->s.norm / (2.0f * v.denominator) * (q * q),
-                       wi.z * v.denominator / (v.t * MCSI_(abs)(wi.z) + MCSI_(ggx_t)(&m->s, wi) * wo.z));
+    wi = mcsi_mirror(wo, h.p, s);
+    return mcsi_brdf(ok, wi, m->s.norm / (2.0f * v.denominator) * (q * q),
+                     wi.z * v.denominator / (v.t * mcsi_abs(wi.z) + mcsi_ggx_t(&m->s, wi) * wo.z));
 }
-MCSI_CORE MCSI_F MCSI_(visible_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi, int bounded) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_(visible) v;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), v = MCSI_(visible_make)(&m->s, wo, bounded);
-    return MCSI_(keep)(ok, MCSI_(ggx_d)(&m->s, MCSI_(sum)(wo, wi)) / (2.0f * v.denominator));
+MCSI_CORE mcs_f mcsi_visible_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi, int bounded) {
+    mcs_i ok = mcsi_always();
+    mcsi_visible v;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
+    return mcsi_keep(ok, mcsi_ggx_d(&m->s, mcsi_sum(wo, wi)) / (2.0f * v.denominator));
 }
-MCSI_CORE MCSI_F MCSI_(visible_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi, int bounded) {
-    MCSI_I ok = m->s.norm > 0.0f;
-    MCSI_(visible) v;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), v = MCSI_(visible_make)(&m->s, wo, bounded);
-    return MCSI_(keep)(ok, wi.z * v.denominator / (v.t * wi.z + MCSI_(ggx_t)(&m->s, wi) * wo.z));
+MCSI_CORE mcs_f mcsi_visible_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi, int bounded) {
+    mcs_i ok = m->s.norm > 0.0f;
+    mcsi_visible v;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
+    return mcsi_keep(ok, wi.z * v.denominator / (v.t * wi.z + mcsi_ggx_t(&m->s, wi) * wo.z));
 }
-MCSI_CORE MCS_(dir) MCSI_(visible_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2, int bounded) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_(visible) v;
-    MCSI_(visible_half) h;
-    MCS_(dir) d;
-    MCSI_F q, c;
-    wo = MCSI_(above)(wo, &ok), v = MCSI_(visible_make)(&m->s, wo, bounded);
-    u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    h = MCSI_(visible_draw)(m, &v, wo, u1, u2, bounded);
-    q = h.p2 / (h.n2 * h.scale), c = 1.0f / MCSI_(sqrt)(h.p2); /* p2/n2, wo.h = t n2 c/2 where scale is 1 */
-    d.w = MCSI_(vec3)(h.p.x * c, h.p.y * c, h.p.z * c);
-    d.pdf = MCSI_(keep)(ok, m->s.norm * v.t / v.denominator * (h.p2 * c * q));
+MCSI_CORE mcs_dir mcsi_visible_h_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2, int bounded) {
+    mcs_i ok = mcsi_always();
+    mcsi_visible v;
+    mcsi_visible_half h;
+    mcs_dir d;
+    mcs_f q, c;
+    wo = mcsi_above(wo, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    h = mcsi_visible_draw(m, &v, wo, u1, u2, bounded);
+    q = h.p2 / (h.n2 * h.scale), c = 1.0f / mcsi_sqrt(h.p2); /* p2/n2, wo.h = t n2 c/2 where scale is 1 */
+    d.w = mcsi_vec3(h.p.x * c, h.p.y * c, h.p.z * c);
+    d.pdf = mcsi_keep(ok, m->s.norm * v.t / v.denominator * (h.p2 * c * q));
     return d;
 }
-MCSI_CORE MCSI_F MCSI_(visible_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h, int bounded) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_(visible) v;
-    MCSI_F x, y, d, q;
-    wo = MCSI_(above)(wo, &ok), h = MCSI_(above)(h, &ok), v = MCSI_(visible_make)(&m->s, wo, bounded);
-    x = h.x * m->s.inv_ax, y = h.y * m->s.inv_ay, d = MCSI_(exact_dot)(wo, h), q = x * x + y * y + h.z * h.z;
+MCSI_CORE mcs_f mcsi_visible_h_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h, int bounded) {
+    mcs_i ok = mcsi_always();
+    mcsi_visible v;
+    mcs_f x, y, d, q;
+    wo = mcsi_above(wo, &ok), h = mcsi_above(h, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
+    x = h.x * m->s.inv_ax, y = h.y * m->s.inv_ay, d = mcsi_exact_dot(wo, h), q = x * x + y * y + h.z * h.z;
     ok = ok & (2.0f * d * h.z >= 0.999999f * q * (v.t * v.lift)); /* c.z >= -k i.z */
-    return MCSI_(keep)(ok, MCSI_(ggx_d)(&m->s, h) * 2.0f * d / v.denominator);
+    return mcsi_keep(ok, mcsi_ggx_d(&m->s, h) * 2.0f * d / v.denominator);
 }
-MCSI_CORE MCS_(vec2) MCSI_(visible_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h, int bounded) {
-    MCSI_I ok = m->s.norm > 0.0f;
-    MCSI_(visible) v;
-    MCS_(vec3) c;
-    MCSI_F d;
-    wo = MCSI_(above)(wo, &ok), h = MCSI_(above)(h, &ok), v = MCSI_(visible_make)(&m->s, wo, bounded);
-    c = MCSI_(vec3)(h.x * m->s.inv_ax, h.y * m->s.inv_ay, h.z);
-    d = 2.0f * MCSI_(exact_dot)(wo, h) / (v.t * MCSI_(dot)(c, c));
-    c = MCSI_(vec3)(d * c.x - v.i_sin * v.x_dir, d * c.y - v.i_sin * v.y_dir, d * c.z - v.i_z);
-    return MCSI_(uv)(ok & (d > 0.0f), MCSI_(atan2_turns)(c.y * v.x_dir - c.x * v.y_dir, c.x * v.x_dir + c.y * v.y_dir),
-                     MCSI_(one_minus_z)(c) / v.cap);
+MCSI_CORE mcs_vec2 mcsi_visible_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h, int bounded) {
+    mcs_i ok = m->s.norm > 0.0f;
+    mcsi_visible v;
+    mcs_vec3 c;
+    mcs_f d;
+    wo = mcsi_above(wo, &ok), h = mcsi_above(h, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
+    c = mcsi_vec3(h.x * m->s.inv_ax, h.y * m->s.inv_ay, h.z);
+    d = 2.0f * mcsi_exact_dot(wo, h) / (v.t * mcsi_dot(c, c));
+    c = mcsi_vec3(d * c.x - v.i_sin * v.x_dir, d * c.y - v.i_sin * v.y_dir, d * c.z - v.i_z);
+    return mcsi_uv(ok & (d > 0.0f), mcsi_atan2_turns(c.y * v.x_dir - c.x * v.y_dir, c.x * v.x_dir + c.y * v.y_dir),
+                   mcsi_one_minus_z(c) / v.cap);
 }
 
-MCSI_SAMPLE MCS_(dir) MCS_(ggx_vndf_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
-    return MCSI_(visible_h_sample)(m, wo, u1, u2, 0);
+MCSI_SAMPLE mcs_dir mcs_ggx_vndf_h_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
+    return mcsi_visible_h_sample(m, wo, u1, u2, 0);
 }
-MCSI_FN MCSI_F MCS_(ggx_vndf_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) { return MCSI_(visible_h_pdf)(m, wo, h, 0); }
-MCSI_FN MCS_(vec2) MCS_(ggx_vndf_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) {
-    return MCSI_(visible_h_invert)(m, wo, h, 0);
+MCSI_FN mcs_f mcs_ggx_vndf_h_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) { return mcsi_visible_h_pdf(m, wo, h, 0); }
+MCSI_FN mcs_vec2 mcs_ggx_vndf_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) { return mcsi_visible_h_invert(m, wo, h, 0); }
+MCSI_SAMPLE mcs_brdf mcs_ggx_vndf_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
+    return mcsi_visible_sample(m, wo, u1, u2, 0);
 }
-MCSI_SAMPLE MCS_(brdf) MCS_(ggx_vndf_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
-    return MCSI_(visible_sample)(m, wo, u1, u2, 0);
+MCSI_FN mcs_f mcs_ggx_vndf_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_visible_pdf(m, wo, wi, 0); }
+MCSI_FN mcs_f mcs_ggx_vndf_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_visible_weight(m, wo, wi, 0); }
+MCSI_SAMPLE mcs_dir mcs_ggx_bounded_h_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
+    return mcsi_visible_h_sample(m, wo, u1, u2, 1);
 }
-MCSI_FN MCSI_F MCS_(ggx_vndf_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) { return MCSI_(visible_pdf)(m, wo, wi, 0); }
-MCSI_FN MCSI_F MCS_(ggx_vndf_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    return MCSI_(visible_weight)(m, wo, wi, 0);
+MCSI_FN mcs_f mcs_ggx_bounded_h_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) { return mcsi_visible_h_pdf(m, wo, h, 1); }
+MCSI_FN mcs_vec2 mcs_ggx_bounded_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) { return mcsi_visible_h_invert(m, wo, h, 1); }
+MCSI_SAMPLE mcs_brdf mcs_ggx_bounded_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
+    return mcsi_visible_sample(m, wo, u1, u2, 1);
 }
-MCSI_SAMPLE MCS_(dir) MCS_(ggx_bounded_h_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
-    return MCSI_(visible_h_sample)(m, wo, u1, u2, 1);
-}
-MCSI_FN MCSI_F MCS_(ggx_bounded_h_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) {
-    return MCSI_(visible_h_pdf)(m, wo, h, 1);
-}
-MCSI_FN MCS_(vec2) MCS_(ggx_bounded_h_invert)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) h) {
-    return MCSI_(visible_h_invert)(m, wo, h, 1);
-}
-MCSI_SAMPLE MCS_(brdf) MCS_(ggx_bounded_sample)(const MCS_(ggx) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
-    return MCSI_(visible_sample)(m, wo, u1, u2, 1);
-}
-MCSI_FN MCSI_F MCS_(ggx_bounded_pdf)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) { return MCSI_(visible_pdf)(m, wo, wi, 1); }
-MCSI_FN MCSI_F MCS_(ggx_bounded_weight)(const MCS_(ggx) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    return MCSI_(visible_weight)(m, wo, wi, 1);
-}
-#ifndef MCS_NO_BATCH
-MCSI_CORE MCS_(ggx) MCSI_(ggx_spread)(const mcs_ggx *m) {
-    MCS_(ggx) all;
-    all.s = MCSI_(slopes_spread)(&m->s), all.wide = MCS_(set)(m->wide);
+MCSI_FN mcs_f mcs_ggx_bounded_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_visible_pdf(m, wo, wi, 1); }
+MCSI_FN mcs_f mcs_ggx_bounded_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_visible_weight(m, wo, wi, 1); }
+#ifdef MCSI_LOOPS
+MCSI_CORE mcs_ggx mcsi_ggx_spread(const mcsi_scalar_ggx *m) {
+    mcs_ggx all;
+    all.s = mcsi_slopes_spread(&m->s), all.wide = mcs_set(m->wide);
     return all;
 }
+MCSI_LOOP_LOBE(ggx_h, ggx)
+MCSI_LOOP_SAMPLE(ggx, ggx)
+MCSI_LOOP_VALUE(ggx_pdf, ggx)
+MCSI_LOOP_VALUE(ggx_eval, ggx)
+MCSI_LOOP_VISIBLE(ggx_vndf_h, ggx)
+MCSI_LOOP_SAMPLE(ggx_vndf, ggx)
+MCSI_LOOP_VALUE(ggx_vndf_pdf, ggx)
+MCSI_LOOP_VISIBLE(ggx_bounded_h, ggx)
+MCSI_LOOP_SAMPLE(ggx_bounded, ggx)
+MCSI_LOOP_VALUE(ggx_bounded_pdf, ggx)
 #endif
-MCSI_BATCH_LOBE(ggx_h, ggx)
-MCSI_BATCH_SAMPLE(ggx, ggx)
-MCSI_BATCH_VALUE(ggx_pdf, ggx)
-MCSI_BATCH_VALUE(ggx_eval, ggx)
-MCSI_BATCH_VISIBLE(ggx_vndf_h, ggx)
-MCSI_BATCH_SAMPLE(ggx_vndf, ggx)
-MCSI_BATCH_VALUE(ggx_vndf_pdf, ggx)
-MCSI_BATCH_VISIBLE(ggx_bounded_h, ggx)
-MCSI_BATCH_SAMPLE(ggx_bounded, ggx)
-MCSI_BATCH_VALUE(ggx_bounded_pdf, ggx)
 
 /* ==== [ashikhmin] Ashikhmin-Shirley, the anisotropic Phong lobe ================================================================
  * mcs_ashikhmin_h_*  half-vectors: (cos phi, sin phi) proportional to (sqrt(nv+1) cos, sqrt(nu+1) sin)(2 pi u2), s = nu cos^2 phi +
@@ -2593,59 +2489,61 @@ MCSI_BATCH_VALUE(ggx_bounded_pdf, ggx)
  * source             Ashikhmin and Shirley 2000, "An anisotropic Phong BRDF model", equations 4, 6, 8, 10 */
 
 typedef struct {
-    MCSI_F nu, nv, u, v, stretch, norm; /* 1/(nu+1), 1/(nv+1), sqrt(v/u) */
-} MCS_(ashikhmin);
-MCSI_FN MCS_(ashikhmin) MCS_(ashikhmin_make)(MCSI_F nu, MCSI_F nv) {
-    MCS_(ashikhmin) m;
-    MCSI_I ok = (nu >= 0.0f) & (nv >= 0.0f);
+    mcs_f nu, nv, u, v, stretch, norm; /* 1/(nu+1), 1/(nv+1), sqrt(v/u) */
+} mcs_ashikhmin;
+#if MCSI_W == 1
+typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
+#endif
+MCSI_FN mcs_ashikhmin mcs_ashikhmin_make(mcs_f nu, mcs_f nv) {
+    mcs_ashikhmin m;
+    mcs_i ok = (nu >= 0.0f) & (nv >= 0.0f);
     MCSI_REQUIRE(ok);
-    m.nu = MCSI_(within)(ok, nu, 0.0f, 1e9f), m.nv = MCSI_(within)(ok, nv, 0.0f, 1e9f);
-    m.u = 1.0f / (m.nu + 1.0f), m.v = 1.0f / (m.nv + 1.0f), m.stretch = MCSI_(sqrt)((m.nu + 1.0f) / (m.nv + 1.0f));
-    m.norm = MCSI_(sel)(ok, MCSI_(sqrt)(m.nu + 1.0f) * MCSI_(sqrt)(m.nv + 1.0f) * MCSI_1_2PI, MCS_(set)(0.0f));
+    m.nu = mcsi_within(ok, nu, 0.0f, 1e9f), m.nv = mcsi_within(ok, nv, 0.0f, 1e9f);
+    m.u = 1.0f / (m.nu + 1.0f), m.v = 1.0f / (m.nv + 1.0f), m.stretch = mcsi_sqrt((m.nu + 1.0f) / (m.nv + 1.0f));
+    m.norm = mcsi_sel(ok, mcsi_sqrt(m.nu + 1.0f) * mcsi_sqrt(m.nv + 1.0f) * MCSI_1_2PI, mcs_set(0.0f));
     return m;
 }
-MCSI_CORE MCSI_F MCSI_(ashikhmin_exponent)(const MCS_(ashikhmin) * m, MCS_(vec3) h) {
-    MCSI_F x = h.x * 1.07374182e+09f, y = h.y * 1.07374182e+09f, x2 = x * x, y2 = y * y;
-    return (m->nu * x2 + m->nv * y2) / MCSI_(max)(x2 + y2, MCS_(set)(FLT_MIN));
+MCSI_CORE mcs_f mcsi_ashikhmin_exponent(const mcs_ashikhmin *m, mcs_vec3 h) {
+    mcs_f x = h.x * 1.07374182e+09f, y = h.y * 1.07374182e+09f, x2 = x * x, y2 = y * y;
+    return (m->nu * x2 + m->nv * y2) / mcsi_max(x2 + y2, mcs_set(FLT_MIN));
 }
-MCSI_CORE MCSI_F MCSI_(tan2)(MCS_(vec3) h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
+MCSI_CORE mcs_f mcsi_tan2(mcs_vec3 h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
 
 /* The half-vector; *p is the density times its cosine. Its azimuth is that of (c, stretch s), which *scale brings to its sine (with
  * 2^64 and 2^-32: tiny u1 would underflow); n = 1/(exponent + 1), from the nearer axis, as a large ln(1-u1) shows its rounding. */
-MCSI_CORE MCS_(vec3) MCSI_(ashikhmin_half)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2, MCSI_F *p, MCSI_F *scale) {
-    MCSI_F s, c, s2, c2, y, n, cosine, d;
-    MCSI_(sincos_turns)(u2, &s, &c);
+MCSI_CORE mcs_vec3 mcsi_ashikhmin_half(const mcs_ashikhmin *m, mcs_f u1, mcs_f u2, mcs_f *p, mcs_f *scale) {
+    mcs_f s, c, s2, c2, y, n, cosine, d;
+    mcsi_sincos_turns(u2, &s, &c);
     s2 = s * s, c2 = c * c, y = m->stretch * s;
-    n = MCSI_(blend)(MCSI_(bits)(s2 - c2) >> 31, m->u + (m->v - m->u) * s2, m->v + (m->u - m->v) * c2);
-    cosine = MCSI_(exp_both)(n * MCSI_(log1p)(-u1), &d);
-    *scale = MCSI_(sqrt)(-d * (2.0f + d) * (1.84467441e+19f / (c2 + y * y))) * 2.32830644e-10f, *p = m->norm * (1.0f - u1);
-    return MCSI_(vec3)(*scale * c, *scale * y, cosine);
+    n = mcsi_blend(mcsi_bits(s2 - c2) >> 31, m->u + (m->v - m->u) * s2, m->v + (m->u - m->v) * c2);
+    cosine = mcsi_exp_both(n * mcsi_log1p(-u1), &d);
+    *scale = mcsi_sqrt(-d * (2.0f + d) * (1.84467441e+19f / (c2 + y * y))) * 2.32830644e-10f, *p = m->norm * (1.0f - u1);
+    return mcsi_vec3(*scale * c, *scale * y, cosine);
 }
-MCSI_SAMPLE MCS_(dir) MCS_(ashikhmin_h_sample)(const MCS_(ashikhmin) * m, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    MCS_(dir) h;
-    MCSI_F p, scale;
-    u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    h.w = MCSI_(ashikhmin_half)(m, u1, u2, &p, &scale);
-    h.pdf = MCSI_(keep)(ok, p / h.w.z);
+MCSI_SAMPLE mcs_dir mcs_ashikhmin_h_sample(const mcs_ashikhmin *m, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    mcs_dir h;
+    mcs_f p, scale;
+    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    h.w = mcsi_ashikhmin_half(m, u1, u2, &p, &scale);
+    h.pdf = mcsi_keep(ok, p / h.w.z);
     return h;
 }
-MCSI_FN MCSI_F MCS_(ashikhmin_h_pdf)(const MCS_(ashikhmin) * m, MCS_(vec3) h) {
-    MCSI_I ok = MCSI_(always)();
-    h = MCSI_(above)(h, &ok);
-    return MCSI_(keep)(ok, m->norm * MCSI_(cos_power)(MCSI_(ashikhmin_exponent)(m, h), MCSI_(tan2)(h)));
+MCSI_FN mcs_f mcs_ashikhmin_h_pdf(const mcs_ashikhmin *m, mcs_vec3 h) {
+    mcs_i ok = mcsi_always();
+    h = mcsi_above(h, &ok);
+    return mcsi_keep(ok, m->norm * mcsi_cos_power(mcsi_ashikhmin_exponent(m, h), mcsi_tan2(h)));
 }
-MCSI_FN MCS_(vec2) MCS_(ashikhmin_h_invert)(const MCS_(ashikhmin) * m, MCS_(vec3) h) {
-    MCSI_I ok = m->norm > 0.0f;
-    MCSI_F l, d;
-    h = MCSI_(above)(h, &ok);
-    l = MCSI_(log1p)(MCSI_(min)(MCSI_(tan2)(h), MCS_(set)(1e37f)));
-    MCSI_(exp_both)(MCSI_(max)(-0.5f * (MCSI_(ashikhmin_exponent)(m, h) + 1.0f) * l, MCS_(set)(-80.0f)), &d);
-    return MCSI_(uv)(ok, -d, MCSI_(atan2_turns)(h.y, h.x * m->stretch));
+MCSI_FN mcs_vec2 mcs_ashikhmin_h_invert(const mcs_ashikhmin *m, mcs_vec3 h) {
+    mcs_i ok = m->norm > 0.0f;
+    mcs_f l, d;
+    h = mcsi_above(h, &ok);
+    l = mcsi_log1p(mcsi_min(mcsi_tan2(h), mcs_set(1e37f)));
+    mcsi_exp_both(mcsi_max(-0.5f * (mcsi_ashikhmin_exponent(m, h) + 1.0f) * l, mcs_set(-80.0f)), &d);
+    return mcsi_uv(ok, -d, mcsi_atan2_turns(h.y, h.x * m->stretch));
 }
 /* h.wo of the lanes `off` again. */
-MCSI_CORE MCSI_F MCSI_(ashikhmin_cosine)(MCS_(ashikhmin) m, MCS_(vec3) wo, MCSI_F hz, MCSI_F scale, MCSI_F turns, MCSI_I off,
-                                         MCSI_F d) {
+MCSI_CORE mcs_f mcsi_ashikhmin_cosine(mcs_ashikhmin m, mcs_vec3 wo, mcs_f hz, mcs_f scale, mcs_f turns, mcs_i off, mcs_f d) {
     int k;
     for (k = 0; k < MCSI_W; k++) {
         double stretch = mcsi_sqrt_d(((double)MCSI_LANE(m.nu, k) + 1.0) / ((double)MCSI_LANE(m.nv, k) + 1.0));
@@ -2656,47 +2554,47 @@ MCSI_CORE MCSI_F MCSI_(ashikhmin_cosine)(MCS_(ashikhmin) m, MCS_(vec3) wo, MCSI_
     }
     return d;
 }
-MCSI_SAMPLE MCS_(brdf) MCS_(ashikhmin_sample)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, MCSI_F u1, MCSI_F u2) {
-    MCSI_I ok = MCSI_(always)();
-    MCS_(vec3) h, wi;
-    MCSI_F p, scale, d;
-    wo = MCSI_(above)(wo, &ok), u1 = MCSI_(unit)(u1, &ok), u2 = MCSI_(unit)(u2, &ok);
-    h = MCSI_(ashikhmin_half)(m, u1, u2, &p, &scale), d = MCSI_(dot)(h, wo);
-    if (MCSI_(rarely)(wo.z < 0.25f)) {
-        MCSI_I off = MCSI_(cancelled)(wo.z, d, MCS_(set)(1.0f));
-        if (MCSI_(rarely)(off)) d = MCSI_(ashikhmin_cosine)(*m, wo, h.z, scale, u2, off, d);
+MCSI_SAMPLE mcs_brdf mcs_ashikhmin_sample(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    mcs_vec3 h, wi;
+    mcs_f p, scale, d;
+    wo = mcsi_above(wo, &ok), u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    h = mcsi_ashikhmin_half(m, u1, u2, &p, &scale), d = mcsi_dot(h, wo);
+    if (mcsi_rarely(wo.z < 0.25f)) {
+        mcs_i off = mcsi_cancelled(wo.z, d, mcs_set(1.0f));
+        if (mcsi_rarely(off)) d = mcsi_ashikhmin_cosine(*m, wo, h.z, scale, u2, off, d);
     }
-    wi = MCSI_(mirror)(wo, h, 2.0f * d * (2.0f - MCSI_(dot)(h, h))); /* 1/|h|^2 near 1 */
-    return MCSI_(brdf)(ok & (d > 0.0f), wi, p / (4.0f * (h.z * d)), wi.z / MCSI_(max)(wo.z, wi.z));
+    wi = mcsi_mirror(wo, h, 2.0f * d * (2.0f - mcsi_dot(h, h))); /* 1/|h|^2 near 1 */
+    return mcsi_brdf(ok & (d > 0.0f), wi, p / (4.0f * (h.z * d)), wi.z / mcsi_max(wo.z, wi.z));
 }
-MCSI_FN MCSI_F MCS_(ashikhmin_pdf)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = MCSI_(always)();
-    MCS_(vec3) h;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok), h = MCSI_(sum)(wo, wi);
-    return MCSI_(keep)(ok, m->norm * MCSI_(cos_power)(MCSI_(ashikhmin_exponent)(m, h), MCSI_(tan2)(h)) /
-                               (2.0f * MCSI_(sqrt)(MCSI_(dot)(h, h))));
+MCSI_FN mcs_f mcs_ashikhmin_pdf(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = mcsi_always();
+    mcs_vec3 h;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
+    return mcsi_keep(ok,
+                     m->norm * mcsi_cos_power(mcsi_ashikhmin_exponent(m, h), mcsi_tan2(h)) / (2.0f * mcsi_sqrt(mcsi_dot(h, h))));
 }
-MCSI_FN MCSI_F MCS_(ashikhmin_eval)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_F pdf = MCS_(ashikhmin_pdf)(m, wo, wi);
-    return MCSI_(keep)(pdf > 0.0f, pdf / MCSI_(max)(wo.z, wi.z));
+MCSI_FN mcs_f mcs_ashikhmin_eval(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_f pdf = mcs_ashikhmin_pdf(m, wo, wi);
+    return mcsi_keep(pdf > 0.0f, pdf / mcsi_max(wo.z, wi.z));
 }
-MCSI_FN MCSI_F MCS_(ashikhmin_weight)(const MCS_(ashikhmin) * m, MCS_(vec3) wo, MCS_(vec3) wi) {
-    MCSI_I ok = m->norm > 0.0f;
-    wo = MCSI_(above)(wo, &ok), wi = MCSI_(above)(wi, &ok);
-    return MCSI_(keep)(ok, wi.z / MCSI_(max)(wo.z, wi.z));
+MCSI_FN mcs_f mcs_ashikhmin_weight(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = m->norm > 0.0f;
+    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok);
+    return mcsi_keep(ok, wi.z / mcsi_max(wo.z, wi.z));
 }
-#ifndef MCS_NO_BATCH
-MCSI_CORE MCS_(ashikhmin) MCSI_(ashikhmin_spread)(const mcs_ashikhmin *m) {
-    MCS_(ashikhmin) all;
-    all.nu = MCS_(set)(m->nu), all.nv = MCS_(set)(m->nv), all.norm = MCS_(set)(m->norm);
-    all.u = MCS_(set)(m->u), all.v = MCS_(set)(m->v), all.stretch = MCS_(set)(m->stretch);
+#ifdef MCSI_LOOPS
+MCSI_CORE mcs_ashikhmin mcsi_ashikhmin_spread(const mcsi_scalar_ashikhmin *m) {
+    mcs_ashikhmin all;
+    all.nu = mcs_set(m->nu), all.nv = mcs_set(m->nv), all.norm = mcs_set(m->norm);
+    all.u = mcs_set(m->u), all.v = mcs_set(m->v), all.stretch = mcs_set(m->stretch);
     return all;
 }
+MCSI_LOOP_LOBE(ashikhmin_h, ashikhmin)
+MCSI_LOOP_SAMPLE(ashikhmin, ashikhmin)
+MCSI_LOOP_VALUE(ashikhmin_pdf, ashikhmin)
+MCSI_LOOP_VALUE(ashikhmin_eval, ashikhmin)
 #endif
-MCSI_BATCH_LOBE(ashikhmin_h, ashikhmin)
-MCSI_BATCH_SAMPLE(ashikhmin, ashikhmin)
-MCSI_BATCH_VALUE(ashikhmin_pdf, ashikhmin)
-MCSI_BATCH_VALUE(ashikhmin_eval, ashikhmin)
 #endif /* MCS_NO_LOBES */
 
 /* ==== [mis] multiple importance sampling =======================================================================================
@@ -2707,26 +2605,26 @@ MCSI_BATCH_VALUE(ashikhmin_eval, ashikhmin)
  * 1e30, 1e-30 and infinity are fine; 0 where pf is 0 or one of them is negative or NaN; the two weights of a sample add up to 1. A
  * mixture takes bad densities for 0 and the nearest c in [0,1], 0 for NaN. 1-2 div. */
 
-MCSI_CORE MCSI_F MCSI_(mis_ratio)(MCSI_F pf, MCSI_F pg, MCSI_I *ok) {
-    const MCSI_F one = MCS_(set)(1.0f);
+MCSI_CORE mcs_f mcsi_mis_ratio(mcs_f pf, mcs_f pg, mcs_i *ok) {
+    const mcs_f one = mcs_set(1.0f);
     *ok = (pf > 0.0f) & (pg >= 0.0f);
-    return MCSI_(quotient)(MCSI_(sel)(pf == pg, one, pg), MCSI_(sel)(*ok & (pf != pg), pf, one));
+    return mcsi_quotient(mcsi_sel(pf == pg, one, pg), mcsi_sel(*ok & (pf != pg), pf, one));
 }
-MCSI_FN MCSI_F MCS_(mis_balance)(MCSI_F pf, MCSI_F pg) {
-    MCSI_I ok;
-    MCSI_F r = MCSI_(mis_ratio)(pf, pg, &ok);
-    return MCSI_(keep)(ok & (r < FLT_MAX), 1.0f / (1.0f + r));
+MCSI_FN mcs_f mcs_mis_balance(mcs_f pf, mcs_f pg) {
+    mcs_i ok;
+    mcs_f r = mcsi_mis_ratio(pf, pg, &ok);
+    return mcsi_keep(ok & (r < FLT_MAX), 1.0f / (1.0f + r));
 }
-MCSI_FN MCSI_F MCS_(mis_power)(MCSI_F pf, MCSI_F pg) {
-    MCSI_I ok;
-    MCSI_F r = MCSI_(mis_ratio)(pf, pg, &ok);
-    MCSI_F least = MCSI_(min)(r, MCS_(set)(1.8446743e19f)); /* the largest whose square is a float */
-    return MCSI_(keep)(ok & (r <= least), 1.0f / (1.0f + least * least));
+MCSI_FN mcs_f mcs_mis_power(mcs_f pf, mcs_f pg) {
+    mcs_i ok;
+    mcs_f r = mcsi_mis_ratio(pf, pg, &ok);
+    mcs_f least = mcsi_min(r, mcs_set(1.8446743e19f)); /* the largest whose square is a float */
+    return mcsi_keep(ok & (r <= least), 1.0f / (1.0f + least * least));
 }
-MCSI_FN MCSI_F MCS_(mix_pdf)(MCSI_F c, MCSI_F pf, MCSI_F pg) {
-    MCSI_I ok = c == c;
-    c = MCSI_(min)(MCSI_(max)(c, MCS_(set)(0.0f)), MCS_(set)(1.0f));
-    return MCSI_(keep)(ok, c * MCSI_(keep)(pf > 0.0f, pf) + (1.0f - c) * MCSI_(keep)(pg > 0.0f, pg));
+MCSI_FN mcs_f mcs_mix_pdf(mcs_f c, mcs_f pf, mcs_f pg) {
+    mcs_i ok = c == c;
+    c = mcsi_min(mcsi_max(c, mcs_set(0.0f)), mcs_set(1.0f));
+    return mcsi_keep(ok, c * mcsi_keep(pf > 0.0f, pf) + (1.0f - c) * mcsi_keep(pg > 0.0f, pg));
 }
 
 #if MCSI_W == 1
@@ -3259,35 +3157,29 @@ MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
  * 1 - cos(theta) from the nearer pole and its height (negative when that is the southern one), and where it lies in its texel's
  * share. */
 typedef struct {
-    MCSI_F row_rest, row_mass, edge, height, col, col_rest, col_mass;
-} MCSI_(env_point);
+    mcs_f row_rest, row_mass, edge, height, col, col_rest, col_mass;
+} mcsi_env_point;
 /* What the rounding of a direction may move: samples keep 2^-22 of the map's width and height off the borders of their texel. */
 #define MCSI_ENV_MARGIN 2.384185791015625e-07
 /* `turn` is a column's width, `inner` the part of it within the margins. */
-MCSI_CORE MCS_(vec3) MCSI_(env_direction)(const MCS_(frame) * f, const MCSI_(env_point) * p, float turn, float inner) {
-    MCSI_F t = p->edge + p->row_rest / p->row_mass * p->height, sine = MCSI_(sqrt)(t * (2.0f - t)), s, c;
-    MCSI_F turns = p->col * turn + (p->col_rest / p->col_mass * inner + (float)MCSI_ENV_MARGIN);
-    MCSI_(sincos_turns)(turns, &s, &c);
-    return MCSI_(to_world)(
-        f, MCSI_(vec3)(sine * c, sine * s, MCSI_(from_bits)(MCSI_(bits)(1.0f - t) ^ (MCSI_(bits)(p->height) & (-0x7fffffff - 1)))));
+MCSI_CORE mcs_vec3 mcsi_env_direction(const mcs_frame *f, const mcsi_env_point *p, float turn, float inner) {
+    mcs_f t = p->edge + p->row_rest / p->row_mass * p->height, sine = mcsi_sqrt(t * (2.0f - t)), s, c;
+    mcs_f turns = p->col * turn + (p->col_rest / p->col_mass * inner + (float)MCSI_ENV_MARGIN);
+    mcsi_sincos_turns(turns, &s, &c);
+    return mcsi_to_world(
+        f, mcsi_vec3(sine * c, sine * s, mcsi_from_bits(mcsi_bits(1.0f - t) ^ (mcsi_bits(p->height) & (-0x7fffffff - 1)))));
 }
 /* Where a direction lies: 1 - |cos(theta)|, with the sign of cos(theta), and 4 for a bad direction; the angle to the nearer pole
  * and the azimuth in turns. */
-MCSI_CORE void MCSI_(env_locate)(const MCS_(frame) * f, MCS_(vec3) w, MCSI_F *off_pole, MCSI_F *polar, MCSI_F *turns) {
-    MCSI_I ok = MCSI_(always)();
-    MCSI_F sine2, up;
-    w = MCSI_(to_local)(f, MCSI_(direction)(w, &ok));
-    sine2 = w.x * w.x + w.y * w.y, up = MCSI_(abs)(w.z);
-    *off_pole = MCSI_(sel)(ok, MCSI_(with_sign)(sine2 / (1.0f + up), w.z), MCS_(set)(4.0f));
-    *polar = MCSI_(atan2_turns)(MCSI_(sqrt)(sine2), up);
-    *turns = MCSI_(atan2_turns)(w.y, w.x);
+MCSI_CORE void mcsi_env_locate(const mcs_frame *f, mcs_vec3 w, mcs_f *off_pole, mcs_f *polar, mcs_f *turns) {
+    mcs_i ok = mcsi_always();
+    mcs_f sine2, up;
+    w = mcsi_to_local(f, mcsi_direction(w, &ok));
+    sine2 = w.x * w.x + w.y * w.y, up = mcsi_abs(w.z);
+    *off_pole = mcsi_sel(ok, mcsi_with_sign(sine2 / (1.0f + up), w.z), mcs_set(4.0f));
+    *polar = mcsi_atan2_turns(mcsi_sqrt(sine2), up);
+    *turns = mcsi_atan2_turns(w.y, w.x);
 }
-MCSI_CORE MCS_(frame) MCSI_(spread_frame)(const mcs_frame *f) {
-    MCS_(frame) r;
-    r.s = MCSI_(spread)(f->s), r.t = MCSI_(spread)(f->t), r.n = MCSI_(spread)(f->n);
-    return r;
-}
-#ifndef MCS_NO_BATCH
 #if MCSI_W == 1
 enum { MCSI_ENV_BLOCK = 32 };
 typedef struct {
@@ -3300,34 +3192,55 @@ typedef struct {
         pdf[MCSI_ENV_BLOCK];
 } mcsi_env_block;
 #endif
-MCSI_BATCH_AS(mcsi_env_directions_n, env_directions_n, (const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner),
-              (f, n, b, turn, inner), {
-                  MCS_(frame) frame = MCSI_(spread_frame)(f);
-                  size_t i;
-                  for (i = 0; i < n; i += MCSI_W) {
-                      MCSI_(env_point) p;
-                      MCS_(vec3) v;
-                      p.row_rest = MCS_(load)(b->row_rest + i), p.row_mass = MCS_(load)(b->row_mass + i);
-                      p.edge = MCS_(load)(b->edge + i), p.height = MCS_(load)(b->height + i), p.col = MCS_(load)(b->col + i);
-                      p.col_rest = MCS_(load)(b->col_rest + i), p.col_mass = MCS_(load)(b->col_mass + i);
-                      v = MCSI_(env_direction)(&frame, &p, turn, inner);
-                      MCS_(store)(b->x + i, v.x), MCS_(store)(b->y + i, v.y), MCS_(store)(b->z + i, v.z);
-                  }
-              })
-MCSI_BATCH_AS(mcsi_env_locate_n, env_locate_n,
-              (const mcs_frame *f, size_t n, const float *x, const float *y, const float *z, float *off_pole, float *polar,
-               float *turns),
-              (f, n, x, y, z, off_pole, polar, turns), {
-                  mcsi_batch b;
-                  MCS_(frame) frame = MCSI_(spread_frame)(f);
-                  mcsi_batch_start(&b, n, x, y, z);
-                  b.out[0] = off_pole, b.out[1] = polar, b.out[2] = turns;
-                  MCSI_EACH(b) {
-                      MCSI_F o, p, t;
-                      MCSI_(env_locate)(&frame, MCSI_(vec3)(MCSI_IN(b, 0), MCSI_IN(b, 1), MCSI_IN(b, 2)), &o, &p, &t);
-                      MCSI_OUT(b, 0, o), MCSI_OUT(b, 1, p), MCSI_OUT(b, 2, t);
-                  }
-              })
+#ifdef MCSI_LOOPS
+MCSI_CORE mcs_frame mcsi_spread_frame(const mcsi_scalar_frame *f) {
+    mcs_frame r;
+    r.s = mcsi_spread(f->s);
+    r.t = mcsi_spread(f->t);
+    r.n = mcsi_spread(f->n);
+    return r;
+}
+MCSI_LOOP void mcsi_env_directions_loop(const mcsi_scalar_frame *f, size_t n, mcsi_env_block *b, float turn, float inner) {
+    mcs_frame frame = mcsi_spread_frame(f);
+    size_t i;
+    for (i = 0; i < n; i += MCSI_W) {
+        mcsi_env_point p;
+        mcs_vec3 v;
+        p.row_rest = mcs_load(b->row_rest + i);
+        p.row_mass = mcs_load(b->row_mass + i);
+        p.edge = mcs_load(b->edge + i);
+        p.height = mcs_load(b->height + i);
+        p.col = mcs_load(b->col + i);
+        p.col_rest = mcs_load(b->col_rest + i);
+        p.col_mass = mcs_load(b->col_mass + i);
+        v = mcsi_env_direction(&frame, &p, turn, inner);
+        mcs_store(b->x + i, v.x);
+        mcs_store(b->y + i, v.y);
+        mcs_store(b->z + i, v.z);
+    }
+}
+MCSI_LOOP void mcsi_env_locate_loop(const mcsi_scalar_frame *f, size_t n, const float *x, const float *y, const float *z,
+                                    float *off_pole, float *polar, float *turns) {
+    mcsi_batch b;
+    mcs_frame frame = mcsi_spread_frame(f);
+    mcsi_batch_start(&b, n, x, y, z);
+    b.out[0] = off_pole;
+    b.out[1] = polar;
+    b.out[2] = turns;
+    MCSI_EACH(b) {
+        mcs_f o, p, t;
+        mcsi_env_locate(&frame, mcsi_vec3(mcsi_in(&b, 0), mcsi_in(&b, 1), mcsi_in(&b, 2)), &o, &p, &t);
+        mcsi_out(&b, 0, o);
+        mcsi_out(&b, 1, p);
+        mcsi_out(&b, 2, t);
+    }
+}
+#endif
+#if MCSI_W == 1
+/* By the widest loop that this processor has; defined behind the passes. */
+MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner);
+MCS_FN void mcsi_env_locate_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z, float *off_pole,
+                              float *polar, float *turns);
 #endif
 
 #if MCSI_W == 1
@@ -4163,68 +4076,66 @@ typedef struct {
 } mcsi_facing;
 #endif
 /* Nearly exp(-x), x >= 0, and never less. */
-MCSI_CORE MCSI_F MCSI_(falloff)(MCSI_F x) {
-    MCSI_F p = 1.0f / (1.0f + 0.00390625f * MCSI_(min)(x, MCS_(set)(64.0f))); /* subnormal products would be slow */
+MCSI_CORE mcs_f mcsi_falloff(mcs_f x) {
+    mcs_f p = 1.0f / (1.0f + 0.00390625f * mcsi_min(x, mcs_set(64.0f))); /* subnormal products would be slow */
     p = p * p, p = p * p, p = p * p, p = p * p;
     p = p * p, p = p * p, p = p * p, p = p * p;
     return p;
 }
 /* The lobe times cosine towards the light of a tile whose direction spreads: Ward (MCS_WARD_GMD), Phong, GGX. */
-MCSI_CORE MCSI_F MCSI_(tile_lobe)(const mcsi_facing *s, MCS_(vec3) w, MCSI_F spread) {
-    MCSI_F ax2 = s->ax2 + 0.25f * spread, ay2 = s->ay2 + 0.25f * spread, aa = ax2 * ay2, root = MCSI_(sqrt)(aa);
-    MCSI_F hx = w.x + s->wo.x, hy = w.y + s->wo.y, hz = w.z + s->wo.z, hh = hx * hx + hy * hy + hz * hz;
-    MCSI_F ratio, shadow, least = MCS_(set)(FLT_MIN);
+MCSI_CORE mcs_f mcsi_tile_lobe(const mcsi_facing *s, mcs_vec3 w, mcs_f spread) {
+    mcs_f ax2 = s->ax2 + 0.25f * spread, ay2 = s->ay2 + 0.25f * spread, aa = ax2 * ay2, root = mcsi_sqrt(aa);
+    mcs_f hx = w.x + s->wo.x, hy = w.y + s->wo.y, hz = w.z + s->wo.z, hh = hx * hx + hy * hy + hz * hz;
+    mcs_f ratio, shadow, least = mcs_set(FLT_MIN);
     if (s->profile == MCS_PROFILE_GAUSS) {
-        MCSI_F h2 = hz * hz, a = hx * hx * ay2 + hy * hy * ax2, b = MCSI_(max)(aa * h2, least);
-        a = MCSI_(falloff)(MCSI_(min)(a, 64.0f * b) / b); /* which is as far as it falls */
-        return MCSI_(quotient)(MCSI_1_PI * a * hh * w.z, MCSI_(max)(root * h2 * h2, least));
+        mcs_f h2 = hz * hz, a = hx * hx * ay2 + hy * hy * ax2, b = mcsi_max(aa * h2, least);
+        a = mcsi_falloff(mcsi_min(a, 64.0f * b) / b); /* which is as far as it falls */
+        return mcsi_quotient(MCSI_1_PI * a * hh * w.z, mcsi_max(root * h2 * h2, least));
     }
     if (s->profile == MCS_PROFILE_PHONG) {
-        MCSI_F n = MCSI_(max)(0.5f / root - 2.0f, MCS_(set)(0.0f)), z = w.z - s->wo.z; /* h without its z: w less the mirror's */
-        return (n + 2.0f) * MCSI_1_2PI * MCSI_(falloff)(0.5f * n * (hx * hx + hy * hy + z * z)) * w.z;
+        mcs_f n = mcsi_max(0.5f / root - 2.0f, mcs_set(0.0f)), z = w.z - s->wo.z; /* h without its z: w less the mirror's */
+        return (n + 2.0f) * MCSI_1_2PI * mcsi_falloff(0.5f * n * (hx * hx + hy * hy + z * z)) * w.z;
     }
-    ratio = root * hh / MCSI_(max)(hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa, least);
-    shadow = s->wo.z * MCSI_(sqrt)(ax2 * w.x * w.x + ay2 * w.y * w.y + w.z * w.z) +
-             w.z * MCSI_(sqrt)(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
-    return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / MCSI_(max)(shadow, least);
+    ratio = root * hh / mcsi_max(hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa, least);
+    shadow = s->wo.z * mcsi_sqrt(ax2 * w.x * w.x + ay2 * w.y * w.y + w.z * w.z) +
+             w.z * mcsi_sqrt(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
+    return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / mcsi_max(shadow, least);
 }
 /* Never 0, nor what bad axes make of it. */
-MCSI_CORE MCSI_F MCSI_(reflected)(MCSI_F f) {
-    return MCSI_(sel)(f > 0.0f, MCSI_(min)(f, MCS_(set)(1e30f)), MCS_(set)(0.0f)) + MCSI_TILE_LEAST;
-}
+MCSI_CORE mcs_f mcsi_reflected(mcs_f f) { return mcsi_sel(f > 0.0f, mcsi_min(f, mcs_set(1e30f)), mcs_set(0.0f)) + MCSI_TILE_LEAST; }
 /* Reflection towards the light of tiles; more than 0 wherever there may be light above the horizon. */
-MCSI_CORE MCSI_F MCSI_(tile_value)(const MCS_(frame) * axes, const mcsi_facing *s, const float *tile, size_t stride) {
-    MCSI_F r = MCS_(load)(tile + MCSI_TILE_RADIUS * stride);
-    MCSI_F reach = MCSI_(max)(MCS_(load)(tile + MCSI_TILE_REACH * stride), MCS_(set)(1e-6f)); /* beyond the last tile it is 0 */
-    MCSI_F c, crossing, cosine, f, zero = MCS_(set)(0.0f);
-    MCS_(vec3) m;
-    m.x = MCS_(load)(tile + MCSI_TILE_X * stride), m.y = MCS_(load)(tile + MCSI_TILE_Y * stride);
-    m.z = MCS_(load)(tile + MCSI_TILE_Z * stride), c = MCSI_(dot)(axes->n, m), crossing = MCSI_(max)(c + reach, zero);
-    cosine = MCSI_(sel)(c >= reach, c, crossing * crossing / (4.0f * reach)), f = MCSI_1_PI * cosine;
+MCSI_CORE mcs_f mcsi_tile_value(const mcs_frame *axes, const mcsi_facing *s, const float *tile, size_t stride) {
+    mcs_f r = mcs_load(tile + MCSI_TILE_RADIUS * stride);
+    mcs_f reach = mcsi_max(mcs_load(tile + MCSI_TILE_REACH * stride), mcs_set(1e-6f)); /* beyond the last tile it is 0 */
+    mcs_f c, crossing, cosine, f, zero = mcs_set(0.0f);
+    mcs_vec3 m;
+    m.x = mcs_load(tile + MCSI_TILE_X * stride), m.y = mcs_load(tile + MCSI_TILE_Y * stride);
+    m.z = mcs_load(tile + MCSI_TILE_Z * stride), c = mcsi_dot(axes->n, m), crossing = mcsi_max(c + reach, zero);
+    cosine = mcsi_sel(c >= reach, c, crossing * crossing / (4.0f * reach)), f = MCSI_1_PI * cosine;
     if (s->matte < 1.0f) {
-        MCSI_F unit = MCS_(load)(tile + MCSI_TILE_UNIT * stride);
-        MCS_(vec3) w = MCSI_(vec3)(MCSI_(dot)(axes->s, m) * unit, MCSI_(dot)(axes->t, m) * unit, MCSI_(max)(c * unit, cosine));
-        f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCS_(load)(tile + MCSI_TILE_SPREAD * stride));
+        mcs_f unit = mcs_load(tile + MCSI_TILE_UNIT * stride);
+        mcs_vec3 w = mcsi_vec3(mcsi_dot(axes->s, m) * unit, mcsi_dot(axes->t, m) * unit, mcsi_max(c * unit, cosine));
+        f = s->matte * f + (1.0f - s->matte) * mcsi_tile_lobe(s, w, mcs_load(tile + MCSI_TILE_SPREAD * stride));
     }
-    return MCSI_(sel)(c + r > 0.0f, MCSI_(reflected)(f), zero);
+    return mcsi_sel(c + r > 0.0f, mcsi_reflected(f), zero);
 }
 /* Reflection towards the corners of tiles. */
-MCSI_CORE MCSI_F MCSI_(corner_value)(const MCS_(frame) * axes, const mcsi_facing *s, MCS_(vec3) w) {
-    MCSI_F z = MCSI_(max)(MCSI_(dot)(axes->n, w), MCS_(set)(0.0f)), f = MCSI_1_PI * z;
+MCSI_CORE mcs_f mcsi_corner_value(const mcs_frame *axes, const mcsi_facing *s, mcs_vec3 w) {
+    mcs_f z = mcsi_max(mcsi_dot(axes->n, w), mcs_set(0.0f)), f = MCSI_1_PI * z;
     if (s->matte < 1.0f) {
-        w = MCSI_(vec3)(MCSI_(dot)(axes->s, w), MCSI_(dot)(axes->t, w), z);
-        f = s->matte * f + (1.0f - s->matte) * MCSI_(tile_lobe)(s, w, MCS_(set)(0.0f));
+        w = mcsi_vec3(mcsi_dot(axes->s, w), mcsi_dot(axes->t, w), z);
+        f = s->matte * f + (1.0f - s->matte) * mcsi_tile_lobe(s, w, mcs_set(0.0f));
     }
-    return MCSI_(reflected)(f);
+    return mcsi_reflected(f);
 }
 /* The density within a tile, relative to that of its light: bilinear in the places t1 of the columns and t2 of the rows among the
  * light, from the reflection v towards the corners (column by column) as far as the light reaches them; its mean is 1. */
 typedef struct {
-    MCSI_F v[4];
-} MCSI_(warp);
-MCSI_CORE MCSI_(warp) MCSI_(warp_make)(MCSI_F value, MCSI_F pull, MCSI_F v00, MCSI_F v01, MCSI_F v10, MCSI_F v11) {
-    MCSI_(warp) w;
-    MCSI_F least, mean;
+    mcs_f v[4];
+} mcsi_warp;
+MCSI_CORE mcsi_warp mcsi_warp_make(mcs_f value, mcs_f pull, mcs_f v00, mcs_f v01, mcs_f v10, mcs_f v11) {
+    mcsi_warp w;
+    mcs_f least, mean;
     value = value * (1.0f - pull); /* so that no difference falls below 0 */
     w.v[0] = value + pull * v00, w.v[1] = value + pull * v01, w.v[2] = value + pull * v10, w.v[3] = value + pull * v11;
     mean = (w.v[0] + w.v[1]) + (w.v[2] + w.v[3]), least = 0.0075f * mean, mean = 1.0f / (0.25f * mean + least);
@@ -4232,89 +4143,63 @@ MCSI_CORE MCSI_(warp) MCSI_(warp_make)(MCSI_F value, MCSI_F pull, MCSI_F v00, MC
     w.v[3] = (w.v[3] + least) * mean;
     return w;
 }
-MCSI_CORE MCSI_F MCSI_(warp_density)(const MCSI_(warp) * w, MCSI_F t1, MCSI_F t2) {
-    MCSI_F a = w->v[0] + t2 * (w->v[1] - w->v[0]), b = w->v[2] + t2 * (w->v[3] - w->v[2]);
+MCSI_CORE mcs_f mcsi_warp_density(const mcsi_warp *w, mcs_f t1, mcs_f t2) {
+    mcs_f a = w->v[0] + t2 * (w->v[1] - w->v[0]), b = w->v[2] + t2 * (w->v[3] - w->v[2]);
     return a + t1 * (b - a);
 }
 /* The place of u when a linear density has a and b at its ends. */
-MCSI_CORE MCSI_F MCSI_(linear_place)(MCSI_F a, MCSI_F b, MCSI_F u) {
-    return MCSI_(min)(u * (a + b) / (a + MCSI_(sqrt)((1.0f - u) * (a * a) + u * (b * b))), MCS_(set)(0.99999994f));
+MCSI_CORE mcs_f mcsi_linear_place(mcs_f a, mcs_f b, mcs_f u) {
+    return mcsi_min(u * (a + b) / (a + mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b))), mcs_set(0.99999994f));
 }
 /* u1 and u2 become places; returns the density there. */
-MCSI_CORE MCSI_F MCSI_(warp_draw)(const MCSI_(warp) * w, MCSI_F *u1, MCSI_F *u2) {
-    MCSI_F a, b;
-    *u2 = MCSI_(linear_place)(w->v[0] + w->v[2], w->v[1] + w->v[3], *u2);
-    a = w->v[0] + *u2 * (w->v[1] - w->v[0]), b = w->v[2] + *u2 * (w->v[3] - w->v[2]), *u1 = MCSI_(linear_place)(a, b, *u1);
+MCSI_CORE mcs_f mcsi_warp_draw(const mcsi_warp *w, mcs_f *u1, mcs_f *u2) {
+    mcs_f a, b;
+    *u2 = mcsi_linear_place(w->v[0] + w->v[2], w->v[1] + w->v[3], *u2);
+    a = w->v[0] + *u2 * (w->v[1] - w->v[0]), b = w->v[2] + *u2 * (w->v[3] - w->v[2]), *u1 = mcsi_linear_place(a, b, *u1);
     return a + *u1 * (b - a);
 }
 /* A grid of weights, light times value, column by column, as integers: cum[j][i] is the sum of row i's shares before column j,
  * cum[cols][i] that of the whole row. row[i] is the weight of a row. */
-MCSI_CORE void MCSI_(grid_rows)(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
+MCSI_CORE void mcsi_grid_rows(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
     size_t i, j;
     for (i = 0; i < rows; i += MCSI_W) {
-        MCSI_F sum = MCS_(set)(0.0f), scale;
-        MCSI_I at = MCSI_(trunc)(sum);
-        for (j = 0; j < cols; j++) sum = sum + MCS_(load)(light + j * rows + i) * MCS_(load)(value + j * rows + i);
-        scale = (16777216.0f - (float)cols) / MCSI_(max)(sum, MCS_(set)(MCSI_ROW_LEAST));
+        mcs_f sum = mcs_set(0.0f), scale;
+        mcs_i at = mcsi_trunc(sum);
+        for (j = 0; j < cols; j++) sum = sum + mcs_load(light + j * rows + i) * mcs_load(value + j * rows + i);
+        scale = (16777216.0f - (float)cols) / mcsi_max(sum, mcs_set(MCSI_ROW_LEAST));
         for (j = 0; j < cols; j++) {
-            MCSI_F w = MCS_(load)(light + j * rows + i) * MCS_(load)(value + j * rows + i);
-            MCSI_(store_int)(cum + j * rows + i, at);
-            at = at + MCSI_(trunc)(MCSI_(sel)(w > 0.0f, w * scale + 1.0f, MCS_(set)(0.0f)));
+            mcs_f w = mcs_load(light + j * rows + i) * mcs_load(value + j * rows + i);
+            mcsi_store_int(cum + j * rows + i, at);
+            at = at + mcsi_trunc(mcsi_sel(w > 0.0f, w * scale + 1.0f, mcs_set(0.0f)));
         }
-        MCSI_(store_int)(cum + cols * rows + i, at), MCS_(store)(row + i, sum);
+        mcsi_store_int(cum + cols * rows + i, at), mcs_store(row + i, sum);
     }
 }
 /* What tiles weigh at most, by their mean direction or a corner, and the sums of rows. Then values that the mean of their warp is
  * below come three quarters of the way down to it: beside the peak of a narrow lobe the spread of the light says too much. */
-MCSI_CORE void MCSI_(grid_bounds)(size_t rows, size_t cols, const float *light, const float *pull, const float *corner,
-                                  float *value, float *weight, float *row) {
+MCSI_CORE void mcsi_grid_bounds(size_t rows, size_t cols, const float *light, const float *pull, const float *corner, float *value,
+                                float *weight, float *row) {
     size_t i, j;
     for (i = 0; i < rows; i += MCSI_W) {
-        MCSI_F sum = MCS_(set)(0.0f), a = MCS_(load)(corner + i), b = MCS_(load)(corner + i + 1);
-        MCSI_F most = MCSI_(max)(a, b), both = a + b, first_most = most, first_both = both;
+        mcs_f sum = mcs_set(0.0f), a = mcs_load(corner + i), b = mcs_load(corner + i + 1);
+        mcs_f most = mcsi_max(a, b), both = a + b, first_most = most, first_both = both;
         for (j = 0; j < cols; j++) {
             const float *next = corner + (j + 1) * (rows + 1) + i;
-            MCSI_F next_most = first_most, next_both = first_both, v = MCS_(load)(value + j * rows + i), bound, mean;
+            mcs_f next_most = first_most, next_both = first_both, v = mcs_load(value + j * rows + i), bound, mean;
             if (j + 1 < cols) {
-                a = MCS_(load)(next), b = MCS_(load)(next + 1);
-                next_most = MCSI_(max)(a, b), next_both = a + b;
+                a = mcs_load(next), b = mcs_load(next + 1);
+                next_most = mcsi_max(a, b), next_both = a + b;
             }
-            bound = MCSI_(keep)(v > 0.0f, MCSI_(max)(v, MCSI_(max)(most, next_most)));
-            bound = MCS_(load)(light + j * rows + i) * bound, sum = sum + bound;
-            mean = v + MCS_(load)(pull + j * rows + i) * (0.25f * (both + next_both) - v);
-            MCS_(store)(weight + j * rows + i, bound);
-            MCS_(store)(value + j * rows + i, MCSI_(sel)(mean < v, 0.25f * v + 0.75f * mean, v));
+            bound = mcsi_keep(v > 0.0f, mcsi_max(v, mcsi_max(most, next_most)));
+            bound = mcs_load(light + j * rows + i) * bound, sum = sum + bound;
+            mean = v + mcs_load(pull + j * rows + i) * (0.25f * (both + next_both) - v);
+            mcs_store(weight + j * rows + i, bound);
+            mcs_store(value + j * rows + i, mcsi_sel(mean < v, 0.25f * v + 0.75f * mean, v));
             most = next_most, both = next_both;
         }
-        MCS_(store)(row + i, sum);
+        mcs_store(row + i, sum);
     }
 }
-#ifndef MCS_NO_BATCH
-MCSI_BATCH_AS(mcsi_tile_values_n, tile_values_n, (const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value),
-              (s, n, tile, stride, value), {
-                  MCS_(frame) axes = MCSI_(spread_frame)(&s->axes);
-                  size_t i;
-                  for (i = 0; i < n; i += MCSI_W) MCS_(store)(value + i, MCSI_(tile_value)(&axes, s, tile + i, stride));
-              })
-MCSI_BATCH_AS(mcsi_patch_weights_n, patch_weights_n,
-              (const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight), (s, n, patch, value, weight), {
-                  MCS_(frame) axes = MCSI_(spread_frame)(&s->axes);
-                  size_t i;
-                  for (i = 0; i < n; i += MCSI_W) {
-                      MCSI_F v = MCSI_(tile_value)(&axes, s, patch + i, n);
-                      MCS_(store)(value + i, v), MCS_(store)(weight + i, v * MCS_(load)(patch + i));
-                  }
-              })
-MCSI_BATCH_AS(mcsi_corner_values_n, corner_values_n,
-              (const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value), (s, n, corner, stride, value), {
-                  MCS_(frame) axes = MCSI_(spread_frame)(&s->axes);
-                  size_t i;
-                  for (i = 0; i < n; i += MCSI_W) {
-                      const float *c = corner + i;
-                      MCS_(vec3) w = MCSI_(vec3)(MCS_(load)(c), MCS_(load)(c + stride), MCS_(load)(c + 2 * stride));
-                      MCS_(store)(value + i, MCSI_(corner_value)(&axes, s, w));
-                  }
-              })
 #if MCSI_W == 1
 /* What warps are made of, and u1 and u2, which become places, with the density there. */
 typedef struct {
@@ -4322,27 +4207,58 @@ typedef struct {
         v11[MCSI_ENV_BLOCK], u1[MCSI_ENV_BLOCK], u2[MCSI_ENV_BLOCK], density[MCSI_ENV_BLOCK];
 } mcsi_warp_block;
 #endif
-MCSI_BATCH_AS(mcsi_warps_n, warps_n, (size_t n, mcsi_warp_block *b), (n, b), {
+#ifdef MCSI_LOOPS
+MCSI_LOOP void mcsi_tile_values_loop(const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value) {
+    mcs_frame axes = mcsi_spread_frame(&s->axes);
+    size_t i;
+    for (i = 0; i < n; i += MCSI_W) mcs_store(value + i, mcsi_tile_value(&axes, s, tile + i, stride));
+}
+MCSI_LOOP void mcsi_patch_weights_loop(const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight) {
+    mcs_frame axes = mcsi_spread_frame(&s->axes);
     size_t i;
     for (i = 0; i < n; i += MCSI_W) {
-        MCSI_F u1 = MCS_(load)(b->u1 + i), u2 = MCS_(load)(b->u2 + i);
-        MCSI_(warp)
-        w = MCSI_(warp_make)(MCS_(load)(b->value + i), MCS_(load)(b->pull + i), MCS_(load)(b->v00 + i), MCS_(load)(b->v01 + i),
-                             MCS_(load)(b->v10 + i), MCS_(load)(b->v11 + i));
-        MCS_(store)(b->density + i, MCSI_(warp_draw)(&w, &u1, &u2)), MCS_(store)(b->u1 + i, u1), MCS_(store)(b->u2 + i, u2);
+        mcs_f v = mcsi_tile_value(&axes, s, patch + i, n);
+        mcs_store(value + i, v);
+        mcs_store(weight + i, v * mcs_load(patch + i));
     }
-})
-/* clang-format off */
-MCSI_BATCH_AS(mcsi_grid_rows_n, grid_rows_n,
-              (size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row),
-              (rows, cols, light, value, cum, row), { MCSI_(grid_rows)(rows, cols, light, value, cum, row); })
-MCSI_BATCH_AS(mcsi_grid_bounds_n, grid_bounds_n,
-              (size_t rows, size_t cols, const float *light, const float *pull, const float *corner, float *value, float *weight,
-               float *row),
-              (rows, cols, light, pull, corner, value, weight, row), {
-                  MCSI_(grid_bounds)(rows, cols, light, pull, corner, value, weight, row);
-              })
-/* clang-format on */
+}
+MCSI_LOOP void mcsi_corner_values_loop(const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value) {
+    mcs_frame axes = mcsi_spread_frame(&s->axes);
+    size_t i;
+    for (i = 0; i < n; i += MCSI_W) {
+        const float *c = corner + i;
+        mcs_vec3 w = mcsi_vec3(mcs_load(c), mcs_load(c + stride), mcs_load(c + 2 * stride));
+        mcs_store(value + i, mcsi_corner_value(&axes, s, w));
+    }
+}
+MCSI_LOOP void mcsi_warps_loop(size_t n, mcsi_warp_block *b) {
+    size_t i;
+    for (i = 0; i < n; i += MCSI_W) {
+        mcs_f u1 = mcs_load(b->u1 + i), u2 = mcs_load(b->u2 + i);
+        mcsi_warp w = mcsi_warp_make(mcs_load(b->value + i), mcs_load(b->pull + i), mcs_load(b->v00 + i), mcs_load(b->v01 + i),
+                                     mcs_load(b->v10 + i), mcs_load(b->v11 + i));
+        mcs_store(b->density + i, mcsi_warp_draw(&w, &u1, &u2));
+        mcs_store(b->u1 + i, u1);
+        mcs_store(b->u2 + i, u2);
+    }
+}
+MCSI_LOOP void mcsi_grid_rows_loop(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
+    mcsi_grid_rows(rows, cols, light, value, cum, row);
+}
+MCSI_LOOP void mcsi_grid_bounds_loop(size_t rows, size_t cols, const float *light, const float *pull, const float *corner,
+                                     float *value, float *weight, float *row) {
+    mcsi_grid_bounds(rows, cols, light, pull, corner, value, weight, row);
+}
+#endif
+#if MCSI_W == 1
+/* By the widest loop that this processor has; defined behind the passes. */
+MCS_FN void mcsi_tile_values_n(const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value);
+MCS_FN void mcsi_patch_weights_n(const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight);
+MCS_FN void mcsi_corner_values_n(const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value);
+MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b);
+MCS_FN void mcsi_grid_rows_n(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row);
+MCS_FN void mcsi_grid_bounds_n(size_t rows, size_t cols, const float *light, const float *pull, const float *corner, float *value,
+                               float *weight, float *row);
 #endif
 
 #if MCSI_W == 1
@@ -4643,13 +4559,8 @@ MCSI_CORE void mcsi_product_end_grids(mcs_product *p, uint32_t used) {
     MCSI_FILL(mcsi_product_grids(p) + used * grid, 0, (MCSI_FINE - used) * grid * sizeof(float));
 }
 MCSI_CORE void mcsi_product_add_up(mcs_product *p) {
-#ifndef MCS_NO_BATCH
     mcsi_grid_rows_n(p->t->rows, p->t->cols, mcsi_tiles_fields(p->t), mcsi_product_values(p), mcsi_product_cum(p),
                      mcsi_product_sums(p));
-#else
-    mcsi_grid_rows(p->t->rows, p->t->cols, mcsi_tiles_fields(p->t), mcsi_product_values(p), mcsi_product_cum(p),
-                   mcsi_product_sums(p));
-#endif
 }
 MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
     size_t n = (size_t)p->t->rows * p->t->cols;
@@ -4661,32 +4572,6 @@ MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
             rows[i + 1] > rows[i] ? (rows[i + 1] - rows[i]) / ((double)lit * mcsi_product_cum(p)[n + i]) : 0.0;
     return lit ? MCS_OK : MCS_UNIFORM;
 }
-MCSI_CORE void mcsi_tiles_value(const mcsi_facing *s, size_t n, const float *fields, size_t stride, float *value) {
-#ifndef MCS_NO_BATCH
-    mcsi_tile_values_n(s, n, fields, stride, value);
-#else
-    size_t i;
-    for (i = 0; i < n; i++) value[i] = mcsi_tile_value(&s->axes, s, fields + i, stride);
-#endif
-}
-/* The same of patches, and that times their light. */
-MCSI_CORE void mcsi_patches_weigh(const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight) {
-#ifndef MCS_NO_BATCH
-    mcsi_patch_weights_n(s, n, patch, value, weight);
-#else
-    size_t i;
-    for (i = 0; i < n; i++) value[i] = mcsi_tile_value(&s->axes, s, patch + i, n), weight[i] = value[i] * patch[i];
-#endif
-}
-MCSI_CORE void mcsi_corners_value(const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value) {
-#ifndef MCS_NO_BATCH
-    mcsi_corner_values_n(s, n, corner, stride, value);
-#else
-    size_t i;
-    for (i = 0; i < n; i++)
-        value[i] = mcsi_corner_value(&s->axes, s, mcsi_vec3(corner[i], corner[i + stride], corner[i + 2 * stride]));
-#endif
-}
 /* The tiles that may weigh most: their numbers, at most MCSI_FINE of them, each more than a 256th of all. The weights lie where the
  * integers of the columns will. */
 MCS_FN uint32_t mcsi_product_heaviest(mcs_product *p, uint32_t *tile) {
@@ -4695,11 +4580,7 @@ MCS_FN uint32_t mcsi_product_heaviest(mcs_product *p, uint32_t *tile) {
           least = 0.0f;
     uint32_t rows = p->t->rows, cols = p->t->cols, count = 0, i, k, c;
     const float *pull = fields + MCSI_TILE_PULL * (size_t)rows * cols;
-#ifndef MCS_NO_BATCH
     mcsi_grid_bounds_n(rows, cols, fields, pull, corners, values, weight, sum);
-#else
-    mcsi_grid_bounds(rows, cols, fields, pull, corners, values, weight, sum);
-#endif
     for (i = 0; i < rows; i++) least += sum[i] * 0.00390625f;
     for (i = 0; i < rows; i++) {
         if (!(sum[i] > least)) continue;
@@ -4720,7 +4601,7 @@ MCS_FN uint32_t mcsi_product_heaviest(mcs_product *p, uint32_t *tile) {
 MCS_FN float mcsi_grid_make(const mcsi_facing *s, const float *node, float *v) {
     float sum[MCSI_NODES], mean = 0.0f, least;
     uint32_t k, a;
-    mcsi_corners_value(s, MCSI_GRID, node, MCSI_GRID, v);
+    mcsi_corner_values_n(s, MCSI_GRID, node, MCSI_GRID, v);
     for (k = 0; k < MCSI_NODES; k++) sum[k] = 0.5f * (v[k] + v[MCSI_GRID - MCSI_NODES + k]);
     for (a = MCSI_NODES; a < MCSI_GRID - MCSI_NODES; a += MCSI_NODES)
         for (k = 0; k < MCSI_NODES; k++) sum[k] += v[a + k];
@@ -4806,8 +4687,8 @@ MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tile
     }
     n = (size_t)t->rows * t->cols;
     p->own = mcsi_own_make(r, &s), p->brdf_share = mcsi_brdf_share(&s, 14 * n, 0.03f), p->warped = 1;
-    mcsi_tiles_value(&s, n, mcsi_tiles_fields(t), n, mcsi_product_values(p));
-    mcsi_corners_value(&s, mcsi_corners(t), mcsi_tiles_corners(t), mcsi_corners(t), mcsi_product_corners(p));
+    mcsi_tile_values_n(&s, n, mcsi_tiles_fields(t), n, mcsi_product_values(p));
+    mcsi_corner_values_n(&s, mcsi_corners(t), mcsi_tiles_corners(t), mcsi_corners(t), mcsi_product_corners(p));
     if (s.matte < 1.0f && mcsi_lobe_width(&s, n) < MCSI_FINE_BELOW) fine = mcsi_product_refine(p, &s);
     mcsi_product_end_grids(p, fine);
     return mcsi_product_finish(p);
@@ -5122,21 +5003,21 @@ MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcsi
     const float *level = mcsi_tiles_patches(t);
     uint32_t rows = MCSI_PATCH_ROWS, below = t->rows / MCSI_PATCH_ROWS, in_row = *i / below, in_col = *j / below, k = 0;
     size_t at;
-    mcsi_patches_weigh(s, MCSI_PATCHES, level, value, weight);
+    mcsi_patch_weights_n(s, MCSI_PATCHES, level, value, weight);
     if (!mcsi_grid_draw(weight, MCSI_PATCH_ROWS, MCSI_PATCH_COLS, U1, U2, &in_row, &in_col, part)) return 0;
     level += (int)MCSI_TILE_FIELDS * MCSI_PATCHES;
     do {
         uint32_t side = mcsi_patch_side(t, rows), parts = side * side, y, x;
         const float *patch = level + MCSI_TILE_FIELDS * (size_t)(in_col * rows + in_row) * parts;
         below /= side, y = *i / below % side, x = *j / below % side;
-        mcsi_patches_weigh(s, parts, patch, value, weight);
+        mcsi_patch_weights_n(s, parts, patch, value, weight);
         if (!mcsi_parts_draw(patch, side, value, weight, U1, U2, &y, &x, part)) return 0;
         in_row = in_row * side + y, in_col = in_col * side + x, k = x * side + y,
         level += MCSI_TILE_FIELDS * 2 * (size_t)rows * rows * parts, rows *= side;
     } while (below > 1);
     *i = in_row, *j = in_col, at = (size_t)in_col * rows + in_row;
     mcsi_tile_prefetch(e, mcsi_tiles_window(t, in_row, in_col), *U2);
-    mcsi_corners_value(s, 4, mcsi_tiles_around(t) + 12 * at, 4, v);
+    mcsi_corner_values_n(s, 4, mcsi_tiles_around(t) + 12 * at, 4, v);
     *warp = mcsi_warp_make(value[k], mcsi_tiles_fields(t)[MCSI_TILE_PULL * (size_t)t->rows * t->cols + at], v[0], v[1], v[2], v[3]);
     return 1;
 }
@@ -5249,8 +5130,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_MAX_D
 #undef MCSI_ROUND_D
 #undef MCSI_REQUIRE
-#undef MCSI_BATCH
-#undef MCSI_BATCH_AS
+#undef MCSI_LOOP
+#undef MCSI_EACH
+#undef MCSI_LOOP_SAMPLE
+#undef MCSI_LOOP_VALUE
+#undef MCSI_LOOP_LOBE
+#undef MCSI_LOOP_VISIBLE
 #undef MCSI_W
 #undef MCSI_LOOPS
 #undef MCS_
@@ -5258,6 +5143,960 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_AVX
 #undef MCSI_AVX512
 #endif /* the body */
+
+/* ==== the passes for more than one lane ========================================================================================*/
+#ifndef MCSI_PASSES
+#define MCSI_PASSES
+#ifndef MCS_NO_WIDE
+/* What the names of the body stand for in the passes for more than one lane. */
+#define mcs_ashikhmin MCS_(ashikhmin)
+#define mcs_ashikhmin_eval MCS_(ashikhmin_eval)
+#define mcs_ashikhmin_h_invert MCS_(ashikhmin_h_invert)
+#define mcs_ashikhmin_h_pdf MCS_(ashikhmin_h_pdf)
+#define mcs_ashikhmin_h_sample MCS_(ashikhmin_h_sample)
+#define mcs_ashikhmin_make MCS_(ashikhmin_make)
+#define mcs_ashikhmin_pdf MCS_(ashikhmin_pdf)
+#define mcs_ashikhmin_sample MCS_(ashikhmin_sample)
+#define mcs_ashikhmin_weight MCS_(ashikhmin_weight)
+#define mcs_beckmann MCS_(beckmann)
+#define mcs_beckmann_eval MCS_(beckmann_eval)
+#define mcs_beckmann_h_invert MCS_(beckmann_h_invert)
+#define mcs_beckmann_h_pdf MCS_(beckmann_h_pdf)
+#define mcs_beckmann_h_sample MCS_(beckmann_h_sample)
+#define mcs_beckmann_make MCS_(beckmann_make)
+#define mcs_beckmann_pdf MCS_(beckmann_pdf)
+#define mcs_beckmann_sample MCS_(beckmann_sample)
+#define mcs_beckmann_weight MCS_(beckmann_weight)
+#define mcs_brdf MCS_(brdf)
+#define mcs_concentric_invert MCS_(concentric_invert)
+#define mcs_concentric_pdf MCS_(concentric_pdf)
+#define mcs_concentric_sample MCS_(concentric_sample)
+#define mcs_cone_from_sin2 MCS_(cone_from_sin2)
+#define mcs_cone_invert MCS_(cone_invert)
+#define mcs_cone_pdf MCS_(cone_pdf)
+#define mcs_cone_sample MCS_(cone_sample)
+#define mcs_cos_d MCS_(cos_d)
+#define mcs_cosine_invert MCS_(cosine_invert)
+#define mcs_cosine_pdf MCS_(cosine_pdf)
+#define mcs_cosine_sample MCS_(cosine_sample)
+#define mcs_dir MCS_(dir)
+#define mcs_disk_invert MCS_(disk_invert)
+#define mcs_disk_pdf MCS_(disk_pdf)
+#define mcs_disk_sample MCS_(disk_sample)
+#define mcs_evenpower_invert MCS_(evenpower_invert)
+#define mcs_evenpower_pdf MCS_(evenpower_pdf)
+#define mcs_evenpower_sample MCS_(evenpower_sample)
+#define mcs_exponential_invert MCS_(exponential_invert)
+#define mcs_exponential_pdf MCS_(exponential_pdf)
+#define mcs_exponential_sample MCS_(exponential_sample)
+#define mcs_f MCSI_F
+#define mcs_frame MCS_(frame)
+#define mcs_frame_make MCS_(frame_make)
+#define mcs_ggx MCS_(ggx)
+#define mcs_ggx_bounded_h_invert MCS_(ggx_bounded_h_invert)
+#define mcs_ggx_bounded_h_pdf MCS_(ggx_bounded_h_pdf)
+#define mcs_ggx_bounded_h_sample MCS_(ggx_bounded_h_sample)
+#define mcs_ggx_bounded_pdf MCS_(ggx_bounded_pdf)
+#define mcs_ggx_bounded_sample MCS_(ggx_bounded_sample)
+#define mcs_ggx_bounded_weight MCS_(ggx_bounded_weight)
+#define mcs_ggx_d MCS_(ggx_d)
+#define mcs_ggx_eval MCS_(ggx_eval)
+#define mcs_ggx_g1 MCS_(ggx_g1)
+#define mcs_ggx_g2 MCS_(ggx_g2)
+#define mcs_ggx_h_invert MCS_(ggx_h_invert)
+#define mcs_ggx_h_pdf MCS_(ggx_h_pdf)
+#define mcs_ggx_h_sample MCS_(ggx_h_sample)
+#define mcs_ggx_make MCS_(ggx_make)
+#define mcs_ggx_pdf MCS_(ggx_pdf)
+#define mcs_ggx_sample MCS_(ggx_sample)
+#define mcs_ggx_vndf_h_invert MCS_(ggx_vndf_h_invert)
+#define mcs_ggx_vndf_h_pdf MCS_(ggx_vndf_h_pdf)
+#define mcs_ggx_vndf_h_sample MCS_(ggx_vndf_h_sample)
+#define mcs_ggx_vndf_pdf MCS_(ggx_vndf_pdf)
+#define mcs_ggx_vndf_sample MCS_(ggx_vndf_sample)
+#define mcs_ggx_vndf_weight MCS_(ggx_vndf_weight)
+#define mcs_ggx_weight MCS_(ggx_weight)
+#define mcs_half MCS_(half)
+#define mcs_hash MCS_(hash)
+#define mcs_hemisphere_invert MCS_(hemisphere_invert)
+#define mcs_hemisphere_pdf MCS_(hemisphere_pdf)
+#define mcs_hemisphere_sample MCS_(hemisphere_sample)
+#define mcs_i MCSI_I
+#define mcs_is_mirror MCS_(is_mirror)
+#define mcs_linear_invert MCS_(linear_invert)
+#define mcs_linear_pdf MCS_(linear_pdf)
+#define mcs_linear_sample MCS_(linear_sample)
+#define mcs_load MCS_(load)
+#define mcs_logistic_invert MCS_(logistic_invert)
+#define mcs_logistic_pdf MCS_(logistic_pdf)
+#define mcs_logistic_sample MCS_(logistic_sample)
+#define mcs_mis_balance MCS_(mis_balance)
+#define mcs_mis_power MCS_(mis_power)
+#define mcs_mix_pdf MCS_(mix_pdf)
+#define mcs_normal_invert MCS_(normal_invert)
+#define mcs_normal_pdf MCS_(normal_pdf)
+#define mcs_normal_sample MCS_(normal_sample)
+#define mcs_phong MCS_(phong)
+#define mcs_phong_eval MCS_(phong_eval)
+#define mcs_phong_lobe_invert MCS_(phong_lobe_invert)
+#define mcs_phong_lobe_pdf MCS_(phong_lobe_pdf)
+#define mcs_phong_lobe_sample MCS_(phong_lobe_sample)
+#define mcs_phong_make MCS_(phong_make)
+#define mcs_phong_pdf MCS_(phong_pdf)
+#define mcs_phong_sample MCS_(phong_sample)
+#define mcs_phong_weight MCS_(phong_weight)
+#define mcs_power_invert MCS_(power_invert)
+#define mcs_power_pdf MCS_(power_pdf)
+#define mcs_power_sample MCS_(power_sample)
+#define mcs_r2 MCS_(r2)
+#define mcs_reflect MCS_(reflect)
+#define mcs_reflect_pdf MCS_(reflect_pdf)
+#define mcs_sample1 MCS_(sample1)
+#define mcs_sample2 MCS_(sample2)
+#define mcs_schlick MCS_(schlick)
+#define mcs_set MCS_(set)
+#define mcs_sobol MCS_(sobol)
+#define mcs_sobol_bits MCS_(sobol_bits)
+#define mcs_sphere_invert MCS_(sphere_invert)
+#define mcs_sphere_pdf MCS_(sphere_pdf)
+#define mcs_sphere_sample MCS_(sphere_sample)
+#define mcs_store MCS_(store)
+#define mcs_tent_invert MCS_(tent_invert)
+#define mcs_tent_pdf MCS_(tent_pdf)
+#define mcs_tent_sample MCS_(tent_sample)
+#define mcs_to_local MCS_(to_local)
+#define mcs_to_world MCS_(to_world)
+#define mcs_truncexp_invert MCS_(truncexp_invert)
+#define mcs_truncexp_pdf MCS_(truncexp_pdf)
+#define mcs_truncexp_sample MCS_(truncexp_sample)
+#define mcs_u MCSI_U
+#define mcs_u01 MCS_(u01)
+#define mcs_u01_open MCS_(u01_open)
+#define mcs_vec2 MCS_(vec2)
+#define mcs_vec3 MCS_(vec3)
+#define mcs_ward MCS_(ward)
+#define mcs_ward_eval MCS_(ward_eval)
+#define mcs_ward_h_invert MCS_(ward_h_invert)
+#define mcs_ward_h_pdf MCS_(ward_h_pdf)
+#define mcs_ward_h_sample MCS_(ward_h_sample)
+#define mcs_ward_make MCS_(ward_make)
+#define mcs_ward_pdf MCS_(ward_pdf)
+#define mcs_ward_sample MCS_(ward_sample)
+#define mcs_ward_weight MCS_(ward_weight)
+#define mcsi_above MCSI_(above)
+#define mcsi_abs MCSI_(abs)
+#define mcsi_always MCSI_(always)
+#define mcsi_any MCSI_(any)
+#define mcsi_anywhere MCSI_(anywhere)
+#define mcsi_around_z MCSI_(around_z)
+#define mcsi_ashikhmin_cosine MCSI_(ashikhmin_cosine)
+#define mcsi_ashikhmin_eval_loop MCSI_(ashikhmin_eval_loop)
+#define mcsi_ashikhmin_exponent MCSI_(ashikhmin_exponent)
+#define mcsi_ashikhmin_h_loop MCSI_(ashikhmin_h_loop)
+#define mcsi_ashikhmin_half MCSI_(ashikhmin_half)
+#define mcsi_ashikhmin_pdf_loop MCSI_(ashikhmin_pdf_loop)
+#define mcsi_ashikhmin_sample_loop MCSI_(ashikhmin_sample_loop)
+#define mcsi_ashikhmin_spread MCSI_(ashikhmin_spread)
+#define mcsi_atan2_turns MCSI_(atan2_turns)
+#define mcsi_beckmann_eval_loop MCSI_(beckmann_eval_loop)
+#define mcsi_beckmann_h_loop MCSI_(beckmann_h_loop)
+#define mcsi_beckmann_pdf_loop MCSI_(beckmann_pdf_loop)
+#define mcsi_beckmann_sample_loop MCSI_(beckmann_sample_loop)
+#define mcsi_beckmann_shadow MCSI_(beckmann_shadow)
+#define mcsi_beckmann_spread MCSI_(beckmann_spread)
+#define mcsi_bits MCSI_(bits)
+#define mcsi_blend MCSI_(blend)
+#define mcsi_brdf MCSI_(brdf)
+#define mcsi_cancelled MCSI_(cancelled)
+#define mcsi_concentric_loop MCSI_(concentric_loop)
+#define mcsi_cone_loop MCSI_(cone_loop)
+#define mcsi_cone_ok MCSI_(cone_ok)
+#define mcsi_corner_value MCSI_(corner_value)
+#define mcsi_corner_values_loop MCSI_(corner_values_loop)
+#define mcsi_cos_power MCSI_(cos_power)
+#define mcsi_cosine_loop MCSI_(cosine_loop)
+#define mcsi_d MCSI_D
+#define mcsi_deviation MCSI_(deviation)
+#define mcsi_direction MCSI_(direction)
+#define mcsi_disk_loop MCSI_(disk_loop)
+#define mcsi_disk_pdf MCSI_(disk_pdf)
+#define mcsi_dot MCSI_(dot)
+#define mcsi_env_direction MCSI_(env_direction)
+#define mcsi_env_directions_loop MCSI_(env_directions_loop)
+#define mcsi_env_locate MCSI_(env_locate)
+#define mcsi_env_locate_loop MCSI_(env_locate_loop)
+#define mcsi_env_point MCSI_(env_point)
+#define mcsi_evenpower_loop MCSI_(evenpower_loop)
+#define mcsi_exact_dot MCSI_(exact_dot)
+#define mcsi_exp_both MCSI_(exp_both)
+#define mcsi_exp_neg MCSI_(exp_neg)
+#define mcsi_exp_reduced MCSI_(exp_reduced)
+#define mcsi_exponent MCSI_(exponent)
+#define mcsi_exponent_ok MCSI_(exponent_ok)
+#define mcsi_exponential_loop MCSI_(exponential_loop)
+#define mcsi_falloff MCSI_(falloff)
+#define mcsi_finite MCSI_(finite)
+#define mcsi_from_bits MCSI_(from_bits)
+#define mcsi_gauss_h_invert MCSI_(gauss_h_invert)
+#define mcsi_gauss_h_pdf MCSI_(gauss_h_pdf)
+#define mcsi_gauss_h_sample MCSI_(gauss_h_sample)
+#define mcsi_gauss_over MCSI_(gauss_over)
+#define mcsi_gauss_pdf MCSI_(gauss_pdf)
+#define mcsi_gauss_radius MCSI_(gauss_radius)
+#define mcsi_ggx_bounded_h_loop MCSI_(ggx_bounded_h_loop)
+#define mcsi_ggx_bounded_pdf_loop MCSI_(ggx_bounded_pdf_loop)
+#define mcsi_ggx_bounded_sample_loop MCSI_(ggx_bounded_sample_loop)
+#define mcsi_ggx_d MCSI_(ggx_d)
+#define mcsi_ggx_eval_loop MCSI_(ggx_eval_loop)
+#define mcsi_ggx_h_loop MCSI_(ggx_h_loop)
+#define mcsi_ggx_pdf_loop MCSI_(ggx_pdf_loop)
+#define mcsi_ggx_radius MCSI_(ggx_radius)
+#define mcsi_ggx_sample_loop MCSI_(ggx_sample_loop)
+#define mcsi_ggx_spread MCSI_(ggx_spread)
+#define mcsi_ggx_t MCSI_(ggx_t)
+#define mcsi_ggx_vndf_h_loop MCSI_(ggx_vndf_h_loop)
+#define mcsi_ggx_vndf_pdf_loop MCSI_(ggx_vndf_pdf_loop)
+#define mcsi_ggx_vndf_sample_loop MCSI_(ggx_vndf_sample_loop)
+#define mcsi_grid_bounds MCSI_(grid_bounds)
+#define mcsi_grid_bounds_loop MCSI_(grid_bounds_loop)
+#define mcsi_grid_rows MCSI_(grid_rows)
+#define mcsi_grid_rows_loop MCSI_(grid_rows_loop)
+#define mcsi_hemisphere_loop MCSI_(hemisphere_loop)
+#define mcsi_in MCSI_(in)
+#define mcsi_in_radii MCSI_(in_radii)
+#define mcsi_keep MCSI_(keep)
+#define mcsi_linear_ends MCSI_(linear_ends)
+#define mcsi_linear_loop MCSI_(linear_loop)
+#define mcsi_linear_place MCSI_(linear_place)
+#define mcsi_log MCSI_(log)
+#define mcsi_log1m MCSI_(log1m)
+#define mcsi_log1p MCSI_(log1p)
+#define mcsi_log_of_sum MCSI_(log_of_sum)
+#define mcsi_log_series MCSI_(log_series)
+#define mcsi_logistic_loop MCSI_(logistic_loop)
+#define mcsi_max MCSI_(max)
+#define mcsi_min MCSI_(min)
+#define mcsi_mirror MCSI_(mirror)
+#define mcsi_mis_ratio MCSI_(mis_ratio)
+#define mcsi_mix MCSI_(mix)
+#define mcsi_mul_wide MCSI_(mul_wide)
+#define mcsi_normal_loop MCSI_(normal_loop)
+#define mcsi_normal_quantile MCSI_(normal_quantile)
+#define mcsi_normal_tail MCSI_(normal_tail)
+#define mcsi_off_zero MCSI_(off_zero)
+#define mcsi_one_minus_z MCSI_(one_minus_z)
+#define mcsi_out MCSI_(out)
+#define mcsi_out_brdf MCSI_(out_brdf)
+#define mcsi_out_dir MCSI_(out_dir)
+#define mcsi_out_sample1 MCSI_(out_sample1)
+#define mcsi_out_sample2 MCSI_(out_sample2)
+#define mcsi_patch_weights_loop MCSI_(patch_weights_loop)
+#define mcsi_philox_blocks MCSI_(philox_blocks)
+#define mcsi_philox_fill_loop MCSI_(philox_fill_loop)
+#define mcsi_philox_rounds MCSI_(philox_rounds)
+#define mcsi_phong_eval_loop MCSI_(phong_eval_loop)
+#define mcsi_phong_lobe_loop MCSI_(phong_lobe_loop)
+#define mcsi_phong_pdf_loop MCSI_(phong_pdf_loop)
+#define mcsi_phong_power MCSI_(phong_power)
+#define mcsi_phong_sample_loop MCSI_(phong_sample_loop)
+#define mcsi_phong_spread MCSI_(phong_spread)
+#define mcsi_pow_unit MCSI_(pow_unit)
+#define mcsi_power MCSI_(power)
+#define mcsi_power_loop MCSI_(power_loop)
+#define mcsi_q MCSI_Q
+#define mcsi_quotient MCSI_(quotient)
+#define mcsi_rarely MCSI_(rarely)
+#define mcsi_reflected MCSI_(reflected)
+#define mcsi_reverse_bits MCSI_(reverse_bits)
+#define mcsi_root MCSI_(root)
+#define mcsi_sample1 MCSI_(sample1)
+#define mcsi_sample2 MCSI_(sample2)
+#define mcsi_scale_ok MCSI_(scale_ok)
+#define mcsi_scramble_reversed MCSI_(scramble_reversed)
+#define mcsi_secant2 MCSI_(secant2)
+#define mcsi_sel MCSI_(sel)
+#define mcsi_sincos_behind MCSI_(sincos_behind)
+#define mcsi_sincos_turns MCSI_(sincos_turns)
+#define mcsi_slope_brdf MCSI_(slope_brdf)
+#define mcsi_slope_cosine MCSI_(slope_cosine)
+#define mcsi_slope_dir MCSI_(slope_dir)
+#define mcsi_slope_invert MCSI_(slope_invert)
+#define mcsi_slope_square MCSI_(slope_square)
+#define mcsi_slope_vector MCSI_(slope_vector)
+#define mcsi_slopes MCSI_(slopes)
+#define mcsi_slopes_make MCSI_(slopes_make)
+#define mcsi_slopes_spread MCSI_(slopes_spread)
+#define mcsi_sobol_loop MCSI_(sobol_loop)
+#define mcsi_sphere_loop MCSI_(sphere_loop)
+#define mcsi_spread MCSI_(spread)
+#define mcsi_spread_direction MCSI_(spread_direction)
+#define mcsi_spread_frame MCSI_(spread_frame)
+#define mcsi_sqrt MCSI_(sqrt)
+#define mcsi_store_int MCSI_(store_int)
+#define mcsi_stored MCSI_(stored)
+#define mcsi_sum MCSI_(sum)
+#define mcsi_tan2 MCSI_(tan2)
+#define mcsi_tent_loop MCSI_(tent_loop)
+#define mcsi_tile_lobe MCSI_(tile_lobe)
+#define mcsi_tile_value MCSI_(tile_value)
+#define mcsi_tile_values_loop MCSI_(tile_values_loop)
+#define mcsi_times_2_to MCSI_(times_2_to)
+#define mcsi_to_float MCSI_(to_float)
+#define mcsi_to_grid MCSI_(to_grid)
+#define mcsi_to_local MCSI_(to_local)
+#define mcsi_to_unit MCSI_(to_unit)
+#define mcsi_to_world MCSI_(to_world)
+#define mcsi_trunc MCSI_(trunc)
+#define mcsi_truncexp_ends MCSI_(truncexp_ends)
+#define mcsi_truncexp_loop MCSI_(truncexp_loop)
+#define mcsi_u_of MCSI_(u_of)
+#define mcsi_unit MCSI_(unit)
+#define mcsi_uv MCSI_(uv)
+#define mcsi_vec2 MCSI_(vec2)
+#define mcsi_vec3 MCSI_(vec3)
+#define mcsi_visible MCSI_(visible)
+#define mcsi_visible_detour MCSI_(visible_detour)
+#define mcsi_visible_draw MCSI_(visible_draw)
+#define mcsi_visible_h_invert MCSI_(visible_h_invert)
+#define mcsi_visible_h_pdf MCSI_(visible_h_pdf)
+#define mcsi_visible_h_sample MCSI_(visible_h_sample)
+#define mcsi_visible_half MCSI_(visible_half)
+#define mcsi_visible_make MCSI_(visible_make)
+#define mcsi_visible_pdf MCSI_(visible_pdf)
+#define mcsi_visible_sample MCSI_(visible_sample)
+#define mcsi_visible_weight MCSI_(visible_weight)
+#define mcsi_ward_eval_loop MCSI_(ward_eval_loop)
+#define mcsi_ward_h_loop MCSI_(ward_h_loop)
+#define mcsi_ward_pdf_loop MCSI_(ward_pdf_loop)
+#define mcsi_ward_sample_loop MCSI_(ward_sample_loop)
+#define mcsi_ward_spread MCSI_(ward_spread)
+#define mcsi_warp MCSI_(warp)
+#define mcsi_warp_density MCSI_(warp_density)
+#define mcsi_warp_draw MCSI_(warp_draw)
+#define mcsi_warp_make MCSI_(warp_make)
+#define mcsi_warps_loop MCSI_(warps_loop)
+#define mcsi_with_sign MCSI_(with_sign)
+#define mcsi_within MCSI_(within)
+
+#define MCSI_W 4
+#define MCS_(name) mcs4_##name
+#define MCSI_(name) mcsi4_##name
+#define MCSI_F mcs4_f
+#define MCSI_I mcs4_i
+#define MCSI_U mcs4_u
+#define MCSI_D mcsi4_d
+#define MCSI_Q mcsi4_q
+#include MCS_SELF
+
+#define MCSI_W 8
+#define MCS_(name) mcs8_##name
+#define MCSI_(name) mcsi8_##name
+#define MCSI_F mcs8_f
+#define MCSI_I mcs8_i
+#define MCSI_U mcs8_u
+#define MCSI_D mcsi8_d
+#define MCSI_Q mcsi8_q
+#if defined(MCSI_X86) && defined(__AVX__)
+#define MCSI_AVX
+#endif
+#include MCS_SELF
+
+#define MCSI_W 16
+#define MCS_(name) mcs16_##name
+#define MCSI_(name) mcsi16_##name
+#define MCSI_F mcs16_f
+#define MCSI_I mcs16_i
+#define MCSI_U mcs16_u
+#define MCSI_D mcsi16_d
+#define MCSI_Q mcsi16_q
+#if defined(MCSI_X86) && defined(__AVX512F__)
+#define MCSI_AVX512
+#endif
+#include MCS_SELF
+
+#ifdef MCSI_PICK_AVX2
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target(MCSI_TARGET_AVX2))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,fma")
+#endif
+#define MCSI_W 8
+#define MCSI_LOOPS
+#define MCSI_PICKED
+#define MCS_(name) mcsi_avx2p_##name
+#define MCSI_(name) mcsi_avx2_##name
+#define MCSI_F mcs8_f
+#define MCSI_I mcs8_i
+#define MCSI_U mcs8_u
+#define MCSI_D mcsi8_d
+#define MCSI_Q mcsi8_q
+#define MCSI_AVX
+#include MCS_SELF
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#endif
+
+#ifdef MCSI_PICK_AVX512
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target(MCSI_TARGET_AVX512))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512dq,avx512bw,avx512vl")
+#endif
+#define MCSI_W 16
+#define MCSI_LOOPS
+#define MCSI_PICKED
+#define MCS_(name) mcsi_avx512p_##name
+#define MCSI_(name) mcsi_avx512_##name
+#define MCSI_F mcs16_f
+#define MCSI_I mcs16_i
+#define MCSI_U mcs16_u
+#define MCSI_D mcsi16_d
+#define MCSI_Q mcsi16_q
+#define MCSI_AVX512
+#include MCS_SELF
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#endif
+
+#undef mcs_ashikhmin
+#undef mcs_ashikhmin_eval
+#undef mcs_ashikhmin_h_invert
+#undef mcs_ashikhmin_h_pdf
+#undef mcs_ashikhmin_h_sample
+#undef mcs_ashikhmin_make
+#undef mcs_ashikhmin_pdf
+#undef mcs_ashikhmin_sample
+#undef mcs_ashikhmin_weight
+#undef mcs_beckmann
+#undef mcs_beckmann_eval
+#undef mcs_beckmann_h_invert
+#undef mcs_beckmann_h_pdf
+#undef mcs_beckmann_h_sample
+#undef mcs_beckmann_make
+#undef mcs_beckmann_pdf
+#undef mcs_beckmann_sample
+#undef mcs_beckmann_weight
+#undef mcs_brdf
+#undef mcs_concentric_invert
+#undef mcs_concentric_pdf
+#undef mcs_concentric_sample
+#undef mcs_cone_from_sin2
+#undef mcs_cone_invert
+#undef mcs_cone_pdf
+#undef mcs_cone_sample
+#undef mcs_cos_d
+#undef mcs_cosine_invert
+#undef mcs_cosine_pdf
+#undef mcs_cosine_sample
+#undef mcs_dir
+#undef mcs_disk_invert
+#undef mcs_disk_pdf
+#undef mcs_disk_sample
+#undef mcs_evenpower_invert
+#undef mcs_evenpower_pdf
+#undef mcs_evenpower_sample
+#undef mcs_exponential_invert
+#undef mcs_exponential_pdf
+#undef mcs_exponential_sample
+#undef mcs_f
+#undef mcs_frame
+#undef mcs_frame_make
+#undef mcs_ggx
+#undef mcs_ggx_bounded_h_invert
+#undef mcs_ggx_bounded_h_pdf
+#undef mcs_ggx_bounded_h_sample
+#undef mcs_ggx_bounded_pdf
+#undef mcs_ggx_bounded_sample
+#undef mcs_ggx_bounded_weight
+#undef mcs_ggx_d
+#undef mcs_ggx_eval
+#undef mcs_ggx_g1
+#undef mcs_ggx_g2
+#undef mcs_ggx_h_invert
+#undef mcs_ggx_h_pdf
+#undef mcs_ggx_h_sample
+#undef mcs_ggx_make
+#undef mcs_ggx_pdf
+#undef mcs_ggx_sample
+#undef mcs_ggx_vndf_h_invert
+#undef mcs_ggx_vndf_h_pdf
+#undef mcs_ggx_vndf_h_sample
+#undef mcs_ggx_vndf_pdf
+#undef mcs_ggx_vndf_sample
+#undef mcs_ggx_vndf_weight
+#undef mcs_ggx_weight
+#undef mcs_half
+#undef mcs_hash
+#undef mcs_hemisphere_invert
+#undef mcs_hemisphere_pdf
+#undef mcs_hemisphere_sample
+#undef mcs_i
+#undef mcs_is_mirror
+#undef mcs_linear_invert
+#undef mcs_linear_pdf
+#undef mcs_linear_sample
+#undef mcs_load
+#undef mcs_logistic_invert
+#undef mcs_logistic_pdf
+#undef mcs_logistic_sample
+#undef mcs_mis_balance
+#undef mcs_mis_power
+#undef mcs_mix_pdf
+#undef mcs_normal_invert
+#undef mcs_normal_pdf
+#undef mcs_normal_sample
+#undef mcs_phong
+#undef mcs_phong_eval
+#undef mcs_phong_lobe_invert
+#undef mcs_phong_lobe_pdf
+#undef mcs_phong_lobe_sample
+#undef mcs_phong_make
+#undef mcs_phong_pdf
+#undef mcs_phong_sample
+#undef mcs_phong_weight
+#undef mcs_power_invert
+#undef mcs_power_pdf
+#undef mcs_power_sample
+#undef mcs_r2
+#undef mcs_reflect
+#undef mcs_reflect_pdf
+#undef mcs_sample1
+#undef mcs_sample2
+#undef mcs_schlick
+#undef mcs_set
+#undef mcs_sobol
+#undef mcs_sobol_bits
+#undef mcs_sphere_invert
+#undef mcs_sphere_pdf
+#undef mcs_sphere_sample
+#undef mcs_store
+#undef mcs_tent_invert
+#undef mcs_tent_pdf
+#undef mcs_tent_sample
+#undef mcs_to_local
+#undef mcs_to_world
+#undef mcs_truncexp_invert
+#undef mcs_truncexp_pdf
+#undef mcs_truncexp_sample
+#undef mcs_u
+#undef mcs_u01
+#undef mcs_u01_open
+#undef mcs_vec2
+#undef mcs_vec3
+#undef mcs_ward
+#undef mcs_ward_eval
+#undef mcs_ward_h_invert
+#undef mcs_ward_h_pdf
+#undef mcs_ward_h_sample
+#undef mcs_ward_make
+#undef mcs_ward_pdf
+#undef mcs_ward_sample
+#undef mcs_ward_weight
+#undef mcsi_above
+#undef mcsi_abs
+#undef mcsi_always
+#undef mcsi_any
+#undef mcsi_anywhere
+#undef mcsi_around_z
+#undef mcsi_ashikhmin_cosine
+#undef mcsi_ashikhmin_eval_loop
+#undef mcsi_ashikhmin_exponent
+#undef mcsi_ashikhmin_h_loop
+#undef mcsi_ashikhmin_half
+#undef mcsi_ashikhmin_pdf_loop
+#undef mcsi_ashikhmin_sample_loop
+#undef mcsi_ashikhmin_spread
+#undef mcsi_atan2_turns
+#undef mcsi_beckmann_eval_loop
+#undef mcsi_beckmann_h_loop
+#undef mcsi_beckmann_pdf_loop
+#undef mcsi_beckmann_sample_loop
+#undef mcsi_beckmann_shadow
+#undef mcsi_beckmann_spread
+#undef mcsi_bits
+#undef mcsi_blend
+#undef mcsi_brdf
+#undef mcsi_cancelled
+#undef mcsi_concentric_loop
+#undef mcsi_cone_loop
+#undef mcsi_cone_ok
+#undef mcsi_corner_value
+#undef mcsi_corner_values_loop
+#undef mcsi_cos_power
+#undef mcsi_cosine_loop
+#undef mcsi_d
+#undef mcsi_deviation
+#undef mcsi_direction
+#undef mcsi_disk_loop
+#undef mcsi_disk_pdf
+#undef mcsi_dot
+#undef mcsi_env_direction
+#undef mcsi_env_directions_loop
+#undef mcsi_env_locate
+#undef mcsi_env_locate_loop
+#undef mcsi_env_point
+#undef mcsi_evenpower_loop
+#undef mcsi_exact_dot
+#undef mcsi_exp_both
+#undef mcsi_exp_neg
+#undef mcsi_exp_reduced
+#undef mcsi_exponent
+#undef mcsi_exponent_ok
+#undef mcsi_exponential_loop
+#undef mcsi_falloff
+#undef mcsi_finite
+#undef mcsi_from_bits
+#undef mcsi_gauss_h_invert
+#undef mcsi_gauss_h_pdf
+#undef mcsi_gauss_h_sample
+#undef mcsi_gauss_over
+#undef mcsi_gauss_pdf
+#undef mcsi_gauss_radius
+#undef mcsi_ggx_bounded_h_loop
+#undef mcsi_ggx_bounded_pdf_loop
+#undef mcsi_ggx_bounded_sample_loop
+#undef mcsi_ggx_d
+#undef mcsi_ggx_eval_loop
+#undef mcsi_ggx_h_loop
+#undef mcsi_ggx_pdf_loop
+#undef mcsi_ggx_radius
+#undef mcsi_ggx_sample_loop
+#undef mcsi_ggx_spread
+#undef mcsi_ggx_t
+#undef mcsi_ggx_vndf_h_loop
+#undef mcsi_ggx_vndf_pdf_loop
+#undef mcsi_ggx_vndf_sample_loop
+#undef mcsi_grid_bounds
+#undef mcsi_grid_bounds_loop
+#undef mcsi_grid_rows
+#undef mcsi_grid_rows_loop
+#undef mcsi_hemisphere_loop
+#undef mcsi_in
+#undef mcsi_in_radii
+#undef mcsi_keep
+#undef mcsi_linear_ends
+#undef mcsi_linear_loop
+#undef mcsi_linear_place
+#undef mcsi_log
+#undef mcsi_log1m
+#undef mcsi_log1p
+#undef mcsi_log_of_sum
+#undef mcsi_log_series
+#undef mcsi_logistic_loop
+#undef mcsi_max
+#undef mcsi_min
+#undef mcsi_mirror
+#undef mcsi_mis_ratio
+#undef mcsi_mix
+#undef mcsi_mul_wide
+#undef mcsi_normal_loop
+#undef mcsi_normal_quantile
+#undef mcsi_normal_tail
+#undef mcsi_off_zero
+#undef mcsi_one_minus_z
+#undef mcsi_out
+#undef mcsi_out_brdf
+#undef mcsi_out_dir
+#undef mcsi_out_sample1
+#undef mcsi_out_sample2
+#undef mcsi_patch_weights_loop
+#undef mcsi_philox_blocks
+#undef mcsi_philox_fill_loop
+#undef mcsi_philox_rounds
+#undef mcsi_phong_eval_loop
+#undef mcsi_phong_lobe_loop
+#undef mcsi_phong_pdf_loop
+#undef mcsi_phong_power
+#undef mcsi_phong_sample_loop
+#undef mcsi_phong_spread
+#undef mcsi_pow_unit
+#undef mcsi_power
+#undef mcsi_power_loop
+#undef mcsi_q
+#undef mcsi_quotient
+#undef mcsi_rarely
+#undef mcsi_reflected
+#undef mcsi_reverse_bits
+#undef mcsi_root
+#undef mcsi_sample1
+#undef mcsi_sample2
+#undef mcsi_scale_ok
+#undef mcsi_scramble_reversed
+#undef mcsi_secant2
+#undef mcsi_sel
+#undef mcsi_sincos_behind
+#undef mcsi_sincos_turns
+#undef mcsi_slope_brdf
+#undef mcsi_slope_cosine
+#undef mcsi_slope_dir
+#undef mcsi_slope_invert
+#undef mcsi_slope_square
+#undef mcsi_slope_vector
+#undef mcsi_slopes
+#undef mcsi_slopes_make
+#undef mcsi_slopes_spread
+#undef mcsi_sobol_loop
+#undef mcsi_sphere_loop
+#undef mcsi_spread
+#undef mcsi_spread_direction
+#undef mcsi_spread_frame
+#undef mcsi_sqrt
+#undef mcsi_store_int
+#undef mcsi_stored
+#undef mcsi_sum
+#undef mcsi_tan2
+#undef mcsi_tent_loop
+#undef mcsi_tile_lobe
+#undef mcsi_tile_value
+#undef mcsi_tile_values_loop
+#undef mcsi_times_2_to
+#undef mcsi_to_float
+#undef mcsi_to_grid
+#undef mcsi_to_local
+#undef mcsi_to_unit
+#undef mcsi_to_world
+#undef mcsi_trunc
+#undef mcsi_truncexp_ends
+#undef mcsi_truncexp_loop
+#undef mcsi_u_of
+#undef mcsi_unit
+#undef mcsi_uv
+#undef mcsi_vec2
+#undef mcsi_vec3
+#undef mcsi_visible
+#undef mcsi_visible_detour
+#undef mcsi_visible_draw
+#undef mcsi_visible_h_invert
+#undef mcsi_visible_h_pdf
+#undef mcsi_visible_h_sample
+#undef mcsi_visible_half
+#undef mcsi_visible_make
+#undef mcsi_visible_pdf
+#undef mcsi_visible_sample
+#undef mcsi_visible_weight
+#undef mcsi_ward_eval_loop
+#undef mcsi_ward_h_loop
+#undef mcsi_ward_pdf_loop
+#undef mcsi_ward_sample_loop
+#undef mcsi_ward_spread
+#undef mcsi_warp
+#undef mcsi_warp_density
+#undef mcsi_warp_draw
+#undef mcsi_warp_make
+#undef mcsi_warps_loop
+#undef mcsi_with_sign
+#undef mcsi_within
+#endif
+
+/* ==== array functions ==========================================================================================================
+ * Each calls the loop of the widest pass that this processor runs. */
+#if defined(MCSI_PICK_AVX512)
+#define MCSI_TRY_AVX512(loop, args)                   \
+    if (MCSI_CPU_HAS_AVX512) mcsi_avx512_##loop args; \
+    else
+#else
+#define MCSI_TRY_AVX512(loop, args)
+#endif
+#if defined(MCSI_PICK_AVX2)
+#define MCSI_TRY_AVX2(loop, args)                 \
+    if (MCSI_CPU_HAS_AVX2) mcsi_avx2_##loop args; \
+    else
+#else
+#define MCSI_TRY_AVX2(loop, args)
+#endif
+#define MCSI_WIDEST(loop, args) MCSI_TRY_AVX512(loop, args) MCSI_TRY_AVX2(loop, args) MCSI_BASE(loop) args
+
+#ifndef MCS_NO_TABLES
+MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner) {
+    MCSI_WIDEST(env_directions_loop, (f, n, b, turn, inner));
+}
+MCS_FN void mcsi_env_locate_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z, float *off_pole,
+                              float *polar, float *turns) {
+    MCSI_WIDEST(env_locate_loop, (f, n, x, y, z, off_pole, polar, turns));
+}
+#ifndef MCS_NO_LOBES
+MCS_FN void mcsi_tile_values_n(const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value) {
+    MCSI_WIDEST(tile_values_loop, (s, n, tile, stride, value));
+}
+MCS_FN void mcsi_patch_weights_n(const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight) {
+    MCSI_WIDEST(patch_weights_loop, (s, n, patch, value, weight));
+}
+MCS_FN void mcsi_corner_values_n(const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value) {
+    MCSI_WIDEST(corner_values_loop, (s, n, corner, stride, value));
+}
+MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b) { MCSI_WIDEST(warps_loop, (n, b)); }
+MCS_FN void mcsi_grid_rows_n(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
+    MCSI_WIDEST(grid_rows_loop, (rows, cols, light, value, cum, row));
+}
+MCS_FN void mcsi_grid_bounds_n(size_t rows, size_t cols, const float *light, const float *pull, const float *corner, float *value,
+                               float *weight, float *row) {
+    MCSI_WIDEST(grid_bounds_loop, (rows, cols, light, pull, corner, value, weight, row));
+}
+#endif
+#endif
+#ifndef MCS_NO_BATCH
+MCS_FN void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *out) {
+    MCSI_WIDEST(philox_fill_loop, (key, counter, n, out));
+}
+MCS_FN void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
+    MCSI_WIDEST(sobol_loop, (first, dim, seed, n, out));
+}
+#ifndef MCS_NO_1D
+MCS_FN void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf) {
+    MCSI_WIDEST(linear_loop, (a, b, n, u, x, pdf));
+}
+MCS_FN void mcs_tent_sample_n(float r, size_t n, const float *u, float *x, float *pdf) {
+    MCSI_WIDEST(tent_loop, (r, n, u, x, pdf));
+}
+MCS_FN void mcs_exponential_sample_n(float rate, size_t n, const float *u, float *x, float *pdf) {
+    MCSI_WIDEST(exponential_loop, (rate, n, u, x, pdf));
+}
+MCS_FN void mcs_truncexp_sample_n(float rate, float m, size_t n, const float *u, float *x, float *pdf) {
+    MCSI_WIDEST(truncexp_loop, (rate, m, n, u, x, pdf));
+}
+MCS_FN void mcs_normal_sample_n(float mean, float sd, size_t n, const float *u, float *x, float *pdf) {
+    MCSI_WIDEST(normal_loop, (mean, sd, n, u, x, pdf));
+}
+MCS_FN void mcs_logistic_sample_n(float mean, float scale, size_t n, const float *u, float *x, float *pdf) {
+    MCSI_WIDEST(logistic_loop, (mean, scale, n, u, x, pdf));
+}
+MCS_FN void mcs_power_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
+    MCSI_WIDEST(power_loop, (e, n, u, x, pdf));
+}
+MCS_FN void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
+    MCSI_WIDEST(evenpower_loop, (e, n, u, x, pdf));
+}
+#endif
+MCS_FN void mcs_disk_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf) {
+    MCSI_WIDEST(disk_loop, (R, n, u1, u2, x, y, pdf));
+}
+MCS_FN void mcs_concentric_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf) {
+    MCSI_WIDEST(concentric_loop, (R, n, u1, u2, x, y, pdf));
+}
+MCS_FN void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+    MCSI_WIDEST(sphere_loop, (n, u1, u2, x, y, z, pdf));
+}
+MCS_FN void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+    MCSI_WIDEST(hemisphere_loop, (n, u1, u2, x, y, z, pdf));
+}
+MCS_FN void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+    MCSI_WIDEST(cosine_loop, (n, u1, u2, x, y, z, pdf));
+}
+MCS_FN void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+    MCSI_WIDEST(cone_loop, (k, n, u1, u2, x, y, z, pdf));
+}
+#ifndef MCS_NO_LOBES
+MCS_FN void mcs_phong_lobe_sample_n(const mcs_phong *m, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                    float *pdf) {
+    MCSI_WIDEST(phong_lobe_loop, (m, n, u1, u2, x, y, z, pdf));
+}
+MCS_FN void mcs_phong_sample_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
+                               float *z, float *pdf, float *weight) {
+    MCSI_WIDEST(phong_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+}
+MCS_FN void mcs_phong_pdf_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+    MCSI_WIDEST(phong_pdf_loop, (m, wo, n, x, y, z, pdf));
+}
+MCS_FN void mcs_phong_eval_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                             float *value) {
+    MCSI_WIDEST(phong_eval_loop, (m, wo, n, x, y, z, value));
+}
+MCS_FN void mcs_ward_h_sample_n(const mcs_ward *m, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                float *pdf) {
+    MCSI_WIDEST(ward_h_loop, (m, n, u1, u2, x, y, z, pdf));
+}
+MCS_FN void mcs_ward_sample_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
+                              float *z, float *pdf, float *weight) {
+    MCSI_WIDEST(ward_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+}
+MCS_FN void mcs_ward_pdf_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+    MCSI_WIDEST(ward_pdf_loop, (m, wo, n, x, y, z, pdf));
+}
+MCS_FN void mcs_ward_eval_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                            float *value) {
+    MCSI_WIDEST(ward_eval_loop, (m, wo, n, x, y, z, value));
+}
+MCS_FN void mcs_beckmann_h_sample_n(const mcs_beckmann *m, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                    float *pdf) {
+    MCSI_WIDEST(beckmann_h_loop, (m, n, u1, u2, x, y, z, pdf));
+}
+MCS_FN void mcs_beckmann_sample_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                                  float *y, float *z, float *pdf, float *weight) {
+    MCSI_WIDEST(beckmann_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+}
+MCS_FN void mcs_beckmann_pdf_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                               float *pdf) {
+    MCSI_WIDEST(beckmann_pdf_loop, (m, wo, n, x, y, z, pdf));
+}
+MCS_FN void mcs_beckmann_eval_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                                float *value) {
+    MCSI_WIDEST(beckmann_eval_loop, (m, wo, n, x, y, z, value));
+}
+MCS_FN void mcs_ggx_h_sample_n(const mcs_ggx *m, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                               float *pdf) {
+    MCSI_WIDEST(ggx_h_loop, (m, n, u1, u2, x, y, z, pdf));
+}
+MCS_FN void mcs_ggx_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
+                             float *z, float *pdf, float *weight) {
+    MCSI_WIDEST(ggx_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+}
+MCS_FN void mcs_ggx_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+    MCSI_WIDEST(ggx_pdf_loop, (m, wo, n, x, y, z, pdf));
+}
+MCS_FN void mcs_ggx_eval_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z, float *value) {
+    MCSI_WIDEST(ggx_eval_loop, (m, wo, n, x, y, z, value));
+}
+MCS_FN void mcs_ggx_vndf_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                    float *z, float *pdf) {
+    MCSI_WIDEST(ggx_vndf_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
+}
+MCS_FN void mcs_ggx_vndf_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                  float *z, float *pdf, float *weight) {
+    MCSI_WIDEST(ggx_vndf_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+}
+MCS_FN void mcs_ggx_vndf_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                               float *pdf) {
+    MCSI_WIDEST(ggx_vndf_pdf_loop, (m, wo, n, x, y, z, pdf));
+}
+MCS_FN void mcs_ggx_bounded_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                                       float *y, float *z, float *pdf) {
+    MCSI_WIDEST(ggx_bounded_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
+}
+MCS_FN void mcs_ggx_bounded_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                     float *z, float *pdf, float *weight) {
+    MCSI_WIDEST(ggx_bounded_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+}
+MCS_FN void mcs_ggx_bounded_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                                  float *pdf) {
+    MCSI_WIDEST(ggx_bounded_pdf_loop, (m, wo, n, x, y, z, pdf));
+}
+MCS_FN void mcs_ashikhmin_h_sample_n(const mcs_ashikhmin *m, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                     float *z, float *pdf) {
+    MCSI_WIDEST(ashikhmin_h_loop, (m, n, u1, u2, x, y, z, pdf));
+}
+MCS_FN void mcs_ashikhmin_sample_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                                   float *y, float *z, float *pdf, float *weight) {
+    MCSI_WIDEST(ashikhmin_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+}
+MCS_FN void mcs_ashikhmin_pdf_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                                float *pdf) {
+    MCSI_WIDEST(ashikhmin_pdf_loop, (m, wo, n, x, y, z, pdf));
+}
+MCS_FN void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                                 float *value) {
+    MCSI_WIDEST(ashikhmin_eval_loop, (m, wo, n, x, y, z, value));
+}
+#endif
+#endif
+#endif /* MCSI_PASSES */
 
 /* MIT License
  *
