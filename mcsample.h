@@ -328,7 +328,8 @@ typedef double mcsi16_d __attribute__((vector_size(128), aligned(16)));
  * MCSI_(x) a private one. On x86 two more passes compile the same bodies for AVX2 and AVX-512, for the `_n` forms alone. */
 #define MCSI_TARGET_AVX2 "avx2,fma"
 #define MCSI_TARGET_AVX512 "avx512f,avx512dq,avx512bw,avx512vl"
-#if defined(MCSI_X86) && !defined(MCS_NO_WIDE) && !defined(MCS_NO_BATCH) && !defined(_MSC_VER) /* whose library lacks the query */
+#if defined(MCSI_X86) && !defined(MCS_NO_WIDE) && !defined(MCS_NO_BATCH) && \
+    !defined(_MSC_VER) /* whose library lacks the query */
 #if !defined(__AVX2__) && MCS_MAX_LANES >= 8
 #define MCSI_PICK_AVX2
 #endif
@@ -353,13 +354,17 @@ typedef struct {
 } mcsi_batch;
 
 MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const float *in1, const float *in2) {
-    int k;
-    for (k = 0; k < MCSI_OUT_MAX; k++) b->out[k] = NULL;
-    b->in[0] = in0, b->in[1] = in1, b->in[2] = in2;
-    b->n = n, b->i = 0, b->rest = 0;
+    for (int k = 0; k < MCSI_OUT_MAX; k++) b->out[k] = NULL;
+    b->in[0] = in0;
+    b->in[1] = in1;
+    b->in[2] = in2;
+    b->n = n;
+    b->i = 0;
+    b->rest = 0;
 }
 
-MCS_FN void mcsi_batch_dir(mcsi_batch *b, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+MCS_FN void mcsi_batch_dir(mcsi_batch *b, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                           float *pdf) {
     mcsi_batch_start(b, n, u1, u2, NULL);
     b->out[0] = x;
     b->out[1] = y;
@@ -370,26 +375,27 @@ MCS_FN void mcsi_batch_dir(mcsi_batch *b, size_t n, const float *u1, const float
 /* Not cold: gcc 12 leaves vzeroupper out of cold exits, and SSE code is ten times slower from there on. */
 MCSI_QUIET
 MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
-    int k;
-    size_t rest = b->n - b->i;
+    const size_t rest = b->n - b->i;
     if (b->rest) {
-        for (k = 0; k < MCSI_OUT_MAX; k++)
+        for (int k = 0; k < MCSI_OUT_MAX; k++)
             if (b->out[k]) MCSI_COPY(b->rest_out[k], b->out_copy[k], b->rest * sizeof(float));
         return 0;
     }
     if (!rest) return 0;
-    for (k = 0; k < MCSI_IN_MAX; k++) {
+    for (int k = 0; k < MCSI_IN_MAX; k++) {
         if (!b->in[k]) continue;
         MCSI_FILL(b->in_copy[k], 0, sizeof b->in_copy[k]);
         MCSI_COPY(b->in_copy[k], b->in[k] + b->i, rest * sizeof(float));
         b->in[k] = b->in_copy[k];
     }
-    for (k = 0; k < MCSI_OUT_MAX; k++) {
+    for (int k = 0; k < MCSI_OUT_MAX; k++) {
         if (!b->out[k]) continue;
         b->rest_out[k] = b->out[k] + b->i;
         b->out[k] = b->out_copy[k];
     }
-    b->rest = rest, b->i = 0, b->n = lanes;
+    b->rest = rest;
+    b->i = 0;
+    b->n = lanes;
     return 1;
 }
 MCSI_LOUD
@@ -508,7 +514,7 @@ MCSI_CORE float mcsi_max(float a, float b) { return a > b ? a : b; }
 MCSI_CORE float mcsi_min(float a, float b) { return a < b ? a : b; }
 #else
 MCSI_SAMPLE mcs_f mcs_set(float x) {
-    mcs_f zero = {0.0f};
+    const mcs_f zero = {0.0f};
     return x - zero;
 }
 /* Through a type that may lie anywhere: gcc 12 copies by memcpy in pieces of 16 bytes, and the vector then waits for them. */
@@ -521,7 +527,8 @@ MCSI_CORE mcs_f mcsi_from_bits(mcs_i i) { return (mcs_f)i; }
 MCSI_CORE mcs_i mcsi_trunc(mcs_f x) { return __builtin_convertvector(x, mcs_i); }
 MCSI_CORE mcs_f mcsi_to_float(mcs_i i) { return __builtin_convertvector(i, mcs_f); }
 #define MCSI_LANE(x, k) ((x)[k])
-#define MCSI_WIDEN(x) __builtin_convertvector(x, mcsi_d) /* to double and back; macros, as no unit passes so wide a vector */
+#define MCSI_WIDEN(x) \
+    __builtin_convertvector(x, mcsi_d) /* to double and back; macros, as no unit passes so wide a vector */
 #define MCSI_NARROW(x) __builtin_convertvector(x, mcs_f)
 #define MCSI_INT_WIDEN(i) MCSI_WIDEN(mcsi_to_float(i)) /* |i| < 2^24; straight to double gcc 12 fails at -O0 */
 #define MCSI_TRUNC_D(x) mcsi_trunc(MCSI_NARROW(x))
@@ -568,7 +575,9 @@ MCSI_CORE mcs_f mcsi_sqrt(mcs_f x) {
 #endif
 
 /* Bitwise choice, m = 0 or -1 (all bits): for choices that a branch predictor could not learn. */
-MCSI_CORE mcs_f mcsi_blend(mcs_i m, mcs_f a, mcs_f b) { return mcsi_from_bits((mcsi_bits(a) & m) | (mcsi_bits(b) & ~m)); }
+MCSI_CORE mcs_f mcsi_blend(mcs_i m, mcs_f a, mcs_f b) {
+    return mcsi_from_bits((mcsi_bits(a) & m) | (mcsi_bits(b) & ~m));
+}
 #if MCSI_W == 1 && defined(MCSI_GNU)
 MCSI_CORE float mcsi_abs(float x) { return __builtin_fabsf(x); }
 MCSI_CORE float mcsi_with_sign(float magnitude, float sign) { return __builtin_copysignf(magnitude, sign); }
@@ -579,18 +588,17 @@ MCSI_CORE mcs_f mcsi_with_sign(mcs_f magnitude, mcs_f sign) {
 }
 #endif
 /* A random number made safe: its value clamped into [0, 1 - 2^-24], NaN to 0; *ok keeps only lanes that were in [0,1). */
-MCSI_CORE mcs_f mcsi_unit(mcs_f u, mcs_i *ok) {
-    mcs_f v;
+MCSI_CORE mcs_f mcsi_sane_u(mcs_f u, mcs_i *ok) {
 #if MCSI_W == 1
     if (u > 0.0f && u < 1.0f) return u;
 #endif
     MCSI_REQUIRE(u >= 0.0f && u < 1.0f);
-    v = mcsi_min(mcsi_max(u, mcs_set(0.0f)), mcs_set(0.99999994f));
+    const mcs_f v = mcsi_min(mcsi_max(u, mcs_set(0.0f)), mcs_set(0.99999994f));
     *ok = *ok & (v == u);
     return v;
 }
 /* A density or weight made safe: x where ok and x > 0 (so not NaN), at most FLT_MAX, else 0. */
-MCSI_CORE mcs_f mcsi_keep(mcs_i ok, mcs_f x) {
+MCSI_CORE mcs_f mcsi_sane_result(mcs_i ok, mcs_f x) {
 #if MCSI_W == 1
     return ok && x > 0.0f ? mcsi_min(x, FLT_MAX) : 0.0f;
 #else
@@ -598,7 +606,7 @@ MCSI_CORE mcs_f mcsi_keep(mcs_i ok, mcs_f x) {
 #endif
 }
 /* A parameter made safe: x within [lo, hi] where x > 0 or x >= 0 holds as `ok` says, else `lo`. */
-MCSI_CORE mcs_f mcsi_within(mcs_i ok, mcs_f x, float lo, float hi) {
+MCSI_CORE mcs_f mcsi_sane_parameter(mcs_i ok, mcs_f x, float lo, float hi) {
     return mcsi_sel(ok, mcsi_min(mcsi_max(x, mcs_set(lo)), mcs_set(hi)), mcs_set(lo));
 }
 /* x / y, x >= 0 and y > 0, but FLT_MAX where it would overflow. */
@@ -606,7 +614,7 @@ MCSI_CORE mcs_f mcsi_quotient(mcs_f x, mcs_f y) {
 #if MCSI_W == 1
     return y >= 1.0f || x < y * 3.40282266e38f ? x / y : FLT_MAX;
 #else
-    mcs_i fits = (y >= 1.0f) | (x < mcsi_min(y, mcs_set(1.0f)) * 3.40282266e38f);
+    const mcs_i fits = (y >= 1.0f) | (x < mcsi_min(y, mcs_set(1.0f)) * 3.40282266e38f);
     return mcsi_sel(fits, x, mcs_set(FLT_MAX)) / mcsi_sel(fits, y, mcs_set(1.0f));
 #endif
 }
@@ -631,7 +639,7 @@ MCSI_CORE mcs_f mcsi_stored(mcs_f x) {
 /* x to the nearest multiple of step, ties to even, and *k, which multiple; |x| < 2^22 step. `big` is 1.5 * 2^23 step: the sum has
  * room for nothing below step. Where compilers may take the difference for x itself it goes through *k. */
 MCSI_CORE mcs_f mcsi_to_grid(mcs_f x, float step, float big, mcs_i *k) {
-    mcs_f sum = x + big;
+    const mcs_f sum = x + big;
     *k = mcsi_bits(sum) - mcsi_bits(mcs_set(big));
 #if defined(MCSI_SUMS_MAY_MOVE) || MCSI_FLT_EVAL != 0
     return step * mcsi_to_float(*k);
@@ -650,14 +658,18 @@ MCSI_CORE mcs_f mcsi_to_grid(mcs_f x, float step, float big, mcs_i *k) {
 /* (sin, cos)(2 pi t), t in [-1/8, 1]. The reduction to an eighth of a turn is exact. 1.4 ulp. *behind is set within an eighth of a
  * turn from half a turn, where *one_plus is 1 + cos without its cancellation. */
 MCSI_CORE void mcsi_sincos_behind(mcs_f t, mcs_f *sine, mcs_f *cosine, mcs_i *behind, mcs_f *one_plus) {
-    mcs_i k, swap;
-    mcs_f r = t - mcsi_to_grid(t, 0.25f, 3145728.0f, &k), z = r * r, zz = z * z;
-    mcs_f s = r * (6.28318548f + ((-1.95191802e-07f + z * -41.3416634f) + zz * (81.5926895f + z * -75.4075546f)));
-    mcs_f less = z * ((-19.7392082f + z * 64.9391479f) + zz * (-85.4245148f + z * 58.6202126f)), c = 1.0f + less;
-    swap = -(k & 1);
+    mcs_i k;
+    const mcs_f r = t - mcsi_to_grid(t, 0.25f, 3145728.0f, &k);
+    const mcs_f z = r * r;
+    const mcs_f zz = z * z;
+    const mcs_f s = r * (6.28318548f + ((-1.95191802e-07f + z * -41.3416634f) + zz * (81.5926895f + z * -75.4075546f)));
+    const mcs_f less = z * ((-19.7392082f + z * 64.9391479f) + zz * (-85.4245148f + z * 58.6202126f));
+    const mcs_f c = 1.0f + less;
+    const mcs_i swap = -(k & 1);
     *sine = mcsi_from_bits(mcsi_bits(mcsi_blend(swap, c, s)) ^ (mcs_i)((mcs_u)(k & 2) << 30));
     *cosine = mcsi_from_bits(mcsi_bits(mcsi_blend(swap, s, c)) ^ (mcs_i)((mcs_u)((k + 1) & 2) << 30));
-    *behind = k == 2, *one_plus = -less;
+    *behind = k == 2;
+    *one_plus = -less;
 }
 MCSI_CORE void mcsi_sincos_turns(mcs_f t, mcs_f *sine, mcs_f *cosine) {
     mcs_i behind;
@@ -667,8 +679,11 @@ MCSI_CORE void mcsi_sincos_turns(mcs_f t, mcs_f *sine, mcs_f *cosine) {
 
 /* atan2(y, x) in turns, [0, 1 - 2^-24]; (0, 0) gives 0. Absolute error below 2^-23 turns, relative 1.5e-7 in the first octant. */
 MCSI_CORE mcs_f mcsi_atan2_turns(mcs_f y, mcs_f x) {
-    mcs_f ax = mcsi_abs(x), ay = mcsi_abs(y), big = mcsi_max(ax, ay);
-    mcs_f a = mcsi_min(ax, ay) / mcsi_max(big, mcs_set(FLT_MIN)), z = a * a;
+    const mcs_f ax = mcsi_abs(x);
+    const mcs_f ay = mcsi_abs(y);
+    const mcs_f big = mcsi_max(ax, ay);
+    const mcs_f a = mcsi_min(ax, ay) / mcsi_max(big, mcs_set(FLT_MIN));
+    const mcs_f z = a * a;
     mcs_f t = a * (0.159154937f + z * (-0.0530508421f + z * (0.0318125151f + z * (-0.0225589965f + z * (0.016769575f +
                z * (-0.0116160437f + z * (0.00643095793f + z * (-0.00234468561f + z * 0.000402584235f))))))));
     t = mcsi_sel(ay > ax, 0.25f - t, t);
@@ -681,37 +696,40 @@ MCSI_CORE mcs_f mcsi_atan2_turns(mcs_f y, mcs_f x) {
 MCSI_CORE mcs_i mcsi_exponent(mcs_i i) { return (i - 0x3f3504f3) & (-0x7fffffff - 1 + 0x7f800000); }
 /* ln(1 + f) + k ln(2), f in [sqrt(1/2) - 1, sqrt(2) - 1], k in its place. */
 MCSI_CORE mcs_f mcsi_log_series(mcs_f f, mcs_i k) {
-    mcs_f e = mcsi_to_float(k), ff = f * f;
-    mcs_f p = ((0.333333313f + f * -0.250008196f) + ff * (0.200012416f + f * -0.166234091f)) +
+    const mcs_f e = mcsi_to_float(k);
+    const mcs_f ff = f * f;
+    const mcs_f p = ((0.333333313f + f * -0.250008196f) + ff * (0.200012416f + f * -0.166234091f)) +
                ff * ff * ((0.142015815f + f * -0.131596133f) + ff * (0.127621993f + f * -0.0763639957f));
     return e * (0.693145752f / 8388608) + (f + (f * ff * p + (e * (1.42860677e-06f / 8388608) - 0.5f * ff)));
 }
 /* ln(x), normal x > 0. 1 ulp. */
 MCSI_CORE mcs_f mcsi_log(mcs_f x) {
-    mcs_i i = mcsi_bits(x), k = mcsi_exponent(i);
+    const mcs_i i = mcsi_bits(x);
+    const mcs_i k = mcsi_exponent(i);
     return mcsi_log_series(mcsi_from_bits(i - k) - 1.0f, k);
 }
 /* ln(w + c) for w in [FLT_MIN, 1e38] and a correction |c| <= ulp(w). 1.5 ulp. */
 MCSI_CORE mcs_f mcsi_log_of_sum(mcs_f w, mcs_f c) {
-    mcs_i i = mcsi_bits(w), k = mcsi_exponent(i);
+    const mcs_i i = mcsi_bits(w);
+    const mcs_i k = mcsi_exponent(i);
     return mcsi_log_series((mcsi_from_bits(i - k) - 1.0f) + c * mcsi_from_bits(0x3f800000 - k), k);
 }
 /* ln(1 + x), x in (-1, 1e38]. */
 MCSI_CORE mcs_f mcsi_log1p(mcs_f x) {
-    mcs_f w = mcsi_stored(1.0f + x);
+    const mcs_f w = mcsi_stored(1.0f + x);
     return mcsi_log_of_sum(w, x - (w - 1.0f));
 }
 /* ln(1 - u), u in [0,1). */
 MCSI_CORE mcs_f mcsi_log1m(mcs_f u) {
-    mcs_f w = mcsi_stored(1.0f - u);
+    const mcs_f w = mcsi_stored(1.0f - u);
     return mcsi_log_of_sum(w, (1.0f - w) - u);
 }
 
 /* The reduction of both exponentials, x in [-104, 0]: returns e^r - 1 for r = x - k ln 2, |r| <= ln(2)/2. */
 MCSI_CORE mcs_f mcsi_exp_reduced(mcs_f x, mcs_i *k) {
-    mcs_f e = mcsi_to_grid(x * 1.44269504f, 1.0f, 12582912.0f, k), r, rr;
-    r = (x - e * 0.693145752f) - e * 1.42860677e-06f;
-    rr = r * r;
+    const mcs_f e = mcsi_to_grid(x * 1.44269504f, 1.0f, 12582912.0f, k);
+    const mcs_f r = (x - e * 0.693145752f) - e * 1.42860677e-06f;
+    const mcs_f rr = r * r;
     return r + rr * ((0.5f + r * 0.166666657f) +
                      rr * ((0.0416664928f + r * 0.00833354425f) + rr * (0.00139323424f + r * 0.00019763397f)));
 }
@@ -725,13 +743,14 @@ MCSI_CORE mcs_f mcsi_times_2_to(mcs_f x, mcs_i k, mcs_i some) {
 /* e^min(x, 0), subnormal results included; NaN gives 0. 1 ulp. */
 MCSI_CORE mcs_f mcsi_exp_neg(mcs_f x) {
     mcs_i k;
-    mcs_f q = mcsi_exp_reduced(mcsi_min(mcsi_max(x, mcs_set(-104.0f)), mcs_set(0.0f)), &k);
+    const mcs_f q = mcsi_exp_reduced(mcsi_min(mcsi_max(x, mcs_set(-104.0f)), mcs_set(0.0f)), &k);
     return mcsi_stored(mcsi_times_2_to(1.0f + q, k, k | -1));
 }
 /* e^x and e^x - 1, x in [-80, 0]. 1 ulp. */
 MCSI_CORE mcs_f mcsi_exp_both(mcs_f x, mcs_f *minus_one) {
     mcs_i k;
-    mcs_f q = mcsi_exp_reduced(x, &k), scale = mcsi_from_bits((k + 127) << 23);
+    const mcs_f q = mcsi_exp_reduced(x, &k);
+    const mcs_f scale = mcsi_from_bits((k + 127) << 23);
     *minus_one = scale * q + (scale - 1.0f);
     return (1.0f + q) * scale;
 }
@@ -740,19 +759,25 @@ MCSI_CORE mcs_f mcsi_exp_both(mcs_f x, mcs_f *minus_one) {
  * (m - 1)/(m + 1), and 2^r = cosh + sinh. In double, so that the product of exponent and logarithm loses nothing. 1 ulp. *over, for
  * roots, is x over the result, by 2^-r = cosh - sinh, relatively accurate where both are subnormal too. */
 MCSI_CORE mcs_f mcsi_pow_unit(mcs_f x, mcs_f n, double plus, int root, mcs_f *over) {
-    mcs_i i = mcsi_bits(x * 16777216.0f), exponent = mcsi_exponent(i), some = -i >> 31, k, j;
-    mcs_f head = mcsi_from_bits(i - exponent), q;
-    mcsi_d m = MCSI_WIDEN(head), e = MCSI_WIDEN(n) + plus, s = (m - 1.0) / (m + 1.0), z = s * s, y, r, whole, even, odd;
-    k = (exponent >> 23) - 24;
-    y = (MCSI_INT_WIDEN(k) + s * 2.885390081790086) +
+    const mcs_i i = mcsi_bits(x * 16777216.0f);
+    const mcs_i exponent = mcsi_exponent(i);
+    const mcs_i some = -i >> 31;
+    const mcs_f head = mcsi_from_bits(i - exponent);
+    const mcsi_d m = MCSI_WIDEN(head);
+    const mcsi_d e = MCSI_WIDEN(n) + plus;
+    const mcsi_d s = (m - 1.0) / (m + 1.0);
+    mcsi_d z = s * s;
+    const mcs_i k = (exponent >> 23) - 24;
+    mcsi_d y = (MCSI_INT_WIDEN(k) + s * 2.885390081790086) +
         s * z * ((0.9617966733414772 + z * 0.577083585037472) + z * z * (0.4116727148603131 + z * 0.3407301768542072));
     y = root ? y * (1.0 / e) : y * e;
-    whole = MCSI_ROUND_D(y);
-    j = MCSI_TRUNC_D(root ? whole : MCSI_MAX_D(whole, -151.0));
-    r = y - whole, z = r * r;
-    even = (1.0 + z * 0.24022651084099645) + z * z * (0.009618030784745157 + z * 0.0001546973134150267);
-    odd = r * ((0.6931471805350843 + z * 0.05550410975949026) + z * z * (0.001333342276368949 + z * 1.531643601070646e-05));
-    q = mcsi_times_2_to(MCSI_NARROW(even + odd), j, some);
+    const mcsi_d whole = MCSI_ROUND_D(y);
+    const mcs_i j = MCSI_TRUNC_D(root ? whole : MCSI_MAX_D(whole, -151.0));
+    const mcsi_d r = y - whole;
+    z = r * r;
+    const mcsi_d even = (1.0 + z * 0.24022651084099645) + z * z * (0.009618030784745157 + z * 0.0001546973134150267);
+    const mcsi_d odd = r * ((0.6931471805350843 + z * 0.05550410975949026) + z * z * (0.001333342276368949 + z * 1.531643601070646e-05));
+    mcs_f q = mcsi_times_2_to(MCSI_NARROW(even + odd), j, some);
     if (root) *over = mcsi_times_2_to(head * MCSI_NARROW(even - odd), k - j, some);
     if (!root) q = mcsi_sel(MCSI_NARROW(y) > -151.0f, q, mcs_set(0.0f));
     return plus > 0.0 ? q : mcsi_sel(n > 0.0f, q, mcs_set(1.0f));
@@ -761,27 +786,34 @@ MCSI_CORE mcs_f mcsi_pow_unit(mcs_f x, mcs_f n, double plus, int root, mcs_f *ov
 /* Phi(-y) = erfc(y / sqrt 2) / 2, y >= 0: the lower tail of the normal distribution. 8 ulp. The square is split so that e^(-y^2/2)
  * keeps its relative accuracy in the far tail. */
 MCSI_CORE mcs_f mcsi_normal_tail(mcs_f y) {
-    mcs_f c = mcsi_min(y, mcs_set(14.5f)), v = 1.0f / (1.0f + 0.35f * c);
-    mcs_f head = mcsi_from_bits(mcsi_bits(c) & ~0xfff), hi = -0.5f * head * head, lo = -0.5f * (c - head) * (c + head);
-    mcs_f sum = hi + lo, rest = (hi - sum) + lo;
-    mcs_f g = -1.45437423e-06f + v * (0.139653593f + v * (0.139561504f + v * (0.12138617f + v * (0.100589871f +
+    const mcs_f c = mcsi_min(y, mcs_set(14.5f));
+    const mcs_f v = 1.0f / (1.0f + 0.35f * c);
+    const mcs_f head = mcsi_from_bits(mcsi_bits(c) & ~0xfff);
+    const mcs_f hi = -0.5f * head * head;
+    const mcs_f lo = -0.5f * (c - head) * (c + head);
+    const mcs_f sum = hi + lo;
+    const mcs_f rest = (hi - sum) + lo;
+    const mcs_f g = -1.45437423e-06f + v * (0.139653593f + v * (0.139561504f + v * (0.12138617f + v * (0.100589871f +
                v * (-0.0131919663f + v * (0.146392867f + v * (-0.245529339f + v * (0.139402911f + v * -0.0282641724f))))))));
     return mcsi_exp_neg(sum) * (g + g * rest);
 }
 /* The quantile of the normal distribution, p in [2^-126, 1). 6 ulp. */
 MCSI_CORE mcs_f mcsi_normal_quantile(mcs_f p) {
-    mcs_f q = p - 0.5f, z = q * q, zz = z * z, t, v, vv, x;
+    const mcs_f q = p - 0.5f;
+    const mcs_f z = q * q;
+    const mcs_f zz = z * z;
     mcs_f high = (-5471.3335f + z * 53841.8203f) + zz * (-247008.5f + z * 567190.25f);
     mcs_f low = (5.76870966f + z * 16.0235748f) + zz * (30.976078f + z * 553.157715f);
-    mcs_f centre = q * (2.50662827f + (z * 2.62494898f + zz * (low + zz * zz * high)));
+    const mcs_f centre = q * (2.50662827f + (z * 2.62494898f + zz * (low + zz * zz * high)));
 #if MCSI_W == 1
     if (z <= 0.140625f) return centre;
 #endif
-    t = mcsi_sqrt(-2.0f * mcsi_log(mcsi_min(mcsi_min(p, 1.0f - p), mcs_set(0.125f))));
-    v = 1.0f / (1.0f + 0.3f * t), vv = v * v;
+    const mcs_f t = mcsi_sqrt(-2.0f * mcsi_log(mcsi_min(mcsi_min(p, 1.0f - p), mcs_set(0.125f))));
+    const mcs_f v = 1.0f / (1.0f + 0.3f * t);
+    const mcs_f vv = v * v;
     high = (-3.61969185f + v * -1.00470293f) + vv * (9.96816254f + v * -12.2509031f + vv * 5.70157146f);
     low = (0.0152368257f + v * 1.39166832f) + vv * (-1.32426488f + v * 3.72064948f);
-    x = t - (low + vv * vv * high);
+    const mcs_f x = t - (low + vv * vv * high);
     return mcsi_sel(z <= 0.140625f, centre, mcsi_with_sign(x, q));
 }
 
@@ -814,18 +846,22 @@ typedef struct {
 
 MCSI_CORE mcs_vec2 mcsi_vec2(mcs_f x, mcs_f y) {
     mcs_vec2 v;
-    v.x = x, v.y = y;
+    v.x = x;
+    v.y = y;
     return v;
 }
 MCSI_CORE mcs_vec3 mcsi_vec3(mcs_f x, mcs_f y, mcs_f z) {
     mcs_vec3 v;
-    v.x = x, v.y = y, v.z = z;
+    v.x = x;
+    v.y = y;
+    v.z = z;
     return v;
 }
 MCSI_CORE mcs_f mcsi_dot(mcs_vec3 a, mcs_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 /* The same in double, for where it cancels. */
 MCSI_CORE mcs_f mcsi_exact_dot(mcs_vec3 a, mcs_vec3 b) {
-    return MCSI_NARROW(MCSI_WIDEN(a.x) * MCSI_WIDEN(b.x) + MCSI_WIDEN(a.y) * MCSI_WIDEN(b.y) + MCSI_WIDEN(a.z) * MCSI_WIDEN(b.z));
+    return MCSI_NARROW(MCSI_WIDEN(a.x) * MCSI_WIDEN(b.x) + MCSI_WIDEN(a.y) * MCSI_WIDEN(b.y) +
+                       MCSI_WIDEN(a.z) * MCSI_WIDEN(b.z));
 }
 /* What MCS_ASSERT takes for a unit vector. A careful caller normalises in float, which leaves |w|^2 within 2^-21 of 1, and turns
  * the vector by float frames. A frame is orthonormal to 4 ulp (12 x 2^-24 in |w|^2) and the sums of three products round (6 x
@@ -833,20 +869,22 @@ MCSI_CORE mcs_f mcsi_exact_dot(mcs_vec3 a, mcs_vec3 b) {
  * 2^-10.4. All of these pass. */
 #define MCSI_IS_UNIT(length2) ((length2) >= 0.999f && (length2) <= 1.001f)
 /* A direction made safe: bad ones (not about unit length, NaN) become +z and leave *ok. */
-MCSI_CORE mcs_vec3 mcsi_direction(mcs_vec3 w, mcs_i *ok) {
-    mcs_f length2 = mcsi_dot(w, w);
-    mcs_i good = (length2 > 0.25f) & (length2 < 4.0f);
+MCSI_CORE mcs_vec3 mcsi_sane_direction(mcs_vec3 w, mcs_i *ok) {
+    const mcs_f length2 = mcsi_dot(w, w);
+    const mcs_i good = (length2 > 0.25f) & (length2 < 4.0f);
     MCSI_REQUIRE(MCSI_IS_UNIT(length2));
     *ok = *ok & good;
-    return mcsi_vec3(mcsi_sel(good, w.x, mcs_set(0.0f)), mcsi_sel(good, w.y, mcs_set(0.0f)), mcsi_sel(good, w.z, mcs_set(1.0f)));
+    return mcsi_vec3(mcsi_sel(good, w.x, mcs_set(0.0f)), mcsi_sel(good, w.y, mcs_set(0.0f)),
+                     mcsi_sel(good, w.z, mcs_set(1.0f)));
 }
 /* The same for a direction that must lie above the surface. */
-MCSI_CORE mcs_vec3 mcsi_above(mcs_vec3 w, mcs_i *ok) {
-    mcs_f length2 = mcsi_dot(w, w);
-    mcs_i good = (length2 > 0.25f) & (length2 < 4.0f) & (w.z > 0.0f);
+MCSI_CORE mcs_vec3 mcsi_sane_upper(mcs_vec3 w, mcs_i *ok) {
+    const mcs_f length2 = mcsi_dot(w, w);
+    const mcs_i good = (length2 > 0.25f) & (length2 < 4.0f) & (w.z > 0.0f);
     MCSI_REQUIRE(MCSI_IS_UNIT(length2));
     *ok = *ok & good;
-    return mcsi_vec3(mcsi_sel(good, w.x, mcs_set(0.0f)), mcsi_sel(good, w.y, mcs_set(0.0f)), mcsi_sel(good, w.z, mcs_set(1.0f)));
+    return mcsi_vec3(mcsi_sel(good, w.x, mcs_set(0.0f)), mcsi_sel(good, w.y, mcs_set(0.0f)),
+                     mcsi_sel(good, w.z, mcs_set(1.0f)));
 }
 /* All lanes alike: how the array forms spread the scalars of a call, and a direction of it. */
 MCSI_CORE mcs_vec3 mcsi_spread(mcsi_scalar_vec3 v) { return mcsi_vec3(mcs_set(v.x), mcs_set(v.y), mcs_set(v.z)); }
@@ -922,8 +960,9 @@ typedef struct {
 } mcs_philox4;
 
 MCS_FN uint32_t mcs_pcg32_next(mcs_pcg32 *r) {
-    uint64_t s = r->state;
-    uint32_t x = (uint32_t)(((s >> 18) ^ s) >> 27), rot = (uint32_t)(s >> 59);
+    const uint64_t s = r->state;
+    const uint32_t x = (uint32_t)(((s >> 18) ^ s) >> 27);
+    const uint32_t rot = (uint32_t)(s >> 59);
     r->state = s * 6364136223846793005u + r->inc;
     return (x >> rot) | (x << ((32u - rot) & 31u));
 }
@@ -939,7 +978,10 @@ MCS_FN mcs_pcg32 mcs_pcg32_make(uint64_t seed, uint64_t stream) {
 MCS_FN float mcs_pcg32_float(mcs_pcg32 *r) { return mcs_u01(mcs_pcg32_next(r)); }
 /* Brown 1994, "Random number generation with arbitrary strides". */
 MCS_FN void mcs_pcg32_advance(mcs_pcg32 *r, uint64_t delta) {
-    uint64_t mul = 6364136223846793005u, add = r->inc, all_mul = 1, all_add = 0;
+    uint64_t mul = 6364136223846793005u;
+    uint64_t add = r->inc;
+    uint64_t all_mul = 1;
+    uint64_t all_add = 0;
     for (; delta; delta >>= 1) {
         if (delta & 1u) {
             all_mul *= mul;
@@ -951,9 +993,8 @@ MCS_FN void mcs_pcg32_advance(mcs_pcg32 *r, uint64_t delta) {
     r->state = all_mul * r->state + all_add;
 }
 MCS_FN void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
-    size_t i;
-    for (i = 0; i < n; i++) {
-        float u = mcs_pcg32_float(r);
+    for (size_t i = 0; i < n; i++) {
+        const float u = mcs_pcg32_float(r);
         if (out) out[i] = u;
     }
 }
@@ -962,7 +1003,8 @@ MCS_FN void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
 #if MCSI_W == 1
 MCSI_CORE void mcsi_mul_wide(uint32_t a, uint32_t k, uint32_t *hi, uint32_t *lo) {
     const uint64_t p = (uint64_t)a * k;
-    *hi = (uint32_t)(p >> 32), *lo = (uint32_t)p;
+    *hi = (uint32_t)(p >> 32);
+    *lo = (uint32_t)p;
 }
 #else
 /* 64-bit products of the lower halves of 64-bit lanes; gcc does not see that the upper halves are 0. */
@@ -977,28 +1019,38 @@ typedef long long mcsi_any __attribute__((vector_size(64)));
 #define MCSI_MUL_HALVES(a, b) (((a)&0xffffffffu) * ((b)&0xffffffffu))
 #endif
 MCSI_CORE void mcsi_mul_wide(mcs_u a, uint32_t k, mcs_u *hi, mcs_u *lo) {
-    const mcsi_q all = (mcsi_q)a, zero = {0}, factor = zero + k;
-    const mcsi_q p = MCSI_MUL_HALVES(all, factor), q = MCSI_MUL_HALVES(all >> 32, factor);
-    *hi = (mcs_u)((p >> 32) | (q & ~(uint64_t)0xffffffffu)), *lo = (mcs_u)((p & 0xffffffffu) | (q << 32));
+    const mcsi_q all = (mcsi_q)a;
+    const mcsi_q zero = {0};
+    const mcsi_q factor = zero + k;
+    const mcsi_q p = MCSI_MUL_HALVES(all, factor);
+    const mcsi_q q = MCSI_MUL_HALVES(all >> 32, factor);
+    *hi = (mcs_u)((p >> 32) | (q & ~(uint64_t)0xffffffffu));
+    *lo = (mcs_u)((p & 0xffffffffu) | (q << 32));
 }
 #undef MCSI_MUL_HALVES
 #endif
 /* The ten rounds on a block of four words. */
 MCSI_CORE void mcsi_philox_rounds(uint64_t key, mcs_u v[4]) {
-    uint32_t k0 = (uint32_t)key, k1 = (uint32_t)(key >> 32);
-    int round;
-    for (round = 0; round < 10; round++, k0 += 0x9e3779b9u, k1 += 0xbb67ae85u) {
-        mcs_u hi0, lo0, hi2, lo2;
+    uint32_t k0 = (uint32_t)key;
+    uint32_t k1 = (uint32_t)(key >> 32);
+    for (int round = 0; round < 10; round++, k0 += 0x9e3779b9u, k1 += 0xbb67ae85u) {
+        mcs_u hi0, lo0;
         mcsi_mul_wide(v[0], 0xd2511f53u, &hi0, &lo0);
+        mcs_u hi2, lo2;
         mcsi_mul_wide(v[2], 0xcd9e8d57u, &hi2, &lo2);
-        v[0] = hi2 ^ v[1] ^ k0, v[1] = lo2, v[2] = hi0 ^ v[3] ^ k1, v[3] = lo0;
+        v[0] = hi2 ^ v[1] ^ k0;
+        v[1] = lo2;
+        v[2] = hi0 ^ v[3] ^ k1;
+        v[3] = lo0;
     }
 }
 #if MCSI_W == 1
 MCS_FN mcs_philox4 mcs_philox(uint64_t key, uint64_t counter_lo, uint64_t counter_hi) {
     mcs_philox4 c;
-    c.v[0] = (uint32_t)counter_lo, c.v[1] = (uint32_t)(counter_lo >> 32);
-    c.v[2] = (uint32_t)counter_hi, c.v[3] = (uint32_t)(counter_hi >> 32);
+    c.v[0] = (uint32_t)counter_lo;
+    c.v[1] = (uint32_t)(counter_lo >> 32);
+    c.v[2] = (uint32_t)counter_hi;
+    c.v[3] = (uint32_t)(counter_hi >> 32);
     mcsi_philox_rounds(key, c.v);
     return c;
 }
@@ -1014,23 +1066,27 @@ MCS_FN mcs_pcg32 mcs_pcg32_for(uint64_t seed, uint64_t pixel, uint64_t sample) {
 /* A lane is a block: 4 W numbers, turned from lanes of words into blocks of words on the way to the array. */
 MCSI_CORE void mcsi_philox_blocks(uint64_t key, uint64_t counter, float *out) {
     mcs_u v[4];
-    float words[4][MCSI_W];
-    int k, lane;
-    for (lane = 0; lane < MCSI_W; lane++) {
+    for (int lane = 0; lane < MCSI_W; lane++) {
         MCSI_LANE(v[0], lane) = (uint32_t)(counter + (unsigned)lane);
         MCSI_LANE(v[1], lane) = (uint32_t)((counter + (unsigned)lane) >> 32);
     }
     v[3] = v[2] = v[0] & 0u;
     mcsi_philox_rounds(key, v);
-    for (k = 0; k < 4; k++) mcs_store(words[k], mcs_u01(v[k]));
-    for (lane = 0; lane < MCSI_W; lane++, out += 4)
-        out[0] = words[0][lane], out[1] = words[1][lane], out[2] = words[2][lane], out[3] = words[3][lane];
+    float words[4][MCSI_W];
+    for (int k = 0; k < 4; k++) mcs_store(words[k], mcs_u01(v[k]));
+    for (int lane = 0; lane < MCSI_W; lane++, out += 4) {
+        out[0] = words[0][lane];
+        out[1] = words[1][lane];
+        out[2] = words[2][lane];
+        out[3] = words[3][lane];
+    }
 }
 MCSI_LOOP void mcsi_philox_fill_loop(uint64_t key, uint64_t counter, size_t n, float *out) {
-    float rest[4 * MCSI_W];
     if (!out) return;
-    for (; n >= 4 * MCSI_W; n -= 4 * MCSI_W, out += 4 * MCSI_W, counter += MCSI_W) mcsi_philox_blocks(key, counter, out);
+    for (; n >= 4 * MCSI_W; n -= 4 * MCSI_W, out += 4 * MCSI_W, counter += MCSI_W)
+        mcsi_philox_blocks(key, counter, out);
     if (n) {
+        float rest[4 * MCSI_W];
         mcsi_philox_blocks(key, counter, rest);
         MCSI_COPY(out, rest, n * sizeof(float));
     }
@@ -1093,13 +1149,17 @@ MCSI_FN mcs_u mcs_sobol_bits(mcs_u index, uint32_t dim, uint32_t seed) {
          0x0000011bu, 0x000002a4u, 0x0000079au, 0x00000b67u, 0x0000101eu, 0x0000302du, 0x00004041u, 0x0000a0c3u,
          0x0001f104u, 0x0002e28au, 0x000457dfu, 0x000c9baeu, 0x0011a105u, 0x002a7289u, 0x0079e7dbu, 0x00b6dba4u,
          0x0100011au, 0x030002a7u, 0x0400079eu, 0x0a000b6du, 0x1f001001u, 0x2e003003u, 0x45004004u, 0xc900a00au}};
-    const uint32_t group = dim / 4u, axis = dim % 4u;
+    const uint32_t group = dim / 4u;
+    const uint32_t axis = dim % 4u;
     mcs_u x = index;
-    uint32_t k;
-    if (group) index = mcsi_reverse_bits(mcsi_scramble_reversed(mcsi_reverse_bits(index), mcsi_scalar_hash(group, seed)));
-    if (axis == 0) x = index;
-    else
-        for (x = index & 0u, k = 0; k < 32; k++) x = x ^ ((0u - ((index >> k) & 1u)) & matrix[axis - 1][k]);
+    if (group)
+        index = mcsi_reverse_bits(mcsi_scramble_reversed(mcsi_reverse_bits(index), mcsi_scalar_hash(group, seed)));
+    if (axis == 0) {
+        x = index;
+    } else {
+        x = index & 0u;
+        for (uint32_t k = 0; k < 32; k++) x = x ^ ((0u - ((index >> k) & 1u)) & matrix[axis - 1][k]);
+    }
     return mcsi_reverse_bits(mcsi_scramble_reversed(x, mcsi_scalar_hash(dim, ~seed)));
 }
 MCSI_FN mcs_f mcs_sobol(mcs_u index, uint32_t dim, uint32_t seed) { return mcs_u01(mcs_sobol_bits(index, dim, seed)); }
@@ -1110,9 +1170,8 @@ MCSI_FN mcs_vec2 mcs_r2(mcs_u index, uint32_t seed) { /* steps 1/g and 1/g^2 of 
 #ifdef MCSI_LOOPS
 MCSI_LOOP void mcsi_sobol_loop(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
     mcs_u index;
+    for (int k = 0; k < MCSI_W; k++) MCSI_LANE(index, k) = first + (uint32_t)k;
     mcsi_batch b;
-    int k;
-    for (k = 0; k < MCSI_W; k++) MCSI_LANE(index, k) = first + (uint32_t)k;
     mcsi_batch_start(&b, n, NULL, NULL, NULL);
     b.out[0] = out;
     MCSI_EACH(b) {
@@ -1127,17 +1186,19 @@ MCS_FN uint32_t mcsi_strata(uint32_t n) { return n < 1u ? 1u : n > 1048576u ? 10
 /* A place in stratum i of n, from the bits of a hash: few enough of them that i + place is exact, so the point stays in its
  * stratum. */
 MCS_FN float mcsi_jitter(uint32_t i, uint32_t n, uint32_t bits) {
-    uint32_t shift = 10, top = n - 1;
+    uint32_t shift = 10;
+    uint32_t top = n - 1;
     for (; top; top >>= 1) shift++;
     return ((float)i + ((float)(bits >> shift) + 0.5f) / (float)(1u << (32 - shift))) / (float)n;
 }
 /* The place of i in a random permutation of 0 .. n-1: bijections of the next power of two, repeated until the result is below n. */
 MCS_FN uint32_t mcsi_permute(uint32_t i, uint32_t n, uint32_t seed) {
-    uint32_t mask = n - 1, shift, k, r;
-    for (k = 1; k < 32; k *= 2) mask |= mask >> k;
+    uint32_t mask = n - 1;
+    for (uint32_t k = 1; k < 32; k *= 2) mask |= mask >> k;
+    uint32_t shift;
     for (shift = 1; mask >> (2 * shift); shift++) {}
     do
-        for (r = 0; r < 12; r++) {
+        for (uint32_t r = 0; r < 12; r++) {
             const uint32_t h = mcs_hash(r, seed);
             i = (i * (h | 1u) + (h >> 7)) & mask;
             i ^= i >> shift;
@@ -1146,12 +1207,14 @@ MCS_FN uint32_t mcsi_permute(uint32_t i, uint32_t n, uint32_t seed) {
     return i;
 }
 MCS_FN mcs_vec2 mcs_stratified(uint32_t index, uint32_t nx, uint32_t ny, uint32_t seed) {
-    const uint32_t x = index % mcsi_strata(nx), y = index / mcsi_strata(nx) % mcsi_strata(ny);
+    const uint32_t x = index % mcsi_strata(nx);
+    const uint32_t y = index / mcsi_strata(nx) % mcsi_strata(ny);
     return mcsi_vec2(mcsi_jitter(x, mcsi_strata(nx), mcs_hash(index, seed)),
                      mcsi_jitter(y, mcsi_strata(ny), mcs_hash(index, ~seed)));
 }
 MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed) {
-    const uint32_t m = mcsi_strata(n), s = mcs_hash(dim, seed);
+    const uint32_t m = mcsi_strata(n);
+    const uint32_t s = mcs_hash(dim, seed);
     return mcsi_jitter(mcsi_permute(index % m, m, s), m, mcs_hash(index, s));
 }
 #endif
@@ -1186,19 +1249,22 @@ MCSI_CORE mcs_f mcsi_off_zero(mcs_f u) { return mcsi_max(u, mcs_set(2.98023224e-
 MCSI_CORE mcs_sample1 mcsi_sample1(mcs_i ok, mcs_f x, mcs_f pdf) {
     mcs_sample1 s;
     s.x = mcsi_sel(ok, x, mcs_set(0.0f));
-    s.pdf = mcsi_keep(ok, pdf);
+    s.pdf = mcsi_sane_result(ok, pdf);
     return s;
 }
 
 /* linear: weights a, b >= 0 times a power of two, in two halves, that brings the larger one to 2^60, or a subnormal one to 2^38 at
  * least: then no square overflows, and that of the smaller one underflows only where it is below 2^-101 of the larger. */
 MCSI_CORE mcs_i mcsi_linear_ends(mcs_f *a, mcs_f *b) {
-    mcs_f top = mcsi_max(*a, *b), one, other;
-    mcs_i ok = (*a >= 0.0f) & (*b >= 0.0f) & (top > 0.0f) & (top <= FLT_MAX);
-    mcs_i power = 0x5d800000 - (mcsi_bits(top) & 0x7f800000), first = (power >> 1) & -0x800000;
+    const mcs_f top = mcsi_max(*a, *b);
+    const mcs_i ok = (*a >= 0.0f) & (*b >= 0.0f) & (top > 0.0f) & (top <= FLT_MAX);
+    const mcs_i power = 0x5d800000 - (mcsi_bits(top) & 0x7f800000);
+    const mcs_i first = (power >> 1) & -0x800000;
     MCSI_REQUIRE(ok);
-    one = mcsi_from_bits(first + 0x3f800000), other = mcsi_from_bits(power - first + 0x3f800000);
-    *a = *a * one * other, *b = *b * one * other;
+    const mcs_f one = mcsi_from_bits(first + 0x3f800000);
+    const mcs_f other = mcsi_from_bits(power - first + 0x3f800000);
+    *a = *a * one * other;
+    *b = *b * one * other;
     return ok;
 }
 /* x is the root of a x + (b - a) x^2 / 2 = u (a + b) / 2, which has the slope r = a + (b - a) x there. The closed form in float is
@@ -1206,45 +1272,46 @@ MCSI_CORE mcs_i mcsi_linear_ends(mcs_f *a, mcs_f *b) {
  * the next u is 2^-25 of x further, so rounding cannot bring x below the last one. */
 MCSI_SAMPLE mcs_sample1 mcs_linear_sample(mcs_f a, mcs_f b, mcs_f u) {
     mcs_i ok = mcsi_linear_ends(&a, &b);
-    mcs_f r, steep, inverse, x;
-    mcsi_d da, db, dx, missing;
-    u = mcsi_unit(u, &ok);
-    r = mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b));
-    steep = mcsi_max(r, mcs_set(8.67361738e-19f)); /* at least 2^-60, for u = 0 where a = 0 */
-    inverse = 1.0f / ((a + steep) * steep);
-    x = u * (a + b) * (inverse * steep);
-    da = MCSI_WIDEN(a), db = MCSI_WIDEN(b), dx = MCSI_WIDEN(x);
-    missing = MCSI_WIDEN(u) * (da + db) - dx * ((da + da) + (db - da) * dx);
+    u = mcsi_sane_u(u, &ok);
+    const mcs_f r = mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b));
+    const mcs_f steep = mcsi_max(r, mcs_set(8.67361738e-19f)); /* at least 2^-60, for u = 0 where a = 0 */
+    const mcs_f inverse = 1.0f / ((a + steep) * steep);
+    mcs_f x = u * (a + b) * (inverse * steep);
+    const mcsi_d da = MCSI_WIDEN(a);
+    const mcsi_d db = MCSI_WIDEN(b);
+    const mcsi_d dx = MCSI_WIDEN(x);
+    const mcsi_d missing = MCSI_WIDEN(u) * (da + db) - dx * ((da + da) + (db - da) * dx);
     x = mcsi_stored(x + 0.5f * MCSI_NARROW(missing) * (inverse * (a + steep)));
     return mcsi_sample1(ok, mcsi_min(x, mcs_set(1.0f)), r * (2.0f / (a + b)));
 }
 MCSI_FN mcs_f mcs_linear_pdf(mcs_f a, mcs_f b, mcs_f x) {
-    mcs_i ok = mcsi_linear_ends(&a, &b);
-    mcs_f t = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1.0f));
-    return mcsi_keep(ok & (t == x), 2.0f * (((1.0f - t) * a + t * b) / (a + b)));
+    const mcs_i ok = mcsi_linear_ends(&a, &b);
+    const mcs_f t = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1.0f));
+    return mcsi_sane_result(ok & (t == x), 2.0f * (((1.0f - t) * a + t * b) / (a + b)));
 }
 MCSI_FN mcs_f mcs_linear_invert(mcs_f a, mcs_f b, mcs_f x) {
-    mcs_i ok = mcsi_linear_ends(&a, &b);
+    const mcs_i ok = mcsi_linear_ends(&a, &b);
     x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1.0f));
     return mcsi_u_of(ok, x * ((a * (2.0f - x) + b * x) / (a + b)));
 }
 
 MCSI_SAMPLE mcs_sample1 mcs_tent_sample(mcs_f r, mcs_f u) {
     mcs_i ok = mcsi_scale_ok(r);
-    mcs_f v, q;
     MCSI_REQUIRE(ok);
-    u = mcsi_unit(u, &ok);
-    v = 2.0f * mcsi_min(u, 1.0f - u), q = mcsi_sqrt(v);
+    u = mcsi_sane_u(u, &ok);
+    const mcs_f v = 2.0f * mcsi_min(u, 1.0f - u);
+    const mcs_f q = mcsi_sqrt(v);
     return mcsi_sample1(ok, mcsi_with_sign(r * (1.0f - q), u - 0.5f), q / r);
 }
 MCSI_FN mcs_f mcs_tent_pdf(mcs_f r, mcs_f x) {
-    mcs_i ok = mcsi_scale_ok(r);
+    const mcs_i ok = mcsi_scale_ok(r);
     MCSI_REQUIRE(ok);
-    return mcsi_keep(ok, (r - mcsi_min(mcsi_abs(x), r)) / r / r);
+    return mcsi_sane_result(ok, (r - mcsi_min(mcsi_abs(x), r)) / r / r);
 }
 MCSI_FN mcs_f mcs_tent_invert(mcs_f r, mcs_f x) {
-    mcs_i ok = mcsi_scale_ok(r);
-    mcs_f t = mcsi_max((r - mcsi_min(mcsi_abs(x), r)) / r, mcs_set(0.0f)), below = 0.5f * t * t;
+    const mcs_i ok = mcsi_scale_ok(r);
+    const mcs_f t = mcsi_max((r - mcsi_min(mcsi_abs(x), r)) / r, mcs_set(0.0f));
+    const mcs_f below = 0.5f * t * t;
     MCSI_REQUIRE(ok);
     return mcsi_u_of(ok & (x == x), mcsi_sel(x < 0.0f, below, 1.0f - below));
 }
@@ -1252,20 +1319,20 @@ MCSI_FN mcs_f mcs_tent_invert(mcs_f r, mcs_f x) {
 MCSI_SAMPLE mcs_sample1 mcs_exponential_sample(mcs_f rate, mcs_f u) {
     mcs_i ok = mcsi_scale_ok(rate);
     MCSI_REQUIRE(ok);
-    u = mcsi_unit(u, &ok);
+    u = mcsi_sane_u(u, &ok);
     return mcsi_sample1(ok, mcsi_log1m(u) / -rate, rate * (1.0f - u));
 }
 MCSI_FN mcs_f mcs_exponential_pdf(mcs_f rate, mcs_f x) {
-    mcs_i ok = mcsi_scale_ok(rate);
+    const mcs_i ok = mcsi_scale_ok(rate);
     MCSI_REQUIRE(ok);
     x = mcsi_min(x, mcs_set(1e20f)); /* the density is 0 there at every rate */
-    return mcsi_keep(ok & (x >= 0.0f), rate * mcsi_exp_neg(-rate * mcsi_max(x, mcs_set(0.0f))));
+    return mcsi_sane_result(ok & (x >= 0.0f), rate * mcsi_exp_neg(-rate * mcsi_max(x, mcs_set(0.0f))));
 }
 MCSI_FN mcs_f mcs_exponential_invert(mcs_f rate, mcs_f x) {
-    mcs_i ok = mcsi_scale_ok(rate);
-    mcs_f minus_one;
+    const mcs_i ok = mcsi_scale_ok(rate);
     MCSI_REQUIRE(ok);
     x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1e20f));
+    mcs_f minus_one;
     mcsi_exp_both(-mcsi_min(mcsi_max(rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &minus_one);
     return mcsi_u_of(ok, -minus_one);
 }
@@ -1273,76 +1340,83 @@ MCSI_FN mcs_f mcs_exponential_invert(mcs_f rate, mcs_f x) {
 /* truncexp: rate m -> e^(-rate m) and its distance to 1; `flat` where the density is uniform to float precision. There the rate and
  * the distance become 1, as divisors that are not used. */
 MCSI_CORE mcs_i mcsi_truncexp_ends(mcs_f *rate, mcs_f m, mcs_f *e, mcs_f *one_minus_e, mcs_i *flat) {
-    mcs_i ok = (*rate >= 0.0f) & (*rate <= 1e18f) & mcsi_scale_ok(m);
-    mcs_f t = *rate * m;
+    const mcs_i ok = (*rate >= 0.0f) & (*rate <= 1e18f) & mcsi_scale_ok(m);
+    const mcs_f t = *rate * m;
     MCSI_REQUIRE(ok);
     *flat = t < 1e-8f;
     *e = mcsi_exp_both(-mcsi_sel(ok & (t < 80.0f), t, mcs_set(80.0f)), one_minus_e);
-    *one_minus_e = mcsi_sel(*flat, mcs_set(1.0f), -*one_minus_e), *rate = mcsi_sel(*flat, mcs_set(1.0f), *rate);
+    *one_minus_e = mcsi_sel(*flat, mcs_set(1.0f), -*one_minus_e);
+    *rate = mcsi_sel(*flat, mcs_set(1.0f), *rate);
     return ok;
 }
 MCSI_SAMPLE mcs_sample1 mcs_truncexp_sample(mcs_f rate, mcs_f m, mcs_f u) {
-    mcs_f e, d, w, c, x;
-    mcs_i flat, ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
-    u = mcsi_unit(u, &ok);
-    w = mcsi_stored((1.0f - u) + u * e); /* 1 - u d = e^(-rate x); u d itself has more digits of it where it is small */
-    c = mcsi_blend((0x3effffff - mcsi_bits(w)) >> 31, (1.0f - w) - u * d, mcs_set(0.0f)); /* where w >= 1/2 */
-    x = mcsi_min(mcsi_log_of_sum(w, c) / -rate, m);
+    mcs_f e, d;
+    mcs_i flat;
+    mcs_i ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
+    u = mcsi_sane_u(u, &ok);
+    const mcs_f w =
+        mcsi_stored((1.0f - u) + u * e); /* 1 - u d = e^(-rate x); u d itself has more digits of it where it is small */
+    const mcs_f c =
+        mcsi_blend((0x3effffff - mcsi_bits(w)) >> 31, (1.0f - w) - u * d, mcs_set(0.0f)); /* where w >= 1/2 */
+    const mcs_f x = mcsi_min(mcsi_log_of_sum(w, c) / -rate, m);
     return mcsi_sample1(ok, mcsi_sel(flat, u * m, x), mcsi_sel(flat, 1.0f / m, w * (rate / d)));
 }
 MCSI_FN mcs_f mcs_truncexp_pdf(mcs_f rate, mcs_f m, mcs_f x) {
     mcs_f e, d;
-    mcs_i flat, ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
-    mcs_f t = mcsi_min(mcsi_max(x, mcs_set(0.0f)), m);
-    return mcsi_keep(ok & (t == x), mcsi_sel(flat, 1.0f / m, rate * mcsi_exp_neg(-rate * t) / d));
+    mcs_i flat;
+    const mcs_i ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
+    const mcs_f t = mcsi_min(mcsi_max(x, mcs_set(0.0f)), m);
+    return mcsi_sane_result(ok & (t == x), mcsi_sel(flat, 1.0f / m, rate * mcsi_exp_neg(-rate * t) / d));
 }
 MCSI_FN mcs_f mcs_truncexp_invert(mcs_f rate, mcs_f m, mcs_f x) {
-    mcs_f e, d, p;
-    mcs_i flat, ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
+    mcs_f e, d;
+    mcs_i flat;
+    const mcs_i ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
     x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), m);
+    mcs_f p;
     mcsi_exp_both(-mcsi_min(mcsi_max(rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &p);
     return mcsi_u_of(ok, mcsi_sel(flat, x / m, -p / d));
 }
 
 MCSI_SAMPLE mcs_sample1 mcs_normal_sample(mcs_f mean, mcs_f sd, mcs_f u) {
     mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
-    mcs_f z;
     MCSI_REQUIRE(ok);
-    u = mcsi_unit(u, &ok);
-    z = mcsi_normal_quantile(mcsi_off_zero(u));
+    u = mcsi_sane_u(u, &ok);
+    const mcs_f z = mcsi_normal_quantile(mcsi_off_zero(u));
     return mcsi_sample1(ok, mean + sd * z, mcsi_exp_neg(-0.5f * z * z) * (0.398942280f / sd));
 }
 /* |x - mean| / scale, at most 200: both densities are 0 there. */
-MCSI_CORE mcs_f mcsi_deviation(mcs_f mean, mcs_f scale, mcs_f x) { return mcsi_min(mcsi_abs(x - mean), 200.0f * scale) / scale; }
+MCSI_CORE mcs_f mcsi_deviation(mcs_f mean, mcs_f scale, mcs_f x) {
+    return mcsi_min(mcsi_abs(x - mean), 200.0f * scale) / scale;
+}
 MCSI_FN mcs_f mcs_normal_pdf(mcs_f mean, mcs_f sd, mcs_f x) {
-    mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
-    mcs_f z = mcsi_deviation(mean, sd, x);
+    const mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
+    const mcs_f z = mcsi_deviation(mean, sd, x);
     MCSI_REQUIRE(ok);
-    return mcsi_keep(ok & (x == x), 0.398942280f * mcsi_exp_neg(-0.5f * z * z) / sd);
+    return mcsi_sane_result(ok & (x == x), 0.398942280f * mcsi_exp_neg(-0.5f * z * z) / sd);
 }
 MCSI_FN mcs_f mcs_normal_invert(mcs_f mean, mcs_f sd, mcs_f x) {
-    mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
-    mcs_f tail = mcsi_normal_tail(mcsi_deviation(mean, sd, x));
+    const mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
+    const mcs_f tail = mcsi_normal_tail(mcsi_deviation(mean, sd, x));
     MCSI_REQUIRE(ok);
     return mcsi_u_of(ok & (x == x), mcsi_sel(x < mean, tail, 1.0f - tail));
 }
 
 MCSI_SAMPLE mcs_sample1 mcs_logistic_sample(mcs_f mean, mcs_f s, mcs_f u) {
     mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
-    mcs_f v;
     MCSI_REQUIRE(ok);
-    v = mcsi_off_zero(mcsi_unit(u, &ok));
+    const mcs_f v = mcsi_off_zero(mcsi_sane_u(u, &ok));
     return mcsi_sample1(ok, mean + s * mcsi_log(v / (1.0f - v)), v * (1.0f - v) / s);
 }
 MCSI_FN mcs_f mcs_logistic_pdf(mcs_f mean, mcs_f s, mcs_f x) {
-    mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
-    mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, s, x));
+    const mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
+    const mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, s, x));
     MCSI_REQUIRE(ok);
-    return mcsi_keep(ok & (x == x), e / ((1.0f + e) * (1.0f + e)) / s);
+    return mcsi_sane_result(ok & (x == x), e / ((1.0f + e) * (1.0f + e)) / s);
 }
 MCSI_FN mcs_f mcs_logistic_invert(mcs_f mean, mcs_f s, mcs_f x) {
-    mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
-    mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, s, x));
+    const mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
+    const mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, s, x));
     MCSI_REQUIRE(ok);
     return mcsi_u_of(ok & (x == x), mcsi_sel(x < mean, e, mcs_set(1.0f)) / (1.0f + e));
 }
@@ -1350,47 +1424,52 @@ MCSI_FN mcs_f mcs_logistic_invert(mcs_f mean, mcs_f s, mcs_f x) {
 MCSI_CORE mcs_i mcsi_exponent_ok(mcs_f n) { return (n >= 0.0f) & (n <= 1e9f); }
 /* v^(1/(n+1)) and the density (n+1) x^n = (n+1) v / x there. */
 MCSI_CORE mcs_f mcsi_root(mcs_f n, mcs_f v, mcs_f *density) {
-    mcs_f over, x = mcsi_pow_unit(v, n, 1.0, 1, &over);
+    mcs_f over;
+    const mcs_f x = mcsi_pow_unit(v, n, 1.0, 1, &over);
     *density = mcsi_sel(n > 0.0f, (n + 1.0f) * over, mcs_set(1.0f));
     return x;
 }
 MCSI_CORE mcs_f mcsi_power(mcs_f n, double plus, mcs_f x) { return mcsi_pow_unit(x, n, plus, 0, NULL); }
 MCSI_SAMPLE mcs_sample1 mcs_power_sample(mcs_f n, mcs_f u) {
     mcs_i ok = mcsi_exponent_ok(n);
-    mcs_f x, pdf;
     MCSI_REQUIRE(ok);
-    n = mcsi_sel(ok, n, mcs_set(0.0f)), u = mcsi_unit(u, &ok);
-    x = mcsi_root(n, u, &pdf);
+    n = mcsi_sel(ok, n, mcs_set(0.0f));
+    u = mcsi_sane_u(u, &ok);
+    mcs_f pdf;
+    const mcs_f x = mcsi_root(n, u, &pdf);
     return mcsi_sample1(ok, x, pdf);
 }
 MCSI_FN mcs_f mcs_power_pdf(mcs_f n, mcs_f x) {
     mcs_i ok = mcsi_exponent_ok(n);
     MCSI_REQUIRE(ok);
-    ok = ok & (x >= 0.0f) & (x <= 1.0f), n = mcsi_within(ok, n, 0.0f, 1e9f);
-    return mcsi_keep(ok, (n + 1.0f) * mcsi_power(n, 0.0, mcsi_within(ok, x, 0.0f, 1.0f)));
+    ok = ok & (x >= 0.0f) & (x <= 1.0f);
+    n = mcsi_sane_parameter(ok, n, 0.0f, 1e9f);
+    return mcsi_sane_result(ok, (n + 1.0f) * mcsi_power(n, 0.0, mcsi_sane_parameter(ok, x, 0.0f, 1.0f)));
 }
 MCSI_FN mcs_f mcs_power_invert(mcs_f n, mcs_f x) {
     mcs_i ok = mcsi_exponent_ok(n);
     MCSI_REQUIRE(ok);
-    ok = ok & (x == x), n = mcsi_within(ok, n, 0.0f, 1e9f);
-    return mcsi_u_of(ok, mcsi_power(n, 1.0, mcsi_within(ok, x, 0.0f, 1.0f)));
+    ok = ok & (x == x);
+    n = mcsi_sane_parameter(ok, n, 0.0f, 1e9f);
+    return mcsi_u_of(ok, mcsi_power(n, 1.0, mcsi_sane_parameter(ok, x, 0.0f, 1.0f)));
 }
 
 MCSI_SAMPLE mcs_sample1 mcs_evenpower_sample(mcs_f n, mcs_f u) {
     mcs_i ok = mcsi_exponent_ok(n);
-    mcs_f d, x, pdf;
     MCSI_REQUIRE(ok);
-    n = mcsi_sel(ok, n, mcs_set(0.0f)), d = 2.0f * mcsi_unit(u, &ok) - 1.0f;
-    x = mcsi_root(n, mcsi_abs(d), &pdf);
+    n = mcsi_sel(ok, n, mcs_set(0.0f));
+    const mcs_f d = 2.0f * mcsi_sane_u(u, &ok) - 1.0f;
+    mcs_f pdf;
+    const mcs_f x = mcsi_root(n, mcsi_abs(d), &pdf);
     return mcsi_sample1(ok, mcsi_with_sign(x, d), 0.5f * pdf);
 }
 MCSI_FN mcs_f mcs_evenpower_pdf(mcs_f n, mcs_f x) { return 0.5f * mcs_power_pdf(n, mcsi_abs(x)); }
 MCSI_FN mcs_f mcs_evenpower_invert(mcs_f n, mcs_f x) {
     mcs_i ok = mcsi_exponent_ok(n);
-    mcs_f beside;
     MCSI_REQUIRE(ok);
-    ok = ok & (x == x), n = mcsi_within(ok, n, 0.0f, 1e9f);
-    beside = 0.5f * mcsi_power(n, 1.0, mcsi_within(ok, mcsi_abs(x), 0.0f, 1.0f));
+    ok = ok & (x == x);
+    n = mcsi_sane_parameter(ok, n, 0.0f, 1e9f);
+    const mcs_f beside = 0.5f * mcsi_power(n, 1.0, mcsi_sane_parameter(ok, mcsi_abs(x), 0.0f, 1.0f));
     return mcsi_u_of(ok, mcsi_sel(x < 0.0f, 0.5f - beside, 0.5f + beside));
 }
 
@@ -1433,59 +1512,72 @@ MCSI_LOOP_LINE(evenpower)
  * Accuracy: coordinates within 2^-23 R, pdf 0.1 E. Both are continuous but for the polar seam. `_invert`: 1 atan2. */
 
 MCSI_CORE mcs_sample2 mcsi_sample2(mcs_i ok, mcs_f R, mcs_f r, mcs_f turns) {
-    mcs_sample2 d;
-    mcs_f s, c;
     ok = ok & mcsi_scale_ok(R);
     MCSI_REQUIRE(mcsi_scale_ok(R));
     r = mcsi_sel(ok, R * r, mcs_set(0.0f));
+    mcs_f s, c;
     mcsi_sincos_turns(turns, &s, &c);
-    d.x = r * c, d.y = r * s;
-    d.pdf = mcsi_keep(ok, MCSI_1_PI / R / R);
+    mcs_sample2 d;
+    d.x = r * c;
+    d.y = r * s;
+    d.pdf = mcsi_sane_result(ok, MCSI_1_PI / R / R);
     return d;
 }
 /* A coordinate in units of the radius, but no further than 4, which is outside. */
 MCSI_CORE mcs_f mcsi_in_radii(mcs_f R, mcs_f x) { return mcsi_min(mcsi_max(x, -4.0f * R), 4.0f * R) / R; }
 MCSI_CORE mcs_f mcsi_disk_pdf(mcs_f R, mcs_f x, mcs_f y) {
-    mcs_f p = mcsi_in_radii(R, x), q = mcsi_in_radii(R, y);
+    const mcs_f p = mcsi_in_radii(R, x);
+    const mcs_f q = mcsi_in_radii(R, y);
     MCSI_REQUIRE(mcsi_scale_ok(R));
-    return mcsi_keep(mcsi_scale_ok(R) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / R / R);
+    return mcsi_sane_result(mcsi_scale_ok(R) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / R / R);
 }
 MCSI_CORE mcs_vec2 mcsi_uv(mcs_i ok, mcs_f u1, mcs_f u2) {
-    mcs_f top = mcs_set(0.99999994f), zero = mcs_set(0.0f);
-    return mcsi_vec2(mcsi_sel(ok, mcsi_min(mcsi_max(u1, zero), top), zero), mcsi_sel(ok, mcsi_min(mcsi_max(u2, zero), top), zero));
+    const mcs_f top = mcs_set(0.99999994f);
+    const mcs_f zero = mcs_set(0.0f);
+    return mcsi_vec2(mcsi_sel(ok, mcsi_min(mcsi_max(u1, zero), top), zero),
+                     mcsi_sel(ok, mcsi_min(mcsi_max(u2, zero), top), zero));
 }
 
 MCSI_SAMPLE mcs_sample2 mcs_disk_sample(mcs_f R, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
     return mcsi_sample2(ok, R, mcsi_sqrt(u1), u2);
 }
 MCSI_FN mcs_f mcs_disk_pdf(mcs_f R, mcs_f x, mcs_f y) { return mcsi_disk_pdf(R, x, y); }
 MCSI_FN mcs_vec2 mcs_disk_invert(mcs_f R, mcs_f x, mcs_f y) {
-    mcs_f p = mcsi_in_radii(R, x), q = mcsi_in_radii(R, y);
+    const mcs_f p = mcsi_in_radii(R, x);
+    const mcs_f q = mcsi_in_radii(R, y);
     MCSI_REQUIRE(mcsi_scale_ok(R));
     return mcsi_uv(mcsi_scale_ok(R) & (p * p + q * q < 4.0f), p * p + q * q, mcsi_atan2_turns(q, p));
 }
 
 MCSI_SAMPLE mcs_sample2 mcs_concentric_sample(mcs_f R, mcs_f u1, mcs_f u2) {
-    mcs_i ok = mcsi_always(), wide;
-    mcs_f a, b, r, q, axis;
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
-    a = 2.0f * u1 - 1.0f, b = 2.0f * u2 - 1.0f;
-    wide = mcsi_abs(a) > mcsi_abs(b);
-    r = mcsi_sel(wide, a, b), q = mcsi_sel(wide, b, -a);
-    axis = mcsi_sel(wide, mcs_set(0.0f), mcs_set(0.25f));
+    mcs_i ok = mcsi_always();
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcs_f a = 2.0f * u1 - 1.0f;
+    const mcs_f b = 2.0f * u2 - 1.0f;
+    const mcs_i wide = mcsi_abs(a) > mcsi_abs(b);
+    const mcs_f r = mcsi_sel(wide, a, b);
+    mcs_f q = mcsi_sel(wide, b, -a);
+    const mcs_f axis = mcsi_sel(wide, mcs_set(0.0f), mcs_set(0.25f));
     q = 0.125f * (q / mcsi_sel(r == 0.0f, mcs_set(1.0f), r));
-    return mcsi_sample2(ok, R, r, axis + q); /* the radius has a sign: angles stay within an eighth of a turn of +x or +y */
+    return mcsi_sample2(ok, R, r,
+                        axis + q); /* the radius has a sign: angles stay within an eighth of a turn of +x or +y */
 }
 MCSI_FN mcs_f mcs_concentric_pdf(mcs_f R, mcs_f x, mcs_f y) { return mcsi_disk_pdf(R, x, y); }
 MCSI_FN mcs_vec2 mcs_concentric_invert(mcs_f R, mcs_f x, mcs_f y) {
-    mcs_f p = mcsi_stored(mcsi_in_radii(R, x)), q = mcsi_stored(mcsi_in_radii(R, y)), r2 = p * p + q * q,
-          r = mcsi_sqrt(mcsi_sel(r2 < 4.0f, r2, mcs_set(0.0f)));
-    mcs_i wide = mcsi_abs(p) > mcsi_abs(q);
-    mcs_f along = mcsi_sel(wide, p, q), across = mcsi_sel(wide, q, p); /* the nearer axis, and the other one */
-    mcs_f eighths = 8.0f * mcsi_atan2_turns(mcsi_abs(across), mcsi_abs(along));
-    mcs_f longer = mcsi_with_sign(r, along), shorter = mcsi_with_sign(r * eighths, across);
+    const mcs_f p = mcsi_stored(mcsi_in_radii(R, x));
+    const mcs_f q = mcsi_stored(mcsi_in_radii(R, y));
+    const mcs_f r2 = p * p + q * q;
+    const mcs_f r = mcsi_sqrt(mcsi_sel(r2 < 4.0f, r2, mcs_set(0.0f)));
+    const mcs_i wide = mcsi_abs(p) > mcsi_abs(q);
+    const mcs_f along = mcsi_sel(wide, p, q);
+    const mcs_f across = mcsi_sel(wide, q, p); /* the nearer axis, and the other one */
+    const mcs_f eighths = 8.0f * mcsi_atan2_turns(mcsi_abs(across), mcsi_abs(along));
+    const mcs_f longer = mcsi_with_sign(r, along);
+    const mcs_f shorter = mcsi_with_sign(r * eighths, across);
     MCSI_REQUIRE(mcsi_scale_ok(R));
     return mcsi_uv(mcsi_scale_ok(R) & (r2 < 4.0f), 0.5f + 0.5f * mcsi_sel(wide, longer, shorter),
                    0.5f + 0.5f * mcsi_sel(wide, shorter, longer));
@@ -1503,108 +1595,115 @@ MCSI_FN mcs_vec2 mcs_concentric_invert(mcs_f R, mcs_f x, mcs_f y) {
  * pdf 0 below the hemisphere, outside the cone and for bad input. */
 
 MCSI_CORE mcs_dir mcsi_around_z(mcs_i ok, mcs_f sine, mcs_f z, mcs_f turns, mcs_f pdf) {
-    mcs_dir d;
     mcs_f s, c;
     mcsi_sincos_turns(turns, &s, &c);
+    mcs_dir d;
     d.w = mcsi_vec3(sine * c, sine * s, z);
-    d.pdf = mcsi_keep(ok, pdf);
+    d.pdf = mcsi_sane_result(ok, pdf);
     return d;
 }
 /* 1 - cos(theta) and 1 + cos(theta) of a direction, each accurate where it is small. */
 MCSI_CORE mcs_f mcsi_one_minus_z(mcs_vec3 w) {
-    mcs_f s = w.x * w.x + w.y * w.y;
+    const mcs_f s = w.x * w.x + w.y * w.y;
     return mcsi_sel(w.z > 0.0f, s / (1.0f + mcsi_abs(w.z)), 1.0f - w.z);
 }
 
 MCSI_SAMPLE mcs_dir mcs_sphere_sample(mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
     return mcsi_around_z(ok, 2.0f * mcsi_sqrt(u1 * (1.0f - u1)), 1.0f - 2.0f * u1, u2, mcs_set(MCSI_1_4PI));
 }
 MCSI_FN mcs_f mcs_sphere_pdf(mcs_vec3 w) {
     mcs_i ok = mcsi_always();
-    mcsi_direction(w, &ok);
-    return mcsi_keep(ok, mcs_set(MCSI_1_4PI));
+    mcsi_sane_direction(w, &ok);
+    return mcsi_sane_result(ok, mcs_set(MCSI_1_4PI));
 }
 MCSI_FN mcs_vec2 mcs_sphere_invert(mcs_vec3 w) {
     mcs_i ok = mcsi_always();
-    w = mcsi_direction(w, &ok);
+    w = mcsi_sane_direction(w, &ok);
     return mcsi_uv(ok, 0.5f * mcsi_one_minus_z(w), mcsi_atan2_turns(w.y, w.x));
 }
 
 MCSI_SAMPLE mcs_dir mcs_hemisphere_sample(mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
     return mcsi_around_z(ok, mcsi_sqrt(u1 * (2.0f - u1)), 1.0f - u1, u2, mcs_set(MCSI_1_2PI));
 }
 MCSI_FN mcs_f mcs_hemisphere_pdf(mcs_vec3 w) {
     mcs_i ok = mcsi_always();
-    mcsi_above(w, &ok);
-    return mcsi_keep(ok, mcs_set(MCSI_1_2PI));
+    mcsi_sane_upper(w, &ok);
+    return mcsi_sane_result(ok, mcs_set(MCSI_1_2PI));
 }
 MCSI_FN mcs_vec2 mcs_hemisphere_invert(mcs_vec3 w) {
     mcs_i ok = mcsi_always();
-    w = mcsi_above(w, &ok);
+    w = mcsi_sane_upper(w, &ok);
     return mcsi_uv(ok, mcsi_one_minus_z(w), mcsi_atan2_turns(w.y, w.x));
 }
 
 MCSI_SAMPLE mcs_dir mcs_cosine_sample(mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    mcs_f z;
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok), z = mcsi_sqrt(1.0f - u1);
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcs_f z = mcsi_sqrt(1.0f - u1);
     return mcsi_around_z(ok, mcsi_sqrt(u1), z, u2, MCSI_1_PI * z);
 }
 MCSI_FN mcs_f mcs_cosine_pdf(mcs_vec3 w) {
     mcs_i ok = mcsi_always();
-    mcsi_above(w, &ok);
-    return mcsi_keep(ok, MCSI_1_PI * w.z);
+    mcsi_sane_upper(w, &ok);
+    return mcsi_sane_result(ok, MCSI_1_PI * w.z);
 }
 MCSI_FN mcs_vec2 mcs_cosine_invert(mcs_vec3 w) {
     mcs_i ok = mcsi_always();
-    w = mcsi_above(w, &ok);
+    w = mcsi_sane_upper(w, &ok);
     return mcsi_uv(ok, w.x * w.x + w.y * w.y, mcsi_atan2_turns(w.y, w.x));
 }
 
 MCSI_FN mcs_f mcs_cone_from_sin2(mcs_f sin2) {
-    mcs_f s = mcsi_min(mcsi_max(sin2, mcs_set(0.0f)), mcs_set(1.0f));
+    const mcs_f s = mcsi_min(mcsi_max(sin2, mcs_set(0.0f)), mcs_set(1.0f));
     return s / (1.0f + mcsi_sqrt(1.0f - s));
 }
 MCSI_CORE mcs_i mcsi_cone_ok(mcs_f k) { return (k >= 1e-30f) & (k <= 2.0f); }
 MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_cone_ok(k);
-    mcs_f t;
     MCSI_REQUIRE(ok);
-    k = mcsi_sel(ok, k, mcs_set(1e-30f)), u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok), t = k * u1;
+    k = mcsi_sel(ok, k, mcs_set(1e-30f));
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcs_f t = k * u1;
     return mcsi_around_z(ok, mcsi_sqrt(t * ((2.0f - k) + k * (1.0f - u1))), 1.0f - t, u2, MCSI_1_2PI / k);
 }
 MCSI_FN mcs_f mcs_cone_pdf(mcs_f k, mcs_vec3 w) {
     mcs_i ok = mcsi_cone_ok(k);
     MCSI_REQUIRE(ok);
-    w = mcsi_direction(w, &ok);
-    return mcsi_keep(ok & (mcsi_one_minus_z(w) <= k * 1.0000005f), MCSI_1_2PI / k);
+    w = mcsi_sane_direction(w, &ok);
+    return mcsi_sane_result(ok & (mcsi_one_minus_z(w) <= k * 1.0000005f), MCSI_1_2PI / k);
 }
 MCSI_FN mcs_vec2 mcs_cone_invert(mcs_f k, mcs_vec3 w) {
     mcs_i ok = mcsi_cone_ok(k);
     MCSI_REQUIRE(ok);
-    w = mcsi_direction(w, &ok);
+    w = mcsi_sane_direction(w, &ok);
     return mcsi_uv(ok, mcsi_one_minus_z(w) / k, mcsi_atan2_turns(w.y, w.x));
 }
 
 #ifdef MCSI_LOOPS
-#define MCSI_LOOP_DISK(NAME)                                                                                                 \
-    MCSI_LOOP void mcsi_##NAME##_loop(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf) { \
-        mcsi_batch b;                                                                                                        \
-        mcsi_batch_start(&b, n, u1, u2, NULL);                                                                               \
-        b.out[0] = x;                                                                                                        \
-        b.out[1] = y;                                                                                                        \
-        b.out[2] = pdf;                                                                                                      \
-        MCSI_EACH(b) { mcsi_out_sample2(&b, mcs_##NAME##_sample(mcs_set(R), mcsi_in(&b, 0), mcsi_in(&b, 1))); }              \
+#define MCSI_LOOP_DISK(NAME)                                                                                    \
+    MCSI_LOOP void mcsi_##NAME##_loop(float R, size_t n, const float *u1, const float *u2, float *x, float *y,  \
+                                      float *pdf) {                                                             \
+        mcsi_batch b;                                                                                           \
+        mcsi_batch_start(&b, n, u1, u2, NULL);                                                                  \
+        b.out[0] = x;                                                                                           \
+        b.out[1] = y;                                                                                           \
+        b.out[2] = pdf;                                                                                         \
+        MCSI_EACH(b) { mcsi_out_sample2(&b, mcs_##NAME##_sample(mcs_set(R), mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
     }
-#define MCSI_LOOP_SPHERE(NAME)                                                                                                \
-    MCSI_LOOP void mcsi_##NAME##_loop(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) { \
-        mcsi_batch b;                                                                                                         \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                          \
-        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcsi_in(&b, 0), mcsi_in(&b, 1))); }                               \
+#define MCSI_LOOP_SPHERE(NAME)                                                                                  \
+    MCSI_LOOP void mcsi_##NAME##_loop(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, \
+                                      float *pdf) {                                                             \
+        mcsi_batch b;                                                                                           \
+        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                            \
+        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcsi_in(&b, 0), mcsi_in(&b, 1))); }                 \
     }
 MCSI_LOOP_DISK(disk)
 MCSI_LOOP_DISK(concentric)
@@ -1613,7 +1712,8 @@ MCSI_LOOP_SPHERE(hemisphere)
 MCSI_LOOP_SPHERE(cosine)
 #undef MCSI_LOOP_DISK
 #undef MCSI_LOOP_SPHERE
-MCSI_LOOP void mcsi_cone_loop(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+MCSI_LOOP void mcsi_cone_loop(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                              float *pdf) {
     mcsi_batch b;
     mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);
     MCSI_EACH(b) { mcsi_out_dir(&b, mcs_cone_sample(mcs_set(k), mcsi_in(&b, 0), mcsi_in(&b, 1))); }
@@ -1632,11 +1732,12 @@ typedef struct {
 typedef mcs_frame mcsi_scalar_frame;
 #endif
 MCSI_FN mcs_frame mcs_frame_make(mcs_vec3 n) {
-    mcs_frame f;
     mcs_i ok = mcsi_always();
-    mcs_f sign, a, b;
-    n = mcsi_direction(n, &ok);
-    sign = mcsi_with_sign(mcs_set(1.0f), n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+    n = mcsi_sane_direction(n, &ok);
+    const mcs_f sign = mcsi_with_sign(mcs_set(1.0f), n.z);
+    const mcs_f a = -1.0f / (sign + n.z);
+    const mcs_f b = n.x * n.y * a;
+    mcs_frame f;
     f.s = mcsi_vec3(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
     f.t = mcsi_vec3(b, sign + n.y * n.y * a, -n.y);
     f.n = n;
@@ -1673,21 +1774,21 @@ MCSI_FN mcs_vec3 mcs_to_local(const mcs_frame *f, mcs_vec3 v) {
 MCSI_CORE mcs_vec3 mcsi_sum(mcs_vec3 a, mcs_vec3 b) { return mcsi_vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
 MCSI_FN mcs_vec3 mcs_reflect(mcs_vec3 wo, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
-    mcs_f d;
-    wo = mcsi_direction(wo, &ok), h = mcsi_direction(h, &ok);
-    d = 2.0f * mcsi_dot(wo, h);
+    wo = mcsi_sane_direction(wo, &ok);
+    h = mcsi_sane_direction(h, &ok);
+    const mcs_f d = 2.0f * mcsi_dot(wo, h);
     return mcsi_vec3(d * h.x - wo.x, d * h.y - wo.y, d * h.z - wo.z);
 }
 MCSI_FN mcs_f mcs_reflect_pdf(mcs_f pdf_h, mcs_f cos_d) {
-    return mcsi_keep((pdf_h > 0.0f) & (cos_d > 0.0f), mcsi_quotient(pdf_h, 4.0f * cos_d));
+    return mcsi_sane_result((pdf_h > 0.0f) & (cos_d > 0.0f), mcsi_quotient(pdf_h, 4.0f * cos_d));
 }
 MCSI_FN mcs_vec3 mcs_half(mcs_vec3 wo, mcs_vec3 wi) {
-    mcs_i ok = mcsi_always(), some;
-    mcs_vec3 h;
-    mcs_f l;
-    wo = mcsi_direction(wo, &ok), wi = mcsi_direction(wi, &ok);
-    h = mcsi_sum(wo, wi);
-    l = mcsi_max(mcsi_max(mcsi_abs(h.x), mcsi_abs(h.y)), mcsi_abs(h.z)), some = l > 0.0f;
+    mcs_i ok = mcsi_always();
+    wo = mcsi_sane_direction(wo, &ok);
+    wi = mcsi_sane_direction(wi, &ok);
+    mcs_vec3 h = mcsi_sum(wo, wi);
+    mcs_f l = mcsi_max(mcsi_max(mcsi_abs(h.x), mcsi_abs(h.y)), mcsi_abs(h.z));
+    const mcs_i some = l > 0.0f;
     l = mcsi_sel(some, l, mcs_set(1.0f));
     h = mcsi_vec3(h.x / l, h.y / l, mcsi_sel(some, h.z / l, mcs_set(1.0f)));
     l = mcsi_sqrt(mcsi_dot(h, h));
@@ -1695,28 +1796,31 @@ MCSI_FN mcs_vec3 mcs_half(mcs_vec3 wo, mcs_vec3 wi) {
 }
 MCSI_FN mcs_f mcs_cos_d(mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
-    mcs_vec3 h;
-    wo = mcsi_direction(wo, &ok), wi = mcsi_direction(wi, &ok);
-    h = mcsi_sum(wo, wi);
-    return mcsi_keep(ok, 0.5f * mcsi_sqrt(mcsi_dot(h, h)));
+    wo = mcsi_sane_direction(wo, &ok);
+    wi = mcsi_sane_direction(wi, &ok);
+    const mcs_vec3 h = mcsi_sum(wo, wi);
+    return mcsi_sane_result(ok, 0.5f * mcsi_sqrt(mcsi_dot(h, h)));
 }
 MCSI_FN mcs_f mcs_schlick(mcs_f f0, mcs_f cos_d) {
-    mcs_f zero = mcs_set(0.0f), one = mcs_set(1.0f), m, m2;
-    f0 = mcsi_min(mcsi_max(f0, zero), one), m = 1.0f - mcsi_min(mcsi_max(cos_d, zero), one), m2 = m * m;
+    const mcs_f zero = mcs_set(0.0f);
+    const mcs_f one = mcs_set(1.0f);
+    f0 = mcsi_min(mcsi_max(f0, zero), one);
+    const mcs_f m = 1.0f - mcsi_min(mcsi_max(cos_d, zero), one);
+    const mcs_f m2 = m * m;
     return f0 + (1.0f - f0) * (m2 * m2 * m);
 }
 
 /* A direction of almost unit length brought to it, by one Newton step of 1/sqrt. */
 MCSI_CORE mcs_vec3 mcsi_to_unit(mcs_vec3 w) {
-    mcs_f s = 1.5f - 0.5f * mcsi_dot(w, w);
+    const mcs_f s = 1.5f - 0.5f * mcsi_dot(w, w);
     return mcsi_vec3(w.x * s, w.y * s, w.z * s);
 }
 /* What a BRDF sampler returns: samples below the surface are lost. */
 MCSI_CORE mcs_brdf mcsi_brdf(mcs_i ok, mcs_vec3 wi, mcs_f pdf, mcs_f weight) {
     mcs_brdf s;
     s.wi = wi;
-    s.pdf = mcsi_keep(ok & (wi.z > 0.0f), pdf);
-    s.weight = mcsi_keep(s.pdf > 0.0f, weight);
+    s.pdf = mcsi_sane_result(ok & (wi.z > 0.0f), pdf);
+    s.weight = mcsi_sane_result(s.pdf > 0.0f, weight);
     return s;
 }
 /* wo mirrored at a half-vector p; s = 2 (p.wo)/|p|^2. */
@@ -1739,22 +1843,25 @@ MCSI_CORE int mcsi_rarely(mcs_i m) {
 #elif defined(MCSI_AVX512) && !defined(__clang__)
     return (int)__builtin_expect(__builtin_ia32_ptestmd512(m, m, 0xffff), 0);
 #else
-    uint64_t part[MCSI_W / 2], all = 0;
-    int k;
+    uint64_t all = 0;
+    uint64_t part[MCSI_W / 2];
     MCSI_COPY(part, &m, sizeof m);
-    for (k = 0; k < MCSI_W / 2; k++) all |= part[k];
+    for (int k = 0; k < MCSI_W / 2; k++) all |= part[k];
     return (int)__builtin_expect(all != 0, 0);
 #endif
 }
 #if MCSI_W == 1
 /* (sin, cos)(2 pi t), t in [0,1], in double, to 1e-12. The detours take their lanes one by one: all widths share this code. */
 MCS_FN void mcsi_sincos_d(double t, double *sine, double *cosine) {
-    int k = (int)(4.0 * t + 0.5);
-    double x = 6.283185307179586 * (t - 0.25 * k), z = x * x;
+    const int k = (int)(4.0 * t + 0.5);
+    const double x = 6.283185307179586 * (t - 0.25 * k);
+    const double z = x * x;
     double s = 1.0 - z * (1.0 / 42) * (1.0 - z * (1.0 / 72) * (1.0 - z * (1.0 / 110) * (1.0 - z * (1.0 / 156))));
     double c = 1.0 - z * (1.0 / 30) * (1.0 - z * (1.0 / 56) * (1.0 - z * (1.0 / 90) * (1.0 - z * (1.0 / 132))));
-    s = x * (1.0 - z * (1.0 / 6) * (1.0 - z * (1.0 / 20) * s)), c = 1.0 - z * (1.0 / 2) * (1.0 - z * (1.0 / 12) * c);
-    *sine = k & 1 ? c : s, *cosine = k & 1 ? s : c;
+    s = x * (1.0 - z * (1.0 / 6) * (1.0 - z * (1.0 / 20) * s));
+    c = 1.0 - z * (1.0 / 2) * (1.0 - z * (1.0 / 12) * c);
+    *sine = k & 1 ? c : s;
+    *cosine = k & 1 ? s : c;
     if (k & 2) *sine = -*sine;
     if ((k + 1) & 2) *cosine = -*cosine;
 }
@@ -1772,33 +1879,36 @@ MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d
 #ifdef MCSI_LOOPS
 /* The loops of a BRDF, one material and one wo for all: samples, values (_pdf, _eval), lobes about +z, and visible normals. Each
  * spreads the scalars of the call over lanes first. */
-#define MCSI_LOOP_SAMPLE(NAME, MATERIAL)                                                                                      \
-    MCSI_LOOP void mcsi_##NAME##_sample_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *u1, \
-                                             const float *u2, float *x, float *y, float *z, float *pdf, float *weight) {      \
-        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                          \
-        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                                       \
-        mcsi_batch b;                                                                                                         \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                          \
-        b.out[4] = weight;                                                                                                    \
-        MCSI_EACH(b) { mcsi_out_brdf(&b, mcs_##NAME##_sample(&material, eye, mcsi_in(&b, 0), mcsi_in(&b, 1))); }              \
+#define MCSI_LOOP_SAMPLE(NAME, MATERIAL)                                                                         \
+    MCSI_LOOP void mcsi_##NAME##_sample_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n,     \
+                                             const float *u1, const float *u2, float *x, float *y, float *z,     \
+                                             float *pdf, float *weight) {                                        \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                             \
+        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                          \
+        mcsi_batch b;                                                                                            \
+        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                             \
+        b.out[4] = weight;                                                                                       \
+        MCSI_EACH(b) { mcsi_out_brdf(&b, mcs_##NAME##_sample(&material, eye, mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
     }
-#define MCSI_LOOP_VALUE(FORM, MATERIAL)                                                                                          \
-    MCSI_LOOP void mcsi_##FORM##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *x,            \
-                                      const float *y, const float *z, float *value) {                                            \
-        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                             \
-        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                                          \
-        mcsi_batch b;                                                                                                            \
-        mcsi_batch_start(&b, n, x, y, z);                                                                                        \
-        b.out[0] = value;                                                                                                        \
-        MCSI_EACH(b) { mcsi_out(&b, 0, mcs_##FORM(&material, eye, mcsi_vec3(mcsi_in(&b, 0), mcsi_in(&b, 1), mcsi_in(&b, 2)))); } \
+#define MCSI_LOOP_VALUE(FORM, MATERIAL)                                                                               \
+    MCSI_LOOP void mcsi_##FORM##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *x, \
+                                      const float *y, const float *z, float *value) {                                 \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                  \
+        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                               \
+        mcsi_batch b;                                                                                                 \
+        mcsi_batch_start(&b, n, x, y, z);                                                                             \
+        b.out[0] = value;                                                                                             \
+        MCSI_EACH(b) {                                                                                                \
+            mcsi_out(&b, 0, mcs_##FORM(&material, eye, mcsi_vec3(mcsi_in(&b, 0), mcsi_in(&b, 1), mcsi_in(&b, 2))));   \
+        }                                                                                                             \
     }
-#define MCSI_LOOP_LOBE(NAME, MATERIAL)                                                                                       \
-    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, size_t n, const float *u1, const float *u2, float *x, \
-                                      float *y, float *z, float *pdf) {                                                      \
-        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                         \
-        mcsi_batch b;                                                                                                        \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                         \
-        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(&material, mcsi_in(&b, 0), mcsi_in(&b, 1))); }                   \
+#define MCSI_LOOP_LOBE(NAME, MATERIAL)                                                                             \
+    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, size_t n, const float *u1, const float *u2, \
+                                      float *x, float *y, float *z, float *pdf) {                                  \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                               \
+        mcsi_batch b;                                                                                              \
+        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                               \
+        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(&material, mcsi_in(&b, 0), mcsi_in(&b, 1))); }         \
     }
 #define MCSI_LOOP_VISIBLE(NAME, MATERIAL)                                                                              \
     MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *u1, \
@@ -1831,11 +1941,11 @@ typedef struct {
 typedef mcs_phong mcsi_scalar_phong;
 #endif
 MCSI_FN mcs_phong mcs_phong_make(mcs_f n) {
-    mcs_phong m;
-    mcs_i ok = n >= 0.0f;
-    mcs_f none = mcs_set(0.0f);
+    const mcs_i ok = n >= 0.0f;
+    const mcs_f none = mcs_set(0.0f);
     MCSI_REQUIRE(ok);
-    m.n = mcsi_within(ok, n, 0.0f, 1e9f);
+    mcs_phong m;
+    m.n = mcsi_sane_parameter(ok, n, 0.0f, 1e9f);
     m.power = 1.0f / (m.n + 1.0f);
     m.lobe = mcsi_sel(ok, (m.n + 1.0f) * MCSI_1_2PI, none);
     m.value = mcsi_sel(ok, (m.n + 2.0f) * MCSI_1_2PI, none);
@@ -1843,69 +1953,76 @@ MCSI_FN mcs_phong mcs_phong_make(mcs_f n) {
     return m;
 }
 /* cos^n from tan^2. */
-MCSI_CORE mcs_f mcsi_cos_power(mcs_f n, mcs_f tan2) { return mcsi_exp_neg(-0.5f * n * mcsi_log1p(mcsi_min(tan2, mcs_set(1e37f)))); }
+MCSI_CORE mcs_f mcsi_cos_power(mcs_f n, mcs_f tan2) {
+    return mcsi_exp_neg(-0.5f * n * mcsi_log1p(mcsi_min(tan2, mcs_set(1e37f))));
+}
 
 MCSI_SAMPLE mcs_dir mcs_phong_lobe_sample(const mcs_phong *m, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    mcs_f c, d;
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
-    c = mcsi_exp_both(m->power * mcsi_log1p(-u1), &d); /* d = c - 1; c^n = c^(n+1) / c = (1 - u1) / c */
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    mcs_f d;
+    const mcs_f c = mcsi_exp_both(m->power * mcsi_log1p(-u1), &d); /* d = c - 1; c^n = c^(n+1) / c = (1 - u1) / c */
     return mcsi_around_z(ok, mcsi_sqrt(-d * (2.0f + d)), c, u2, m->lobe * (1.0f - u1) / c);
 }
 MCSI_FN mcs_f mcs_phong_lobe_pdf(const mcs_phong *m, mcs_vec3 w) {
     mcs_i ok = mcsi_always();
-    w = mcsi_above(w, &ok);
-    return mcsi_keep(ok, m->lobe * mcsi_cos_power(m->n, (w.x * w.x + w.y * w.y) / (w.z * w.z)));
+    w = mcsi_sane_upper(w, &ok);
+    return mcsi_sane_result(ok, m->lobe * mcsi_cos_power(m->n, (w.x * w.x + w.y * w.y) / (w.z * w.z)));
 }
 MCSI_FN mcs_vec2 mcs_phong_lobe_invert(const mcs_phong *m, mcs_vec3 w) {
     mcs_i ok = m->lobe > 0.0f;
-    mcs_f tan2, d;
-    w = mcsi_above(w, &ok);
-    tan2 = mcsi_min((w.x * w.x + w.y * w.y) / (w.z * w.z), mcs_set(1e37f));
+    w = mcsi_sane_upper(w, &ok);
+    const mcs_f tan2 = mcsi_min((w.x * w.x + w.y * w.y) / (w.z * w.z), mcs_set(1e37f));
+    mcs_f d;
     mcsi_exp_both(mcsi_max(-0.5f * (m->n + 1.0f) * mcsi_log1p(tan2), mcs_set(-80.0f)), &d);
     return mcsi_uv(ok, -d, mcsi_atan2_turns(w.y, w.x));
 }
 
 MCSI_SAMPLE mcs_brdf mcs_phong_sample(const mcs_phong *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    mcs_frame f;
-    mcs_dir l;
-    wo = mcsi_above(wo, &ok);
-    f = mcs_frame_make(mcsi_vec3(-wo.x, -wo.y, wo.z));
-    l = mcs_phong_lobe_sample(m, u1, u2);
-    l.w = mcsi_to_unit(mcsi_to_world(&f, l.w)); /* the frame is as far from orthonormal as wo is from unit, and 5 roundings */
+    wo = mcsi_sane_upper(wo, &ok);
+    const mcs_frame f = mcs_frame_make(mcsi_vec3(-wo.x, -wo.y, wo.z));
+    mcs_dir l = mcs_phong_lobe_sample(m, u1, u2);
+    l.w = mcsi_to_unit(
+        mcsi_to_world(&f, l.w)); /* the frame is as far from orthonormal as wo is from unit, and 5 roundings */
     return mcsi_brdf(ok, l.w, l.pdf, m->gain * l.w.z);
 }
 /* tan^2 of the angle between wi and R: |R x wi|^2 / (R.wi)^2 with R x wi = R x (wi - R), whose difference is exact nearby. */
 MCSI_CORE mcs_f mcsi_phong_power(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi, mcs_i *ok) {
-    mcs_vec3 r, d, c;
-    mcs_f cosine;
-    wo = mcsi_above(wo, ok), wi = mcsi_above(wi, ok);
-    r = mcsi_vec3(-wo.x, -wo.y, wo.z), d = mcsi_vec3(wi.x - r.x, wi.y - r.y, wi.z - r.z);
-    c = mcsi_vec3(r.y * d.z - r.z * d.y, r.z * d.x - r.x * d.z, r.x * d.y - r.y * d.x);
-    cosine = mcsi_exact_dot(r, wi), *ok = *ok & (cosine > 0.0f);
+    wo = mcsi_sane_upper(wo, ok);
+    wi = mcsi_sane_upper(wi, ok);
+    const mcs_vec3 r = mcsi_vec3(-wo.x, -wo.y, wo.z);
+    const mcs_vec3 d = mcsi_vec3(wi.x - r.x, wi.y - r.y, wi.z - r.z);
+    const mcs_vec3 c = mcsi_vec3(r.y * d.z - r.z * d.y, r.z * d.x - r.x * d.z, r.x * d.y - r.y * d.x);
+    const mcs_f cosine = mcsi_exact_dot(r, wi);
+    *ok = *ok & (cosine > 0.0f);
     return mcsi_cos_power(m->n, mcsi_dot(c, c) / (cosine * cosine));
 }
 MCSI_FN mcs_f mcs_phong_pdf(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
-    mcs_f p = mcsi_phong_power(m, wo, wi, &ok);
-    return mcsi_keep(ok, m->lobe * p);
+    const mcs_f p = mcsi_phong_power(m, wo, wi, &ok);
+    return mcsi_sane_result(ok, m->lobe * p);
 }
 MCSI_FN mcs_f mcs_phong_eval(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
-    mcs_f p = mcsi_phong_power(m, wo, wi, &ok);
-    return mcsi_keep(ok, m->value * p);
+    const mcs_f p = mcsi_phong_power(m, wo, wi, &ok);
+    return mcsi_sane_result(ok, m->value * p);
 }
 MCSI_FN mcs_f mcs_phong_weight(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok);
-    return mcsi_keep(ok & (mcsi_exact_dot(mcsi_vec3(-wo.x, -wo.y, wo.z), wi) > 0.0f), m->gain * wi.z);
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    return mcsi_sane_result(ok & (mcsi_exact_dot(mcsi_vec3(-wo.x, -wo.y, wo.z), wi) > 0.0f), m->gain * wi.z);
 }
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_phong mcsi_phong_spread(const mcsi_scalar_phong *m) {
     mcs_phong all;
-    all.n = mcs_set(m->n), all.power = mcs_set(m->power), all.lobe = mcs_set(m->lobe);
-    all.value = mcs_set(m->value), all.gain = mcs_set(m->gain);
+    all.n = mcs_set(m->n);
+    all.power = mcs_set(m->power);
+    all.lobe = mcs_set(m->lobe);
+    all.value = mcs_set(m->value);
+    all.gain = mcs_set(m->gain);
     return all;
 }
 MCSI_LOOP_LOBE(phong_lobe, phong)
@@ -1924,19 +2041,24 @@ typedef struct {
 typedef mcsi_slopes mcsi_scalar_slopes;
 #endif
 MCSI_CORE mcsi_slopes mcsi_slopes_make(mcs_f ax, mcs_f ay) {
-    mcsi_slopes m;
-    mcs_i ok = (ax > 0.0f) & (ay > 0.0f);
+    const mcs_i ok = (ax > 0.0f) & (ay > 0.0f);
     MCSI_REQUIRE(ok);
-    m.ax = mcsi_within(ok, ax, 1e-7f, 1e4f), m.ay = mcsi_within(ok, ay, 1e-7f, 1e4f);
-    m.inv_ax = 1.0f / m.ax, m.inv_ay = 1.0f / m.ay;
+    mcsi_slopes m;
+    m.ax = mcsi_sane_parameter(ok, ax, 1e-7f, 1e4f);
+    m.ay = mcsi_sane_parameter(ok, ay, 1e-7f, 1e4f);
+    m.inv_ax = 1.0f / m.ax;
+    m.inv_ay = 1.0f / m.ay;
     m.norm = mcsi_sel(ok, MCSI_1_PI * m.inv_ax * m.inv_ay, mcs_set(0.0f));
     return m;
 }
 #ifdef MCSI_LOOPS
 MCSI_CORE mcsi_slopes mcsi_slopes_spread(const mcsi_scalar_slopes *m) {
     mcsi_slopes all;
-    all.ax = mcs_set(m->ax), all.ay = mcs_set(m->ay), all.norm = mcs_set(m->norm);
-    all.inv_ax = mcs_set(m->inv_ax), all.inv_ay = mcs_set(m->inv_ay);
+    all.ax = mcs_set(m->ax);
+    all.ay = mcs_set(m->ay);
+    all.norm = mcs_set(m->norm);
+    all.inv_ax = mcs_set(m->inv_ax);
+    all.inv_ay = mcs_set(m->inv_ay);
     return all;
 }
 #endif
@@ -1948,40 +2070,46 @@ MCSI_CORE mcs_vec3 mcsi_slope_vector(const mcsi_slopes *m, mcs_f r, mcs_f turns)
 }
 /* The half-vector of slopes of radius r with density g / cos^3 per solid angle. */
 MCSI_CORE mcs_dir mcsi_slope_dir(const mcsi_slopes *m, mcs_i ok, mcs_f r, mcs_f g, mcs_f u2) {
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcs_vec3 p = mcsi_slope_vector(m, r, u2);
+    const mcs_f p2 = mcsi_dot(p, p);
+    const mcs_f length = mcsi_sqrt(p2);
+    const mcs_f c = 1.0f / length;
     mcs_dir d;
-    mcs_vec3 p;
-    mcs_f p2, length, c;
-    u2 = mcsi_unit(u2, &ok), p = mcsi_slope_vector(m, r, u2);
-    p2 = mcsi_dot(p, p), length = mcsi_sqrt(p2), c = 1.0f / length;
     d.w = mcsi_vec3(p.x * c, p.y * c, c);
-    d.pdf = mcsi_keep(ok, g * (p2 * length));
+    d.pdf = mcsi_sane_result(ok, g * (p2 * length));
     return d;
 }
 /* e = (sx/ax)^2 + (sy/ay)^2 of a direction's slopes, at most 2e36. */
 MCSI_CORE mcs_f mcsi_slope_square(const mcsi_slopes *m, mcs_vec3 h) {
-    mcs_f x = h.x * m->inv_ax / h.z, y = h.y * m->inv_ay / h.z, most = mcs_set(1e18f);
-    x = mcsi_min(mcsi_abs(x), most), y = mcsi_min(mcsi_abs(y), most);
+    mcs_f x = h.x * m->inv_ax / h.z;
+    mcs_f y = h.y * m->inv_ay / h.z;
+    const mcs_f most = mcs_set(1e18f);
+    x = mcsi_min(mcsi_abs(x), most);
+    y = mcsi_min(mcsi_abs(y), most);
     return x * x + y * y;
 }
 /* 1/cos^2 of a direction, at most 1e18: slopes of 1e9 are 1e5 alphas at least, where a Gaussian is 0. */
 MCSI_CORE mcs_f mcsi_secant2(mcs_vec3 h) { return mcsi_min(mcsi_dot(h, h) / (h.z * h.z), mcs_set(1e18f)); }
 /* p.wo of the lanes `off` again: by value, as a vector that is indexed cannot stay in a register. */
 MCSI_CORE mcs_f mcsi_slope_cosine(mcsi_slopes m, mcs_vec3 wo, mcs_f r, mcs_f turns, mcs_i off, mcs_f d) {
-    int k;
-    for (k = 0; k < MCSI_W; k++) {
-        double a = (double)MCSI_LANE(m.ax, k) * (double)MCSI_LANE(wo.x, k);
-        double b = (double)MCSI_LANE(m.ay, k) * (double)MCSI_LANE(wo.y, k);
-        if (MCSI_LANE(off, k)) MCSI_LANE(d, k) = MCSI_LANE(wo.z, k) + MCSI_LANE(r, k) * mcsi_project(a, b, MCSI_LANE(turns, k));
+    for (int k = 0; k < MCSI_W; k++) {
+        const double a = (double)MCSI_LANE(m.ax, k) * (double)MCSI_LANE(wo.x, k);
+        const double b = (double)MCSI_LANE(m.ay, k) * (double)MCSI_LANE(wo.y, k);
+        if (MCSI_LANE(off, k))
+            MCSI_LANE(d, k) = MCSI_LANE(wo.z, k) + MCSI_LANE(r, k) * mcsi_project(a, b, MCSI_LANE(turns, k));
     }
     return d;
 }
 /* The BRDF sample that reflects wo at slopes p of radius r with density g / cos^3 of the half-vector; *d = p.wo, *p2 = |p|^2. */
-MCSI_CORE mcs_brdf mcsi_slope_brdf(const mcsi_slopes *m, mcs_i ok, mcs_vec3 wo, mcs_f r, mcs_f g, mcs_f u2, mcs_f *d, mcs_f *p2) {
-    mcs_vec3 p;
-    u2 = mcsi_unit(u2, &ok), p = mcsi_slope_vector(m, r, u2);
-    *d = mcsi_dot(p, wo), *p2 = mcsi_dot(p, p);
+MCSI_CORE mcs_brdf mcsi_slope_brdf(const mcsi_slopes *m, mcs_i ok, mcs_vec3 wo, mcs_f r, mcs_f g, mcs_f u2, mcs_f *d,
+                                   mcs_f *p2) {
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcs_vec3 p = mcsi_slope_vector(m, r, u2);
+    *d = mcsi_dot(p, wo);
+    *p2 = mcsi_dot(p, p);
     if (mcsi_rarely(wo.z < 0.25f)) {
-        mcs_i off = mcsi_cancelled(wo.z, *d, *p2);
+        const mcs_i off = mcsi_cancelled(wo.z, *d, *p2);
         if (mcsi_rarely(off)) *d = mcsi_slope_cosine(*m, wo, r, u2, off, *d);
     }
     return mcsi_brdf(ok & (*d > 0.0f), mcsi_mirror(wo, p, 2.0f * *d / *p2),
@@ -2023,25 +2151,26 @@ MCSI_FN mcs_ward mcs_ward_make(mcs_f ax, mcs_f ay, mcs_ward_model model) {
 }
 /* Radius of a Gaussian's slopes; *g is the density times cos^3. */
 MCSI_CORE mcs_f mcsi_gauss_radius(const mcsi_slopes *m, mcs_f u1, mcs_i *ok, mcs_f *g) {
-    u1 = mcsi_unit(u1, ok);
+    u1 = mcsi_sane_u(u1, ok);
     *g = m->norm * (1.0f - u1);
     return mcsi_sqrt(-mcsi_log1p(-u1));
 }
 MCSI_CORE mcs_dir mcsi_gauss_h_sample(const mcsi_slopes *m, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    mcs_f g, r = mcsi_gauss_radius(m, u1, &ok, &g);
+    mcs_f g;
+    const mcs_f r = mcsi_gauss_radius(m, u1, &ok, &g);
     return mcsi_slope_dir(m, ok, r, g, u2);
 }
 MCSI_CORE mcs_f mcsi_gauss_h_pdf(const mcsi_slopes *m, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
-    mcs_f q;
-    h = mcsi_above(h, &ok), q = mcsi_secant2(h);
-    return mcsi_keep(ok, m->norm * (mcsi_exp_neg(-mcsi_slope_square(m, h)) * (q * mcsi_sqrt(q))));
+    h = mcsi_sane_upper(h, &ok);
+    const mcs_f q = mcsi_secant2(h);
+    return mcsi_sane_result(ok, m->norm * (mcsi_exp_neg(-mcsi_slope_square(m, h)) * (q * mcsi_sqrt(q))));
 }
 MCSI_CORE mcs_vec2 mcsi_gauss_h_invert(const mcsi_slopes *m, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
+    h = mcsi_sane_upper(h, &ok);
     mcs_f d;
-    h = mcsi_above(h, &ok);
     mcsi_exp_both(-mcsi_min(mcsi_slope_square(m, h), mcs_set(80.0f)), &d);
     return mcsi_slope_invert(m, ok, h, -d);
 }
@@ -2054,48 +2183,52 @@ MCSI_CORE mcs_f mcsi_gauss_over(const mcsi_slopes *m, mcs_f g, mcs_f denominator
  * where the density does not, so the norm comes last. */
 MCSI_CORE mcs_f mcsi_gauss_pdf(const mcsi_slopes *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
-    mcs_vec3 h;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
-    return mcsi_keep(ok, m->norm * (mcsi_exp_neg(-mcsi_slope_square(m, h)) * mcsi_secant2(h) / (2.0f * h.z)));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcs_vec3 h = mcsi_sum(wo, wi);
+    return mcsi_sane_result(ok, m->norm * (mcsi_exp_neg(-mcsi_slope_square(m, h)) * mcsi_secant2(h) / (2.0f * h.z)));
 }
 
-MCSI_SAMPLE mcs_dir mcs_ward_h_sample(const mcs_ward *m, mcs_f u1, mcs_f u2) { return mcsi_gauss_h_sample(&m->s, u1, u2); }
+MCSI_SAMPLE mcs_dir mcs_ward_h_sample(const mcs_ward *m, mcs_f u1, mcs_f u2) {
+    return mcsi_gauss_h_sample(&m->s, u1, u2);
+}
 MCSI_FN mcs_f mcs_ward_h_pdf(const mcs_ward *m, mcs_vec3 h) { return mcsi_gauss_h_pdf(&m->s, h); }
 MCSI_FN mcs_vec2 mcs_ward_h_invert(const mcs_ward *m, mcs_vec3 h) { return mcsi_gauss_h_invert(&m->s, h); }
 MCSI_SAMPLE mcs_brdf mcs_ward_sample(const mcs_ward *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    mcs_f g, d, p2, r = mcsi_gauss_radius(&m->s, u1, &ok, &g);
-    mcs_brdf s;
-    wo = mcsi_above(wo, &ok);
-    s = mcsi_slope_brdf(&m->s, ok, wo, r, g, u2, &d, &p2);
+    mcs_f g;
+    const mcs_f r = mcsi_gauss_radius(&m->s, u1, &ok, &g);
+    wo = mcsi_sane_upper(wo, &ok);
+    mcs_f d, p2;
+    mcs_brdf s = mcsi_slope_brdf(&m->s, ok, wo, r, g, u2, &d, &p2);
     if (m->model == MCS_WARD_GMD) g = 2.0f * s.wi.z / (wo.z + mcsi_abs(s.wi.z));
     else if (m->model == MCS_WARD_DUER) g = d / (p2 * p2 * wo.z);
     else g = d / (p2 * p2) * mcsi_sqrt(mcsi_abs(s.wi.z) / wo.z);
-    s.weight = mcsi_keep(s.pdf > 0.0f, g);
+    s.weight = mcsi_sane_result(s.pdf > 0.0f, g);
     return s;
 }
 MCSI_FN mcs_f mcs_ward_pdf(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_gauss_pdf(&m->s, wo, wi); }
 MCSI_FN mcs_f mcs_ward_eval(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = m->s.norm > 0.0f;
-    mcs_vec3 h;
-    mcs_f f;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
-    f = mcsi_exp_neg(-mcsi_slope_square(&m->s, h));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcs_vec3 h = mcsi_sum(wo, wi);
+    mcs_f f = mcsi_exp_neg(-mcsi_slope_square(&m->s, h));
     if (m->model == MCS_WARD_GMD) f = mcsi_gauss_over(&m->s, f * mcsi_secant2(h), h.z * h.z);
     else if (m->model == MCS_WARD_DUER) f = mcsi_gauss_over(&m->s, f, 4.0f * wo.z * wi.z);
     else f = mcsi_gauss_over(&m->s, f, 4.0f * mcsi_sqrt(wo.z * wi.z));
-    return mcsi_keep(ok, f);
+    return mcsi_sane_result(ok, f);
 }
 MCSI_FN mcs_f mcs_ward_weight(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = m->s.norm > 0.0f;
-    mcs_vec3 h;
-    mcs_f c;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
-    c = h.z * (h.z * h.z / (2.0f * mcsi_dot(h, h)));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcs_vec3 h = mcsi_sum(wo, wi);
+    mcs_f c = h.z * (h.z * h.z / (2.0f * mcsi_dot(h, h)));
     if (m->model == MCS_WARD_GMD) c = 2.0f * wi.z / h.z;
     else if (m->model == MCS_WARD_DUER) c = c / wo.z;
     else c = c * mcsi_sqrt(wi.z / wo.z);
-    return mcsi_keep(ok, c);
+    return mcsi_sane_result(ok, c);
 }
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_ward mcsi_ward_spread(const mcsi_scalar_ward *m) {
@@ -2130,42 +2263,53 @@ MCSI_FN mcs_beckmann mcs_beckmann_make(mcs_f ax, mcs_f ay) {
 /* z L(w): L = exp(-a^2)/(2 a sqrt pi) - erfc(a)/2 with a = z/t, t = |(ax x, ay y)|; times z it stays finite at the horizon. It is 0
  * for a of 1000, and below the horizon it is not asked for. */
 MCSI_CORE mcs_f mcsi_beckmann_shadow(const mcsi_slopes *m, mcs_vec3 w) {
-    mcs_f x = m->ax * w.x, y = m->ay * w.y, z = mcsi_max(w.z, mcs_set(0.0f)), t = mcsi_sqrt(x * x + y * y);
-    mcs_f a = z / mcsi_max(t, z * 1e-3f + FLT_MIN);
-    mcs_f l = t * 0.282094792f * mcsi_exp_neg(-a * a) - z * mcsi_normal_tail(a * 1.41421356f);
+    const mcs_f x = m->ax * w.x;
+    const mcs_f y = m->ay * w.y;
+    const mcs_f z = mcsi_max(w.z, mcs_set(0.0f));
+    const mcs_f t = mcsi_sqrt(x * x + y * y);
+    const mcs_f a = z / mcsi_max(t, z * 1e-3f + FLT_MIN);
+    const mcs_f l = t * 0.282094792f * mcsi_exp_neg(-a * a) - z * mcsi_normal_tail(a * 1.41421356f);
     return mcsi_max(l, mcs_set(0.0f));
 }
-MCSI_SAMPLE mcs_dir mcs_beckmann_h_sample(const mcs_beckmann *m, mcs_f u1, mcs_f u2) { return mcsi_gauss_h_sample(&m->s, u1, u2); }
+MCSI_SAMPLE mcs_dir mcs_beckmann_h_sample(const mcs_beckmann *m, mcs_f u1, mcs_f u2) {
+    return mcsi_gauss_h_sample(&m->s, u1, u2);
+}
 MCSI_FN mcs_f mcs_beckmann_h_pdf(const mcs_beckmann *m, mcs_vec3 h) { return mcsi_gauss_h_pdf(&m->s, h); }
 MCSI_FN mcs_vec2 mcs_beckmann_h_invert(const mcs_beckmann *m, mcs_vec3 h) { return mcsi_gauss_h_invert(&m->s, h); }
 MCSI_SAMPLE mcs_brdf mcs_beckmann_sample(const mcs_beckmann *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    mcs_f g, d, p2, lo, li, r = mcsi_gauss_radius(&m->s, u1, &ok, &g);
-    mcs_brdf s;
-    wo = mcsi_above(wo, &ok);
-    s = mcsi_slope_brdf(&m->s, ok, wo, r, g, u2, &d, &p2);
-    lo = mcsi_beckmann_shadow(&m->s, wo), li = mcsi_beckmann_shadow(&m->s, s.wi);
-    s.weight = mcsi_keep(s.pdf > 0.0f, s.wi.z * d / (wo.z * s.wi.z + s.wi.z * lo + wo.z * li));
+    mcs_f g;
+    const mcs_f r = mcsi_gauss_radius(&m->s, u1, &ok, &g);
+    wo = mcsi_sane_upper(wo, &ok);
+    mcs_f d, p2;
+    mcs_brdf s = mcsi_slope_brdf(&m->s, ok, wo, r, g, u2, &d, &p2);
+    const mcs_f lo = mcsi_beckmann_shadow(&m->s, wo);
+    const mcs_f li = mcsi_beckmann_shadow(&m->s, s.wi);
+    s.weight = mcsi_sane_result(s.pdf > 0.0f, s.wi.z * d / (wo.z * s.wi.z + s.wi.z * lo + wo.z * li));
     return s;
 }
-MCSI_FN mcs_f mcs_beckmann_pdf(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_gauss_pdf(&m->s, wo, wi); }
+MCSI_FN mcs_f mcs_beckmann_pdf(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi) {
+    return mcsi_gauss_pdf(&m->s, wo, wi);
+}
 MCSI_FN mcs_f mcs_beckmann_eval(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = m->s.norm > 0.0f;
-    mcs_vec3 h;
-    mcs_f q, lo, li;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
-    q = mcsi_secant2(h);
-    lo = mcsi_beckmann_shadow(&m->s, wo), li = mcsi_beckmann_shadow(&m->s, wi);
-    return mcsi_keep(ok, mcsi_gauss_over(&m->s, mcsi_exp_neg(-mcsi_slope_square(&m->s, h)) * (q * q),
-                                         4.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcs_vec3 h = mcsi_sum(wo, wi);
+    const mcs_f q = mcsi_secant2(h);
+    const mcs_f lo = mcsi_beckmann_shadow(&m->s, wo);
+    const mcs_f li = mcsi_beckmann_shadow(&m->s, wi);
+    return mcsi_sane_result(ok, mcsi_gauss_over(&m->s, mcsi_exp_neg(-mcsi_slope_square(&m->s, h)) * (q * q),
+                                                4.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
 }
 MCSI_FN mcs_f mcs_beckmann_weight(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = m->s.norm > 0.0f;
-    mcs_vec3 h;
-    mcs_f lo, li;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
-    lo = mcsi_beckmann_shadow(&m->s, wo), li = mcsi_beckmann_shadow(&m->s, wi);
-    return mcsi_keep(ok, wi.z * (mcsi_dot(h, h) / h.z) / (2.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcs_vec3 h = mcsi_sum(wo, wi);
+    const mcs_f lo = mcsi_beckmann_shadow(&m->s, wo);
+    const mcs_f li = mcsi_beckmann_shadow(&m->s, wi);
+    return mcsi_sane_result(ok, wi.z * (mcsi_dot(h, h) / h.z) / (2.0f * (wo.z * wi.z + wi.z * lo + wo.z * li)));
 }
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_beckmann mcsi_beckmann_spread(const mcsi_scalar_beckmann *m) {
@@ -2202,133 +2346,174 @@ MCSI_LOOP_VALUE(beckmann_eval, beckmann)
 
 typedef struct {
     mcsi_slopes s;
-    mcs_f wide; /* 1/16 of the larger alpha squared where that is more than the least square of (ax x, ay y, z) unit, else 0 */
+    mcs_f
+        wide; /* 1/16 of the larger alpha squared where that is more than the least square of (ax x, ay y, z) unit, else 0 */
 } mcs_ggx;
 #if MCSI_W == 1
 typedef mcs_ggx mcsi_scalar_ggx;
 #endif
 MCSI_FN mcs_ggx mcs_ggx_make(mcs_f ax, mcs_f ay) {
     mcs_ggx m;
-    mcs_f wide, least;
     m.s = mcsi_slopes_make(ax, ay);
-    wide = 0.25f * mcsi_max(m.s.ax, m.s.ay), least = mcsi_min(mcsi_min(m.s.ax, m.s.ay), mcs_set(1.0f));
+    const mcs_f wide = 0.25f * mcsi_max(m.s.ax, m.s.ay);
+    const mcs_f least = mcsi_min(mcsi_min(m.s.ax, m.s.ay), mcs_set(1.0f));
     m.wide = mcsi_sel(wide > least, wide * wide, mcs_set(0.0f));
     return m;
 }
 MCSI_FN mcs_i mcs_is_mirror(mcs_f ax, mcs_f ay) { return (ax < 1e-7f) & (ay < 1e-7f); }
 MCSI_CORE mcs_f mcsi_ggx_d(const mcsi_slopes *m, mcs_vec3 h) {
-    mcs_f x = h.x * m->inv_ax, y = h.y * m->inv_ay, q = mcsi_dot(h, h) / (x * x + y * y + h.z * h.z);
+    const mcs_f x = h.x * m->inv_ax;
+    const mcs_f y = h.y * m->inv_ay;
+    const mcs_f q = mcsi_dot(h, h) / (x * x + y * y + h.z * h.z);
     return m->norm * (q * q);
 }
 /* t = |(ax x, ay y, z)|. */
 MCSI_CORE mcs_f mcsi_ggx_t(const mcsi_slopes *m, mcs_vec3 w) {
-    mcs_f x = m->ax * w.x, y = m->ay * w.y;
+    const mcs_f x = m->ax * w.x;
+    const mcs_f y = m->ay * w.y;
     return mcsi_sqrt(x * x + y * y + w.z * w.z);
 }
 MCSI_FN mcs_f mcs_ggx_d(const mcs_ggx *m, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
-    h = mcsi_above(h, &ok);
-    return mcsi_keep(ok, mcsi_ggx_d(&m->s, h));
+    h = mcsi_sane_upper(h, &ok);
+    return mcsi_sane_result(ok, mcsi_ggx_d(&m->s, h));
 }
 MCSI_FN mcs_f mcs_ggx_g1(const mcs_ggx *m, mcs_vec3 w) {
     mcs_i ok = m->s.norm > 0.0f;
-    w = mcsi_above(w, &ok);
-    return mcsi_keep(ok, 2.0f * w.z / (w.z + mcsi_ggx_t(&m->s, w)));
+    w = mcsi_sane_upper(w, &ok);
+    return mcsi_sane_result(ok, 2.0f * w.z / (w.z + mcsi_ggx_t(&m->s, w)));
 }
 MCSI_FN mcs_f mcs_ggx_g2(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = m->s.norm > 0.0f;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok);
-    return mcsi_keep(ok, 2.0f * wo.z * wi.z / (wo.z * mcsi_ggx_t(&m->s, wi) + wi.z * mcsi_ggx_t(&m->s, wo)));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    return mcsi_sane_result(ok, 2.0f * wo.z * wi.z / (wo.z * mcsi_ggx_t(&m->s, wi) + wi.z * mcsi_ggx_t(&m->s, wo)));
 }
 
 MCSI_CORE mcs_f mcsi_ggx_radius(const mcsi_slopes *m, mcs_f u1, mcs_i *ok, mcs_f *g) {
-    mcs_f v;
-    u1 = mcsi_unit(u1, ok), v = 1.0f - u1;
+    u1 = mcsi_sane_u(u1, ok);
+    const mcs_f v = 1.0f - u1;
     *g = m->norm * (v * v);
     return mcsi_sqrt(u1 / v);
 }
 MCSI_SAMPLE mcs_dir mcs_ggx_h_sample(const mcs_ggx *m, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    mcs_f g, r = mcsi_ggx_radius(&m->s, u1, &ok, &g);
+    mcs_f g;
+    const mcs_f r = mcsi_ggx_radius(&m->s, u1, &ok, &g);
     return mcsi_slope_dir(&m->s, ok, r, g, u2);
 }
 MCSI_FN mcs_f mcs_ggx_h_pdf(const mcs_ggx *m, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
-    h = mcsi_above(h, &ok);
-    return mcsi_keep(ok, mcsi_ggx_d(&m->s, h) * (h.z / mcsi_sqrt(mcsi_dot(h, h))));
+    h = mcsi_sane_upper(h, &ok);
+    return mcsi_sane_result(ok, mcsi_ggx_d(&m->s, h) * (h.z / mcsi_sqrt(mcsi_dot(h, h))));
 }
 MCSI_FN mcs_vec2 mcs_ggx_h_invert(const mcs_ggx *m, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
-    mcs_f e;
-    h = mcsi_above(h, &ok), e = mcsi_min(mcsi_slope_square(&m->s, h), mcs_set(1e30f));
+    h = mcsi_sane_upper(h, &ok);
+    const mcs_f e = mcsi_min(mcsi_slope_square(&m->s, h), mcs_set(1e30f));
     return mcsi_slope_invert(&m->s, ok, h, e / (1.0f + e));
 }
 MCSI_SAMPLE mcs_brdf mcs_ggx_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    mcs_f g, d, p2, to, ti, r = mcsi_ggx_radius(&m->s, u1, &ok, &g);
-    mcs_brdf s;
-    wo = mcsi_above(wo, &ok);
-    s = mcsi_slope_brdf(&m->s, ok, wo, r, g, u2, &d, &p2);
-    to = mcsi_ggx_t(&m->s, wo), ti = mcsi_ggx_t(&m->s, s.wi);
-    s.weight = mcsi_keep(s.pdf > 0.0f, 2.0f * s.wi.z * d / (wo.z * ti + s.wi.z * to));
+    mcs_f g;
+    const mcs_f r = mcsi_ggx_radius(&m->s, u1, &ok, &g);
+    wo = mcsi_sane_upper(wo, &ok);
+    mcs_f d, p2;
+    mcs_brdf s = mcsi_slope_brdf(&m->s, ok, wo, r, g, u2, &d, &p2);
+    const mcs_f to = mcsi_ggx_t(&m->s, wo);
+    const mcs_f ti = mcsi_ggx_t(&m->s, s.wi);
+    s.weight = mcsi_sane_result(s.pdf > 0.0f, 2.0f * s.wi.z * d / (wo.z * ti + s.wi.z * to));
     return s;
 }
 MCSI_FN mcs_f mcs_ggx_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
-    mcs_vec3 h;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
-    return mcsi_keep(ok, mcsi_ggx_d(&m->s, h) * (h.z / (2.0f * mcsi_dot(h, h))));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcs_vec3 h = mcsi_sum(wo, wi);
+    return mcsi_sane_result(ok, mcsi_ggx_d(&m->s, h) * (h.z / (2.0f * mcsi_dot(h, h))));
 }
 MCSI_FN mcs_f mcs_ggx_eval(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
-    mcs_f d;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), d = mcsi_ggx_d(&m->s, mcsi_sum(wo, wi));
-    return mcsi_keep(ok, d / (2.0f * (wo.z * mcsi_ggx_t(&m->s, wi) + wi.z * mcsi_ggx_t(&m->s, wo))));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcs_f d = mcsi_ggx_d(&m->s, mcsi_sum(wo, wi));
+    return mcsi_sane_result(ok, d / (2.0f * (wo.z * mcsi_ggx_t(&m->s, wi) + wi.z * mcsi_ggx_t(&m->s, wo))));
 }
 MCSI_FN mcs_f mcs_ggx_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = m->s.norm > 0.0f;
-    mcs_vec3 h;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
-    return mcsi_keep(ok, wi.z * (mcsi_dot(h, h) / h.z) / (wo.z * mcsi_ggx_t(&m->s, wi) + wi.z * mcsi_ggx_t(&m->s, wo)));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcs_vec3 h = mcsi_sum(wo, wi);
+    return mcsi_sane_result(ok, wi.z * (mcsi_dot(h, h) / h.z) /
+                                    (wo.z * mcsi_ggx_t(&m->s, wi) + wi.z * mcsi_ggx_t(&m->s, wo)));
 }
 
 /* Visible normals. In the frame stretched by alpha the lobe is a sphere lit from i = (ax x, ay y, z)/t; the map draws c in the cap
  * c.z > -k i.z uniformly, and c + i is the half-vector there. Everything here is constant for one wo. */
 typedef struct {
-    mcs_f z, t, x_dir, y_dir;                  /* wo.z; the length t; the azimuth of i */
-    mcs_f i_sin, i_z, one_minus_iz, cap, lift; /* i's sine and cosine; 1 - i.z; 1 + k i.z, the height of the cap; (1 - k) i.z */
-    mcs_f denominator;                         /* k wo.z + t */
+    mcs_f z, t, x_dir, y_dir; /* wo.z; the length t; the azimuth of i */
+    mcs_f i_sin, i_z, one_minus_iz, cap,
+        lift;          /* i's sine and cosine; 1 - i.z; 1 + k i.z, the height of the cap; (1 - k) i.z */
+    mcs_f denominator; /* k wo.z + t */
 } mcsi_visible;
 MCSI_CORE mcsi_visible mcsi_visible_make(const mcsi_slopes *m, mcs_vec3 wo, int bounded) {
+    const mcs_f x = m->ax * wo.x * 1.09951163e12f;
+    const mcs_f y = m->ay * wo.y * 1.09951163e12f;
+    mcs_f r = mcsi_sqrt(x * x + y * y); /* 2^40: no underflow */
+    const mcs_i off_axis = r > 0.0f;
+    const mcs_f inv = 1.0f / mcsi_sel(off_axis, r, mcs_set(1.0f));
+    mcs_f less = mcs_set(0.0f); /* 1 - k */
     mcsi_visible v;
-    mcs_f x = m->ax * wo.x * 1.09951163e12f, y = m->ay * wo.y * 1.09951163e12f,
-          r = mcsi_sqrt(x * x + y * y); /* 2^40: no underflow */
-    mcs_i off_axis = r > 0.0f;
-    mcs_f inv = 1.0f / mcsi_sel(off_axis, r, mcs_set(1.0f)), less = mcs_set(0.0f); /* 1 - k */
-    v.x_dir = mcsi_sel(off_axis, x * inv, mcs_set(1.0f)), v.y_dir = y * inv;
-    r = r * 9.09494702e-13f, v.z = wo.z, v.t = mcsi_sqrt(r * r + wo.z * wo.z);
-    v.i_sin = r / v.t, v.i_z = wo.z / v.t, v.one_minus_iz = v.i_sin * v.i_sin / (1.0f + v.i_z);
+    v.x_dir = mcsi_sel(off_axis, x * inv, mcs_set(1.0f));
+    v.y_dir = y * inv;
+    r = r * 9.09494702e-13f;
+    v.z = wo.z;
+    v.t = mcsi_sqrt(r * r + wo.z * wo.z);
+    v.i_sin = r / v.t;
+    v.i_z = wo.z / v.t;
+    v.one_minus_iz = v.i_sin * v.i_sin / (1.0f + v.i_z);
     if (bounded) {
-        mcs_f a = mcsi_min(mcsi_min(m->ax, m->ay), mcs_set(1.0f)), s = 1.0f + mcsi_sqrt(wo.x * wo.x + wo.y * wo.y);
+        const mcs_f a = mcsi_min(mcsi_min(m->ax, m->ay), mcs_set(1.0f));
+        const mcs_f s = 1.0f + mcsi_sqrt(wo.x * wo.x + wo.y * wo.y);
         less = a * a * (s * s + wo.z * wo.z) / (s * s + a * a * wo.z * wo.z);
     }
-    v.cap = 1.0f + (1.0f - less) * v.i_z, v.lift = less * v.i_z, v.denominator = (1.0f - less) * wo.z + v.t;
+    v.cap = 1.0f + (1.0f - less) * v.i_z;
+    v.lift = less * v.i_z;
+    v.denominator = (1.0f - less) * wo.z + v.t;
     return v;
 }
 #if MCSI_W == 1
 /* The unnormalised half-vector p in double, with |p|^2 and, in the stretched frame, |c + i|^2. */
-MCS_FN void mcsi_visible_d(double ax, double ay, double x, double y, double z, double u1, double u2, int bounded, double p[5]) {
-    double rim = 1.0 + mcsi_sqrt_d(x * x + y * y), a = ax < ay ? ax : ay, less = 0.0, t, r, sine, cosine, q, s, along, across;
+MCS_FN void mcsi_visible_d(double ax, double ay, double x, double y, double z, double u1, double u2, int bounded,
+                           double p[5]) {
+    const double rim = 1.0 + mcsi_sqrt_d(x * x + y * y);
+    double a = ax < ay ? ax : ay;
+    double less = 0.0;
     a = a < 1.0 ? a : 1.0;
     if (bounded) less = a * a * (rim * rim + z * z) / (rim * rim + a * a * z * z);
-    x = ax * x, y = ay * y, t = mcsi_sqrt_d(x * x + y * y + z * z), r = mcsi_sqrt_d(x * x + y * y);
-    x = r > 0.0 ? x / r : 1.0, y = r > 0.0 ? y / r : 0.0, r = r / t, z = z / t;
-    q = u2 * (1.0 + (1.0 - less) * z), p[2] = (1.0 - u2) * (1.0 + (1.0 - less) * z) + less * z;
-    s = mcsi_sqrt_d(q * (r * r / (1.0 + z) + p[2]));
+    x = ax * x;
+    y = ay * y;
+    const double t = mcsi_sqrt_d(x * x + y * y + z * z);
+    double r = mcsi_sqrt_d(x * x + y * y);
+    x = r > 0.0 ? x / r : 1.0;
+    y = r > 0.0 ? y / r : 0.0;
+    r = r / t;
+    z = z / t;
+    const double q = u2 * (1.0 + (1.0 - less) * z);
+    p[2] = (1.0 - u2) * (1.0 + (1.0 - less) * z) + less * z;
+    double s = mcsi_sqrt_d(q * (r * r / (1.0 + z) + p[2]));
+    double sine, cosine;
     mcsi_sincos_d(u1, &sine, &cosine);
-    along = cosine < 0.0 && p[2] < 1.0 ? s * (sine * sine / (1.0 - cosine)) + (p[2] - 2.0 * z) * p[2] / (r + s) : r + s * cosine;
-    across = s * sine, s = along * x - across * y, y = along * y + across * x;
-    p[4] = s * s + y * y + p[2] * p[2], p[0] = ax * s, p[1] = ay * y, p[3] = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+    const double along = cosine < 0.0 && p[2] < 1.0
+                             ? s * (sine * sine / (1.0 - cosine)) + (p[2] - 2.0 * z) * p[2] / (r + s)
+                             : r + s * cosine;
+    const double across = s * sine;
+    s = along * x - across * y;
+    y = along * y + across * x;
+    p[4] = s * s + y * y + p[2] * p[2];
+    p[0] = ax * s;
+    p[1] = ay * y;
+    p[3] = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
 }
 #endif
 /* The unnormalised half-vector p, p2 = |p|^2 and, in the stretched frame, n2 = scale^2 |c + i|^2; p is `scale` times too long. */
@@ -2339,15 +2524,18 @@ typedef struct {
 /* The lanes `off` again. */
 MCSI_CORE mcsi_visible_half mcsi_visible_detour(mcsi_slopes m, mcs_vec3 wo, mcs_f u1, mcs_f u2, int bounded, mcs_i off,
                                                 mcsi_visible_half h) {
-    double p[5];
-    int k;
-    for (k = 0; k < MCSI_W; k++) {
+    for (int k = 0; k < MCSI_W; k++) {
         if (!MCSI_LANE(off, k)) continue;
+        double p[5];
         mcsi_visible_d((double)MCSI_LANE(m.ax, k), (double)MCSI_LANE(m.ay, k), (double)MCSI_LANE(wo.x, k),
-                       (double)MCSI_LANE(wo.y, k), (double)MCSI_LANE(wo.z, k), (double)MCSI_LANE(u1, k), (double)MCSI_LANE(u2, k),
-                       bounded, p);
-        MCSI_LANE(h.p.x, k) = (float)p[0], MCSI_LANE(h.p.y, k) = (float)p[1], MCSI_LANE(h.p.z, k) = (float)p[2];
-        MCSI_LANE(h.p2, k) = (float)p[3], MCSI_LANE(h.n2, k) = (float)p[4], MCSI_LANE(h.scale, k) = 1.0f;
+                       (double)MCSI_LANE(wo.y, k), (double)MCSI_LANE(wo.z, k), (double)MCSI_LANE(u1, k),
+                       (double)MCSI_LANE(u2, k), bounded, p);
+        MCSI_LANE(h.p.x, k) = (float)p[0];
+        MCSI_LANE(h.p.y, k) = (float)p[1];
+        MCSI_LANE(h.p.z, k) = (float)p[2];
+        MCSI_LANE(h.p2, k) = (float)p[3];
+        MCSI_LANE(h.n2, k) = (float)p[4];
+        MCSI_LANE(h.scale, k) = 1.0f;
     }
     return h;
 }
@@ -2356,83 +2544,91 @@ MCSI_CORE mcsi_visible_half mcsi_visible_detour(mcsi_slopes m, mcs_vec3 wo, mcs_
  * magnifies the rounding of c + i more than 4 times, p comes from the detour. */
 MCSI_CORE mcsi_visible_half mcsi_visible_draw(const mcs_ggx *m, const mcsi_visible *v, mcs_vec3 wo, mcs_f u1, mcs_f u2,
                                               int bounded) {
-    mcsi_visible_half h;
+    const mcs_f q = u2 * v->cap;
+    mcs_f hz = v->cap * (1.0f - u2) + v->lift;
+    const mcs_f s = mcsi_sqrt(q * (v->one_minus_iz + hz));
     mcs_i behind;
-    mcs_f sine, cosine, one_plus, q = u2 * v->cap, hz = v->cap * (1.0f - u2) + v->lift;
-    mcs_f s = mcsi_sqrt(q * (v->one_minus_iz + hz)), r, along, across; /* sin^2 = (1 - c.z) (1 + c.z) */
+    mcs_f sine, cosine, one_plus;
     mcsi_sincos_behind(u1, &sine, &cosine, &behind, &one_plus);
     behind = behind & (hz < 1.0f);
+    mcsi_visible_half h;
     h.scale = mcsi_sel(behind, v->i_sin + s, mcs_set(1.0f));
-    r = s * h.scale;
-    along = mcsi_sel(behind, r * one_plus + (hz - 2.0f * v->i_z) * hz, s * cosine + v->i_sin);
-    across = r * sine, hz = hz * h.scale;
+    const mcs_f r = s * h.scale;
+    const mcs_f along = mcsi_sel(behind, r * one_plus + (hz - 2.0f * v->i_z) * hz, s * cosine + v->i_sin);
+    const mcs_f across = r * sine; /* sin^2 = (1 - c.z) (1 + c.z) */
+    hz = hz * h.scale;
     h.n2 = along * along + across * across + hz * hz;
-    h.p = mcsi_vec3(m->s.ax * (along * v->x_dir - across * v->y_dir), m->s.ay * (along * v->y_dir + across * v->x_dir), hz);
+    h.p = mcsi_vec3(m->s.ax * (along * v->x_dir - across * v->y_dir), m->s.ay * (along * v->y_dir + across * v->x_dir),
+                    hz);
     h.p2 = mcsi_dot(h.p, h.p);
     if (mcsi_rarely(m->wide > 0.0f)) {
-        mcs_i off = m->wide * h.n2 > h.p2;
+        const mcs_i off = m->wide * h.n2 > h.p2;
         if (mcsi_rarely(off)) h = mcsi_visible_detour(m->s, wo, u1, u2, bounded, off, h);
     }
     return h;
 }
 MCSI_CORE mcs_brdf mcsi_visible_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2, int bounded) {
     mcs_i ok = mcsi_always();
-    mcsi_visible v;
-    mcsi_visible_half h;
-    mcs_vec3 wi;
-    mcs_f inv, q, s;
-    wo = mcsi_above(wo, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
-    h = mcsi_visible_draw(m, &v, wo, u1, u2, bounded);
+    wo = mcsi_sane_upper(wo, &ok);
+    const mcsi_visible v = mcsi_visible_make(&m->s, wo, bounded);
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcsi_visible_half h = mcsi_visible_draw(m, &v, wo, u1, u2, bounded);
     /* q = p2/n2, and s = 2 (p.wo)/p2 as p.wo = t n2/2, where scale is 1 */
-    inv = 1.0f / (h.p2 * (h.n2 * h.scale)), q = h.p2 * h.scale * (h.p2 * inv), s = v.t * h.n2 * h.n2 * inv;
-    wi = mcsi_mirror(wo, h.p, s);
+    const mcs_f inv = 1.0f / (h.p2 * (h.n2 * h.scale));
+    const mcs_f q = h.p2 * h.scale * (h.p2 * inv);
+    const mcs_f s = v.t * h.n2 * h.n2 * inv;
+    mcs_vec3 wi = mcsi_mirror(wo, h.p, s);
     return mcsi_brdf(ok, wi, m->s.norm / (2.0f * v.denominator) * (q * q),
                      wi.z * v.denominator / (v.t * mcsi_abs(wi.z) + mcsi_ggx_t(&m->s, wi) * wo.z));
 }
 MCSI_CORE mcs_f mcsi_visible_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi, int bounded) {
     mcs_i ok = mcsi_always();
-    mcsi_visible v;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
-    return mcsi_keep(ok, mcsi_ggx_d(&m->s, mcsi_sum(wo, wi)) / (2.0f * v.denominator));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcsi_visible v = mcsi_visible_make(&m->s, wo, bounded);
+    return mcsi_sane_result(ok, mcsi_ggx_d(&m->s, mcsi_sum(wo, wi)) / (2.0f * v.denominator));
 }
 MCSI_CORE mcs_f mcsi_visible_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi, int bounded) {
     mcs_i ok = m->s.norm > 0.0f;
-    mcsi_visible v;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
-    return mcsi_keep(ok, wi.z * v.denominator / (v.t * wi.z + mcsi_ggx_t(&m->s, wi) * wo.z));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcsi_visible v = mcsi_visible_make(&m->s, wo, bounded);
+    return mcsi_sane_result(ok, wi.z * v.denominator / (v.t * wi.z + mcsi_ggx_t(&m->s, wi) * wo.z));
 }
 MCSI_CORE mcs_dir mcsi_visible_h_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2, int bounded) {
     mcs_i ok = mcsi_always();
-    mcsi_visible v;
-    mcsi_visible_half h;
+    wo = mcsi_sane_upper(wo, &ok);
+    const mcsi_visible v = mcsi_visible_make(&m->s, wo, bounded);
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcsi_visible_half h = mcsi_visible_draw(m, &v, wo, u1, u2, bounded);
+    const mcs_f q = h.p2 / (h.n2 * h.scale);
+    const mcs_f c = 1.0f / mcsi_sqrt(h.p2); /* p2/n2, wo.h = t n2 c/2 where scale is 1 */
     mcs_dir d;
-    mcs_f q, c;
-    wo = mcsi_above(wo, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
-    h = mcsi_visible_draw(m, &v, wo, u1, u2, bounded);
-    q = h.p2 / (h.n2 * h.scale), c = 1.0f / mcsi_sqrt(h.p2); /* p2/n2, wo.h = t n2 c/2 where scale is 1 */
     d.w = mcsi_vec3(h.p.x * c, h.p.y * c, h.p.z * c);
-    d.pdf = mcsi_keep(ok, m->s.norm * v.t / v.denominator * (h.p2 * c * q));
+    d.pdf = mcsi_sane_result(ok, m->s.norm * v.t / v.denominator * (h.p2 * c * q));
     return d;
 }
 MCSI_CORE mcs_f mcsi_visible_h_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h, int bounded) {
     mcs_i ok = mcsi_always();
-    mcsi_visible v;
-    mcs_f x, y, d, q;
-    wo = mcsi_above(wo, &ok), h = mcsi_above(h, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
-    x = h.x * m->s.inv_ax, y = h.y * m->s.inv_ay, d = mcsi_exact_dot(wo, h), q = x * x + y * y + h.z * h.z;
+    wo = mcsi_sane_upper(wo, &ok);
+    h = mcsi_sane_upper(h, &ok);
+    const mcsi_visible v = mcsi_visible_make(&m->s, wo, bounded);
+    const mcs_f x = h.x * m->s.inv_ax;
+    const mcs_f y = h.y * m->s.inv_ay;
+    const mcs_f d = mcsi_exact_dot(wo, h);
+    const mcs_f q = x * x + y * y + h.z * h.z;
     ok = ok & (2.0f * d * h.z >= 0.999999f * q * (v.t * v.lift)); /* c.z >= -k i.z */
-    return mcsi_keep(ok, mcsi_ggx_d(&m->s, h) * 2.0f * d / v.denominator);
+    return mcsi_sane_result(ok, mcsi_ggx_d(&m->s, h) * 2.0f * d / v.denominator);
 }
 MCSI_CORE mcs_vec2 mcsi_visible_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h, int bounded) {
     mcs_i ok = m->s.norm > 0.0f;
-    mcsi_visible v;
-    mcs_vec3 c;
-    mcs_f d;
-    wo = mcsi_above(wo, &ok), h = mcsi_above(h, &ok), v = mcsi_visible_make(&m->s, wo, bounded);
-    c = mcsi_vec3(h.x * m->s.inv_ax, h.y * m->s.inv_ay, h.z);
-    d = 2.0f * mcsi_exact_dot(wo, h) / (v.t * mcsi_dot(c, c));
+    wo = mcsi_sane_upper(wo, &ok);
+    h = mcsi_sane_upper(h, &ok);
+    const mcsi_visible v = mcsi_visible_make(&m->s, wo, bounded);
+    mcs_vec3 c = mcsi_vec3(h.x * m->s.inv_ax, h.y * m->s.inv_ay, h.z);
+    const mcs_f d = 2.0f * mcsi_exact_dot(wo, h) / (v.t * mcsi_dot(c, c));
     c = mcsi_vec3(d * c.x - v.i_sin * v.x_dir, d * c.y - v.i_sin * v.y_dir, d * c.z - v.i_z);
     return mcsi_uv(ok & (d > 0.0f), mcsi_atan2_turns(c.y * v.x_dir - c.x * v.y_dir, c.x * v.x_dir + c.y * v.y_dir),
                    mcsi_one_minus_z(c) / v.cap);
@@ -2442,26 +2638,37 @@ MCSI_SAMPLE mcs_dir mcs_ggx_vndf_h_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u
     return mcsi_visible_h_sample(m, wo, u1, u2, 0);
 }
 MCSI_FN mcs_f mcs_ggx_vndf_h_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) { return mcsi_visible_h_pdf(m, wo, h, 0); }
-MCSI_FN mcs_vec2 mcs_ggx_vndf_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) { return mcsi_visible_h_invert(m, wo, h, 0); }
+MCSI_FN mcs_vec2 mcs_ggx_vndf_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) {
+    return mcsi_visible_h_invert(m, wo, h, 0);
+}
 MCSI_SAMPLE mcs_brdf mcs_ggx_vndf_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     return mcsi_visible_sample(m, wo, u1, u2, 0);
 }
 MCSI_FN mcs_f mcs_ggx_vndf_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_visible_pdf(m, wo, wi, 0); }
-MCSI_FN mcs_f mcs_ggx_vndf_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_visible_weight(m, wo, wi, 0); }
+MCSI_FN mcs_f mcs_ggx_vndf_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
+    return mcsi_visible_weight(m, wo, wi, 0);
+}
 MCSI_SAMPLE mcs_dir mcs_ggx_bounded_h_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     return mcsi_visible_h_sample(m, wo, u1, u2, 1);
 }
-MCSI_FN mcs_f mcs_ggx_bounded_h_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) { return mcsi_visible_h_pdf(m, wo, h, 1); }
-MCSI_FN mcs_vec2 mcs_ggx_bounded_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) { return mcsi_visible_h_invert(m, wo, h, 1); }
+MCSI_FN mcs_f mcs_ggx_bounded_h_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) {
+    return mcsi_visible_h_pdf(m, wo, h, 1);
+}
+MCSI_FN mcs_vec2 mcs_ggx_bounded_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) {
+    return mcsi_visible_h_invert(m, wo, h, 1);
+}
 MCSI_SAMPLE mcs_brdf mcs_ggx_bounded_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     return mcsi_visible_sample(m, wo, u1, u2, 1);
 }
 MCSI_FN mcs_f mcs_ggx_bounded_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_visible_pdf(m, wo, wi, 1); }
-MCSI_FN mcs_f mcs_ggx_bounded_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_visible_weight(m, wo, wi, 1); }
+MCSI_FN mcs_f mcs_ggx_bounded_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
+    return mcsi_visible_weight(m, wo, wi, 1);
+}
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_ggx mcsi_ggx_spread(const mcsi_scalar_ggx *m) {
     mcs_ggx all;
-    all.s = mcsi_slopes_spread(&m->s), all.wide = mcs_set(m->wide);
+    all.s = mcsi_slopes_spread(&m->s);
+    all.wide = mcs_set(m->wide);
     return all;
 }
 MCSI_LOOP_LOBE(ggx_h, ggx)
@@ -2495,16 +2702,22 @@ typedef struct {
 typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
 #endif
 MCSI_FN mcs_ashikhmin mcs_ashikhmin_make(mcs_f nu, mcs_f nv) {
-    mcs_ashikhmin m;
-    mcs_i ok = (nu >= 0.0f) & (nv >= 0.0f);
+    const mcs_i ok = (nu >= 0.0f) & (nv >= 0.0f);
     MCSI_REQUIRE(ok);
-    m.nu = mcsi_within(ok, nu, 0.0f, 1e9f), m.nv = mcsi_within(ok, nv, 0.0f, 1e9f);
-    m.u = 1.0f / (m.nu + 1.0f), m.v = 1.0f / (m.nv + 1.0f), m.stretch = mcsi_sqrt((m.nu + 1.0f) / (m.nv + 1.0f));
+    mcs_ashikhmin m;
+    m.nu = mcsi_sane_parameter(ok, nu, 0.0f, 1e9f);
+    m.nv = mcsi_sane_parameter(ok, nv, 0.0f, 1e9f);
+    m.u = 1.0f / (m.nu + 1.0f);
+    m.v = 1.0f / (m.nv + 1.0f);
+    m.stretch = mcsi_sqrt((m.nu + 1.0f) / (m.nv + 1.0f));
     m.norm = mcsi_sel(ok, mcsi_sqrt(m.nu + 1.0f) * mcsi_sqrt(m.nv + 1.0f) * MCSI_1_2PI, mcs_set(0.0f));
     return m;
 }
 MCSI_CORE mcs_f mcsi_ashikhmin_exponent(const mcs_ashikhmin *m, mcs_vec3 h) {
-    mcs_f x = h.x * 1.07374182e+09f, y = h.y * 1.07374182e+09f, x2 = x * x, y2 = y * y;
+    const mcs_f x = h.x * 1.07374182e+09f;
+    const mcs_f y = h.y * 1.07374182e+09f;
+    const mcs_f x2 = x * x;
+    const mcs_f y2 = y * y;
     return (m->nu * x2 + m->nv * y2) / mcsi_max(x2 + y2, mcs_set(FLT_MIN));
 }
 MCSI_CORE mcs_f mcsi_tan2(mcs_vec3 h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
@@ -2512,82 +2725,96 @@ MCSI_CORE mcs_f mcsi_tan2(mcs_vec3 h) { return (h.x * h.x + h.y * h.y) / (h.z * 
 /* The half-vector; *p is the density times its cosine. Its azimuth is that of (c, stretch s), which *scale brings to its sine (with
  * 2^64 and 2^-32: tiny u1 would underflow); n = 1/(exponent + 1), from the nearer axis, as a large ln(1-u1) shows its rounding. */
 MCSI_CORE mcs_vec3 mcsi_ashikhmin_half(const mcs_ashikhmin *m, mcs_f u1, mcs_f u2, mcs_f *p, mcs_f *scale) {
-    mcs_f s, c, s2, c2, y, n, cosine, d;
+    mcs_f s, c;
     mcsi_sincos_turns(u2, &s, &c);
-    s2 = s * s, c2 = c * c, y = m->stretch * s;
-    n = mcsi_blend(mcsi_bits(s2 - c2) >> 31, m->u + (m->v - m->u) * s2, m->v + (m->u - m->v) * c2);
-    cosine = mcsi_exp_both(n * mcsi_log1p(-u1), &d);
-    *scale = mcsi_sqrt(-d * (2.0f + d) * (1.84467441e+19f / (c2 + y * y))) * 2.32830644e-10f, *p = m->norm * (1.0f - u1);
+    const mcs_f s2 = s * s;
+    const mcs_f c2 = c * c;
+    const mcs_f y = m->stretch * s;
+    const mcs_f n = mcsi_blend(mcsi_bits(s2 - c2) >> 31, m->u + (m->v - m->u) * s2, m->v + (m->u - m->v) * c2);
+    mcs_f d;
+    const mcs_f cosine = mcsi_exp_both(n * mcsi_log1p(-u1), &d);
+    *scale = mcsi_sqrt(-d * (2.0f + d) * (1.84467441e+19f / (c2 + y * y))) * 2.32830644e-10f;
+    *p = m->norm * (1.0f - u1);
     return mcsi_vec3(*scale * c, *scale * y, cosine);
 }
 MCSI_SAMPLE mcs_dir mcs_ashikhmin_h_sample(const mcs_ashikhmin *m, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
     mcs_dir h;
     mcs_f p, scale;
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
     h.w = mcsi_ashikhmin_half(m, u1, u2, &p, &scale);
-    h.pdf = mcsi_keep(ok, p / h.w.z);
+    h.pdf = mcsi_sane_result(ok, p / h.w.z);
     return h;
 }
 MCSI_FN mcs_f mcs_ashikhmin_h_pdf(const mcs_ashikhmin *m, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
-    h = mcsi_above(h, &ok);
-    return mcsi_keep(ok, m->norm * mcsi_cos_power(mcsi_ashikhmin_exponent(m, h), mcsi_tan2(h)));
+    h = mcsi_sane_upper(h, &ok);
+    return mcsi_sane_result(ok, m->norm * mcsi_cos_power(mcsi_ashikhmin_exponent(m, h), mcsi_tan2(h)));
 }
 MCSI_FN mcs_vec2 mcs_ashikhmin_h_invert(const mcs_ashikhmin *m, mcs_vec3 h) {
     mcs_i ok = m->norm > 0.0f;
-    mcs_f l, d;
-    h = mcsi_above(h, &ok);
-    l = mcsi_log1p(mcsi_min(mcsi_tan2(h), mcs_set(1e37f)));
+    h = mcsi_sane_upper(h, &ok);
+    const mcs_f l = mcsi_log1p(mcsi_min(mcsi_tan2(h), mcs_set(1e37f)));
+    mcs_f d;
     mcsi_exp_both(mcsi_max(-0.5f * (mcsi_ashikhmin_exponent(m, h) + 1.0f) * l, mcs_set(-80.0f)), &d);
     return mcsi_uv(ok, -d, mcsi_atan2_turns(h.y, h.x * m->stretch));
 }
 /* h.wo of the lanes `off` again. */
-MCSI_CORE mcs_f mcsi_ashikhmin_cosine(mcs_ashikhmin m, mcs_vec3 wo, mcs_f hz, mcs_f scale, mcs_f turns, mcs_i off, mcs_f d) {
-    int k;
-    for (k = 0; k < MCSI_W; k++) {
-        double stretch = mcsi_sqrt_d(((double)MCSI_LANE(m.nu, k) + 1.0) / ((double)MCSI_LANE(m.nv, k) + 1.0));
+MCSI_CORE mcs_f mcsi_ashikhmin_cosine(mcs_ashikhmin m, mcs_vec3 wo, mcs_f hz, mcs_f scale, mcs_f turns, mcs_i off,
+                                      mcs_f d) {
+    for (int k = 0; k < MCSI_W; k++) {
+        const double stretch = mcsi_sqrt_d(((double)MCSI_LANE(m.nu, k) + 1.0) / ((double)MCSI_LANE(m.nv, k) + 1.0));
         if (MCSI_LANE(off, k))
-            MCSI_LANE(d, k) = MCSI_LANE(wo.z, k) * MCSI_LANE(hz, k) +
-                              MCSI_LANE(scale, k) * mcsi_project((double)MCSI_LANE(wo.x, k), stretch * (double)MCSI_LANE(wo.y, k),
-                                                                 MCSI_LANE(turns, k));
+            MCSI_LANE(d, k) =
+                MCSI_LANE(wo.z, k) * MCSI_LANE(hz, k) +
+                MCSI_LANE(scale, k) *
+                    mcsi_project((double)MCSI_LANE(wo.x, k), stretch * (double)MCSI_LANE(wo.y, k), MCSI_LANE(turns, k));
     }
     return d;
 }
 MCSI_SAMPLE mcs_brdf mcs_ashikhmin_sample(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
-    mcs_vec3 h, wi;
-    mcs_f p, scale, d;
-    wo = mcsi_above(wo, &ok), u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
-    h = mcsi_ashikhmin_half(m, u1, u2, &p, &scale), d = mcsi_dot(h, wo);
+    wo = mcsi_sane_upper(wo, &ok);
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    mcs_f p, scale;
+    mcs_vec3 h = mcsi_ashikhmin_half(m, u1, u2, &p, &scale);
+    mcs_f d = mcsi_dot(h, wo);
     if (mcsi_rarely(wo.z < 0.25f)) {
-        mcs_i off = mcsi_cancelled(wo.z, d, mcs_set(1.0f));
+        const mcs_i off = mcsi_cancelled(wo.z, d, mcs_set(1.0f));
         if (mcsi_rarely(off)) d = mcsi_ashikhmin_cosine(*m, wo, h.z, scale, u2, off, d);
     }
-    wi = mcsi_mirror(wo, h, 2.0f * d * (2.0f - mcsi_dot(h, h))); /* 1/|h|^2 near 1 */
+    mcs_vec3 wi = mcsi_mirror(wo, h, 2.0f * d * (2.0f - mcsi_dot(h, h))); /* 1/|h|^2 near 1 */
     return mcsi_brdf(ok & (d > 0.0f), wi, p / (4.0f * (h.z * d)), wi.z / mcsi_max(wo.z, wi.z));
 }
 MCSI_FN mcs_f mcs_ashikhmin_pdf(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
-    mcs_vec3 h;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok), h = mcsi_sum(wo, wi);
-    return mcsi_keep(ok,
-                     m->norm * mcsi_cos_power(mcsi_ashikhmin_exponent(m, h), mcsi_tan2(h)) / (2.0f * mcsi_sqrt(mcsi_dot(h, h))));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcs_vec3 h = mcsi_sum(wo, wi);
+    return mcsi_sane_result(ok, m->norm * mcsi_cos_power(mcsi_ashikhmin_exponent(m, h), mcsi_tan2(h)) /
+                                    (2.0f * mcsi_sqrt(mcsi_dot(h, h))));
 }
 MCSI_FN mcs_f mcs_ashikhmin_eval(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 wi) {
-    mcs_f pdf = mcs_ashikhmin_pdf(m, wo, wi);
-    return mcsi_keep(pdf > 0.0f, pdf / mcsi_max(wo.z, wi.z));
+    const mcs_f pdf = mcs_ashikhmin_pdf(m, wo, wi);
+    return mcsi_sane_result(pdf > 0.0f, pdf / mcsi_max(wo.z, wi.z));
 }
 MCSI_FN mcs_f mcs_ashikhmin_weight(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = m->norm > 0.0f;
-    wo = mcsi_above(wo, &ok), wi = mcsi_above(wi, &ok);
-    return mcsi_keep(ok, wi.z / mcsi_max(wo.z, wi.z));
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    return mcsi_sane_result(ok, wi.z / mcsi_max(wo.z, wi.z));
 }
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_ashikhmin mcsi_ashikhmin_spread(const mcsi_scalar_ashikhmin *m) {
     mcs_ashikhmin all;
-    all.nu = mcs_set(m->nu), all.nv = mcs_set(m->nv), all.norm = mcs_set(m->norm);
-    all.u = mcs_set(m->u), all.v = mcs_set(m->v), all.stretch = mcs_set(m->stretch);
+    all.nu = mcs_set(m->nu);
+    all.nv = mcs_set(m->nv);
+    all.norm = mcs_set(m->norm);
+    all.u = mcs_set(m->u);
+    all.v = mcs_set(m->v);
+    all.stretch = mcs_set(m->stretch);
     return all;
 }
 MCSI_LOOP_LOBE(ashikhmin_h, ashikhmin)
@@ -2612,19 +2839,19 @@ MCSI_CORE mcs_f mcsi_mis_ratio(mcs_f pf, mcs_f pg, mcs_i *ok) {
 }
 MCSI_FN mcs_f mcs_mis_balance(mcs_f pf, mcs_f pg) {
     mcs_i ok;
-    mcs_f r = mcsi_mis_ratio(pf, pg, &ok);
-    return mcsi_keep(ok & (r < FLT_MAX), 1.0f / (1.0f + r));
+    const mcs_f r = mcsi_mis_ratio(pf, pg, &ok);
+    return mcsi_sane_result(ok & (r < FLT_MAX), 1.0f / (1.0f + r));
 }
 MCSI_FN mcs_f mcs_mis_power(mcs_f pf, mcs_f pg) {
     mcs_i ok;
-    mcs_f r = mcsi_mis_ratio(pf, pg, &ok);
-    mcs_f least = mcsi_min(r, mcs_set(1.8446743e19f)); /* the largest whose square is a float */
-    return mcsi_keep(ok & (r <= least), 1.0f / (1.0f + least * least));
+    const mcs_f r = mcsi_mis_ratio(pf, pg, &ok);
+    const mcs_f least = mcsi_min(r, mcs_set(1.8446743e19f)); /* the largest whose square is a float */
+    return mcsi_sane_result(ok & (r <= least), 1.0f / (1.0f + least * least));
 }
 MCSI_FN mcs_f mcs_mix_pdf(mcs_f c, mcs_f pf, mcs_f pg) {
-    mcs_i ok = c == c;
+    const mcs_i ok = c == c;
     c = mcsi_min(mcsi_max(c, mcs_set(0.0f)), mcs_set(1.0f));
-    return mcsi_keep(ok, c * mcsi_keep(pf > 0.0f, pf) + (1.0f - c) * mcsi_keep(pg > 0.0f, pg));
+    return mcsi_sane_result(ok, c * mcsi_sane_result(pf > 0.0f, pf) + (1.0f - c) * mcsi_sane_result(pg > 0.0f, pg));
 }
 
 #if MCSI_W == 1
@@ -2687,18 +2914,17 @@ MCSI_CORE void mcsi_put_weight(uint32_t *word, float w) { MCSI_COPY(word, &w, si
 /* memmove of n words, which kernels do not have. */
 MCS_FN void mcsi_move(uint32_t *to, const float *from, uint32_t n) {
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
-    uint32_t i;
-    int up = (uintptr_t)to <= (uintptr_t)from;
-    for (i = 0; i < n; i++) mcsi_put_weight(to + (up ? i : n - 1 - i), from[up ? i : n - 1 - i]);
+    const int up = (uintptr_t)to <= (uintptr_t)from;
+    for (uint32_t i = 0; i < n; i++) mcsi_put_weight(to + (up ? i : n - 1 - i), from[up ? i : n - 1 - i]);
 #else
     memmove(to, from, n * sizeof *to);
 #endif
 }
 /* Moves a list, which may overlap the table, into the place of its sums, cleaned; counts the bad ones. */
 MCS_FN uint32_t mcsi_weights_in(uint32_t *words, const float *f, uint32_t n) {
-    uint32_t i, bad = 0;
+    uint32_t bad = 0;
     mcsi_move(words, f, n);
-    for (i = 0; i < n; i++) mcsi_put_weight(words + i, mcsi_clean(mcsi_word_weight(words + i), &bad));
+    for (uint32_t i = 0; i < n; i++) mcsi_put_weight(words + i, mcsi_clean(mcsi_word_weight(words + i), &bad));
     return bad;
 }
 
@@ -2708,45 +2934,62 @@ typedef struct {
     uint32_t seen;
 } mcsi_run;
 MCSI_CORE void mcsi_run_add(mcsi_run *r, const uint32_t *words, uint32_t i) {
-    float w = mcsi_word_weight(words + i);
-    r->sum += (double)w, r->seen += w > 0.0f;
+    const float w = mcsi_word_weight(words + i);
+    r->sum += (double)w;
+    r->seen += w > 0.0f;
 }
 MCSI_CORE void mcsi_run_start(mcsi_run *r, double *total, uint32_t *some) {
-    double sum = r->sum;
-    uint32_t seen = r->seen;
-    r->before = *total, r->sum = 0.0, r->seen = *some;
-    *total += sum, *some += seen;
+    const double sum = r->sum;
+    const uint32_t seen = r->seen;
+    r->before = *total;
+    r->sum = 0.0;
+    r->seen = *some;
+    *total += sum;
+    *some += seen;
 }
 MCSI_CORE void mcsi_run_put(mcsi_run *r, uint32_t *words, uint32_t i, double scale, uint32_t some) {
-    double w = (double)mcsi_word_weight(words + i), below = (r->before + r->sum) * scale, top = (double)(MCSI_ONE - some);
+    const double w = (double)mcsi_word_weight(words + i);
+    const double below = (r->before + r->sum) * scale;
+    const double top = (double)(MCSI_ONE - some);
     words[i] = r->seen == some ? MCSI_ONE : r->seen + (uint32_t)(below < top ? below : top);
-    r->sum += w, r->seen += w > 0.0;
+    r->sum += w;
+    r->seen += w > 0.0;
 }
 /* Cumulative sums 0 = cdf[0] <= ... <= cdf[n] = 2^31 in the place of n weights (floats, finite, not negative): entry i gets its
  * share cdf[i + 1] - cdf[i] of 2^31, at least 1 unless it is zero. Returns the sum of the weights; 0: all are zero, all shares are
  * alike. Four parts take turns, as each sum waits for the one before it. */
 MCS_FN double mcsi_cdf_build(uint32_t *cdf, uint32_t n) {
-    mcsi_run a = {0.0, 0.0, 0}, b = a, c = a, d = a;
-    double total = 0.0, scale;
-    uint32_t i, some = 0, part = n / 4;
-    for (i = 0; i < part; i++) {
-        mcsi_run_add(&a, cdf, i), mcsi_run_add(&b, cdf, part + i);
-        mcsi_run_add(&c, cdf, 2 * part + i), mcsi_run_add(&d, cdf, 3 * part + i);
+    mcsi_run a = {0.0, 0.0, 0};
+    mcsi_run b = a;
+    mcsi_run c = a;
+    mcsi_run d = a;
+    double total = 0.0;
+    uint32_t some = 0;
+    const uint32_t part = n / 4;
+    for (uint32_t i = 0; i < part; i++) {
+        mcsi_run_add(&a, cdf, i);
+        mcsi_run_add(&b, cdf, part + i);
+        mcsi_run_add(&c, cdf, 2 * part + i);
+        mcsi_run_add(&d, cdf, 3 * part + i);
     }
-    for (i = 4 * part; i < n; i++) mcsi_run_add(&d, cdf, i);
-    mcsi_run_start(&a, &total, &some), mcsi_run_start(&b, &total, &some);
-    mcsi_run_start(&c, &total, &some), mcsi_run_start(&d, &total, &some);
+    for (uint32_t i = 4 * part; i < n; i++) mcsi_run_add(&d, cdf, i);
+    mcsi_run_start(&a, &total, &some);
+    mcsi_run_start(&b, &total, &some);
+    mcsi_run_start(&c, &total, &some);
+    mcsi_run_start(&d, &total, &some);
     cdf[n] = MCSI_ONE;
     if (some == 0) {
-        for (i = 0; i < n; i++) cdf[i] = (uint32_t)((uint64_t)i * MCSI_ONE / n);
+        for (uint32_t i = 0; i < n; i++) cdf[i] = (uint32_t)((uint64_t)i * MCSI_ONE / n);
         return 0.0;
     }
-    scale = (double)(MCSI_ONE - some) / total;
-    for (i = 0; i < part; i++) {
-        mcsi_run_put(&a, cdf, i, scale, some), mcsi_run_put(&b, cdf, part + i, scale, some);
-        mcsi_run_put(&c, cdf, 2 * part + i, scale, some), mcsi_run_put(&d, cdf, 3 * part + i, scale, some);
+    const double scale = (double)(MCSI_ONE - some) / total;
+    for (uint32_t i = 0; i < part; i++) {
+        mcsi_run_put(&a, cdf, i, scale, some);
+        mcsi_run_put(&b, cdf, part + i, scale, some);
+        mcsi_run_put(&c, cdf, 2 * part + i, scale, some);
+        mcsi_run_put(&d, cdf, 3 * part + i, scale, some);
     }
-    for (i = 4 * part; i < n; i++) mcsi_run_put(&d, cdf, i, scale, some);
+    for (uint32_t i = 4 * part; i < n; i++) mcsi_run_put(&d, cdf, i, scale, some);
     return total;
 }
 
@@ -2757,15 +3000,16 @@ MCS_FN uint32_t mcsi_guide_shift(uint32_t n, uint32_t cells_per_entry) {
     while (shift > 0 && (MCSI_ONE >> (shift - 1)) <= n / cells_per_entry) shift--;
     return shift;
 }
-#define MCSI_GUIDE_BUILD(guide, type, shift, cdf, n)                                                     \
-    do {                                                                                                 \
-        uint32_t g_, i_, end_ = MCSI_ONE >> (shift), last_ = (n)-1;                                      \
-        for (g_ = 0; g_ <= end_; g_++) (guide)[g_] = 0;                                                  \
-        for (i_ = 0; i_ < (n); i_++) (guide)[((cdf)[i_] + ((1u << (shift)) - 1)) >> (shift)] = (type)i_; \
-        for (g_ = 1; g_ < end_; g_++)                                                                    \
-            if ((guide)[g_] < (guide)[g_ - 1]) (guide)[g_] = (guide)[g_ - 1];                            \
-        while ((cdf)[last_] == MCSI_ONE) last_--;                                                        \
-        (guide)[end_] = (type)last_;                                                                     \
+#define MCSI_GUIDE_BUILD(guide, type, shift, cdf, n)                                                              \
+    do {                                                                                                          \
+        const uint32_t end_ = MCSI_ONE >> (shift);                                                                \
+        uint32_t last_ = (n)-1;                                                                                   \
+        for (uint32_t g_ = 0; g_ <= end_; g_++) (guide)[g_] = 0;                                                  \
+        for (uint32_t i_ = 0; i_ < (n); i_++) (guide)[((cdf)[i_] + ((1u << (shift)) - 1)) >> (shift)] = (type)i_; \
+        for (uint32_t g_ = 1; g_ < end_; g_++)                                                                    \
+            if ((guide)[g_] < (guide)[g_ - 1]) (guide)[g_] = (guide)[g_ - 1];                                     \
+        while ((cdf)[last_] == MCSI_ONE) last_--;                                                                 \
+        (guide)[end_] = (type)last_;                                                                              \
     } while (0)
 /* The cell that holds U: the last i in [lo, hi] with cdf[i] <= U, one that is known to be there. Without branches where the guide
  * leaves few cells, as nothing could predict them. */
@@ -2813,32 +3057,35 @@ MCS_FN size_t mcs_pwc_bytes(uint32_t n) {
 }
 /* The words hold the weights. */
 MCS_FN mcs_status mcsi_pwc_fill(mcs_pwc *t, uint32_t n, uint32_t bad) {
-    uint32_t *cdf = (uint32_t *)(void *)(t + 1), *guide = cdf + n + 1;
-    t->n = n, t->bad = bad, t->unused = 0;
+    uint32_t *cdf = (uint32_t *)(void *)(t + 1);
+    uint32_t *guide = cdf + n + 1;
+    t->n = n;
+    t->bad = bad;
+    t->unused = 0;
     t->shift = mcsi_guide_shift(n, 1);
     t->total = mcsi_cdf_build(cdf, n);
     MCSI_GUIDE_BUILD(guide, uint32_t, t->shift, cdf, n);
     return t->total > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 MCS_FN mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n) {
-    mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwc_bytes(n));
-    uint32_t *words, bad;
+    const mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwc_bytes(n));
     if (e) return e;
-    words = (uint32_t *)(void *)(t + 1);
-    bad = mcsi_weights_in(words, f, n);
+    uint32_t *words = (uint32_t *)(void *)(t + 1);
+    const uint32_t bad = mcsi_weights_in(words, f, n);
     mcsi_words_end(words, mcsi_pwc_words(n));
     return mcsi_pwc_fill(t, n, bad);
 }
-MCS_FN mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context, uint32_t n) {
-    mcs_status e = mcsi_table_check(t, bytes, f ? (const void *)t : NULL, mcs_pwc_bytes(n));
-    uint32_t *words, i, bad = 0;
+MCS_FN mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context,
+                                   uint32_t n) {
+    const mcs_status e = mcsi_table_check(t, bytes, f ? (const void *)t : NULL, mcs_pwc_bytes(n));
+    uint32_t bad = 0;
     if (e) return e;
-    words = (uint32_t *)(void *)(t + 1);
-    for (i = 0; i < n; i++) {
-        double a = 0.34785484513745385 * ((double)f((float)((i + 0.069431844202973712) / n), context) +
-                                          (double)f((float)((i + 0.93056815579702629) / n), context));
-        double b = 0.65214515486254614 * ((double)f((float)((i + 0.33000947820757187) / n), context) +
-                                          (double)f((float)((i + 0.66999052179242813) / n), context));
+    uint32_t *words = (uint32_t *)(void *)(t + 1);
+    for (uint32_t i = 0; i < n; i++) {
+        const double a = 0.34785484513745385 * ((double)f((float)((i + 0.069431844202973712) / n), context) +
+                                                (double)f((float)((i + 0.93056815579702629) / n), context));
+        const double b = 0.65214515486254614 * ((double)f((float)((i + 0.33000947820757187) / n), context) +
+                                                (double)f((float)((i + 0.66999052179242813) / n), context));
         mcsi_put_weight(words + i, mcsi_clean((float)(0.5 * (a + b)), &bad));
     }
     mcsi_words_end(words, mcsi_pwc_words(n));
@@ -2854,8 +3101,8 @@ MCSI_CORE uint32_t mcsi_pwc_find(const mcs_pwc *t, uint32_t U) {
     return mcsi_cdf_search(mcsi_cdf(t), t->n, guide[0], guide[1], U);
 }
 MCS_FN mcsi_pwc_place mcsi_pwc_draw(const mcs_pwc *t, float u) {
-    double U = (double)u * MCSI_ONE;
-    uint32_t i = mcsi_pwc_find(t, (uint32_t)U);
+    const double U = (double)u * MCSI_ONE;
+    const uint32_t i = mcsi_pwc_find(t, (uint32_t)U);
     const uint32_t *cdf = mcsi_cdf(t) + i;
     mcsi_pwc_place p;
     p.i = i;
@@ -2865,8 +3112,8 @@ MCS_FN mcsi_pwc_place mcsi_pwc_draw(const mcs_pwc *t, float u) {
 }
 /* All 64 bits count: 31 find the cell, and with what those leave the others are its place, exact until it is divided. */
 MCS_FN mcsi_pwc_place mcsi_pwc_draw_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
-    uint64_t U = (uint64_t)b1 << 32 | b2; /* 2^33 times that of a float u */
-    uint32_t i = mcsi_pwc_find(t, (uint32_t)(U >> 33));
+    const uint64_t U = (uint64_t)b1 << 32 | b2; /* 2^33 times that of a float u */
+    const uint32_t i = mcsi_pwc_find(t, (uint32_t)(U >> 33));
     const uint32_t *cdf = mcsi_cdf(t) + i;
     mcsi_pwc_place p;
     p.i = i;
@@ -2878,10 +3125,9 @@ MCS_FN mcsi_pwc_place mcsi_pwc_draw_bits(const mcs_pwc *t, uint32_t b1, uint32_t
 /* The cell of x, with the place of x in it; ok when x is in [0,1]. */
 MCS_FN uint32_t mcsi_pwc_cell(const mcs_pwc *t, float x, double *place, int *ok) {
     double v = (double)x * t->n;
-    uint32_t i;
     *ok = x >= 0.0f && x <= 1.0f;
     v = *ok ? v : 0.0;
-    i = v < t->n ? (uint32_t)v : t->n - 1;
+    const uint32_t i = v < t->n ? (uint32_t)v : t->n - 1;
     *place = v - i;
     return i;
 }
@@ -2894,7 +3140,7 @@ MCSI_CORE mcs_cell mcsi_pwc_cell_at(const mcs_pwc *t, mcsi_pwc_place p, int ok) 
 }
 MCS_FN mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u) {
     int32_t ok = 1;
-    u = mcsi_unit(u, &ok);
+    u = mcsi_sane_u(u, &ok);
     return mcsi_pwc_cell_at(t, mcsi_pwc_draw(t, u), ok);
 }
 MCS_FN mcs_cell mcs_pwc_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
@@ -2903,20 +3149,20 @@ MCS_FN mcs_cell mcs_pwc_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) 
 MCS_FN float mcs_pwc_pdf(const mcs_pwc *t, float x) {
     double place;
     int ok;
-    uint32_t i = mcsi_pwc_cell(t, x, &place, &ok);
+    const uint32_t i = mcsi_pwc_cell(t, x, &place, &ok);
     return ok ? (float)((double)(mcsi_cdf(t)[i + 1] - mcsi_cdf(t)[i]) / MCSI_ONE * t->n) : 0.0f;
 }
 MCS_FN float mcs_pwc_invert(const mcs_pwc *t, float x) {
     double place;
     int ok;
-    uint32_t i = mcsi_pwc_cell(t, x > 1.0f ? 1.0f : x, &place, &ok), a = mcsi_cdf(t)[i];
+    const uint32_t i = mcsi_pwc_cell(t, x > 1.0f ? 1.0f : x, &place, &ok);
+    const uint32_t a = mcsi_cdf(t)[i];
     return mcsi_below_one((a + place * (mcsi_cdf(t)[i + 1] - a)) / MCSI_ONE);
 }
 #ifndef MCS_NO_BATCH
 MCS_FN void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf) {
-    size_t k;
-    for (k = 0; k < n; k++) {
-        mcs_cell c = mcs_pwc_sample(t, u[k]);
+    for (size_t k = 0; k < n; k++) {
+        const mcs_cell c = mcs_pwc_sample(t, u[k]);
         if (x) x[k] = c.x;
         if (pdf) pdf[k] = c.pdf;
     }
@@ -2931,7 +3177,7 @@ MCSI_CORE mcs_pick mcsi_discrete_pick(mcsi_pwc_place p, int ok) {
 }
 MCS_FN mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u) {
     int32_t ok = 1;
-    u = mcsi_unit(u, &ok);
+    u = mcsi_sane_u(u, &ok);
     return mcsi_discrete_pick(mcsi_pwc_draw(t, u), ok);
 }
 MCS_FN mcs_pick mcs_discrete_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
@@ -2942,26 +3188,30 @@ MCS_FN float mcs_discrete_pmf(const mcs_pwc *t, uint32_t i) {
 }
 
 MCS_FN size_t mcs_pwl_bytes(uint32_t n) {
-    return n && n <= MCSI_CELLS_MAX ? (sizeof(mcs_pwl) + (mcsi_pwc_words(n) + n + 1) * sizeof(uint32_t) + 7) / 8 * 8 : 0;
+    return n && n <= MCSI_CELLS_MAX ? (sizeof(mcs_pwl) + (mcsi_pwc_words(n) + n + 1) * sizeof(uint32_t) + 7) / 8 * 8
+                                    : 0;
 }
 MCS_FN mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n) {
     mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwl_bytes(n));
-    uint32_t *words, *vertex, i, bad;
     float top = 0.0f;
     double total = 0.0;
     if (e) return e;
-    words = (uint32_t *)(void *)(t + 1), vertex = words + mcsi_pwc_words(n);
-    bad = mcsi_weights_in(vertex, f, n + 1);
+    uint32_t *words = (uint32_t *)(void *)(t + 1);
+    uint32_t *vertex = words + mcsi_pwc_words(n);
+    const uint32_t bad = mcsi_weights_in(vertex, f, n + 1);
     mcsi_words_end(words, mcsi_pwc_words(n) + n + 1);
-    for (i = 0; i <= n; i++) top = mcsi_max(top, mcsi_word_weight(vertex + i));
-    for (i = 0; i < n; i++) { /* a cell weighs the sum of its vertices, or half of it where that could overflow */
-        float a = mcsi_word_weight(vertex + i), b = mcsi_word_weight(vertex + i + 1), w = top > 1e38f ? 0.5f * a + 0.5f * b : a + b;
+    for (uint32_t i = 0; i <= n; i++) top = mcsi_max(top, mcsi_word_weight(vertex + i));
+    for (uint32_t i = 0; i < n;
+         i++) { /* a cell weighs the sum of its vertices, or half of it where that could overflow */
+        const float a = mcsi_word_weight(vertex + i);
+        const float b = mcsi_word_weight(vertex + i + 1);
+        const float w = top > 1e38f ? 0.5f * a + 0.5f * b : a + b;
         mcsi_put_weight(words + i, w > 0.0f ? w : mcsi_max(a, b));
         total += 0.5 * ((double)a + (double)b);
     }
     e = mcsi_pwc_fill(&t->cells, n, bad);
     t->cells.total = total;
-    for (i = 0; e == MCS_UNIFORM && i <= n; i++) mcsi_put_weight(vertex + i, 1.0f);
+    for (uint32_t i = 0; e == MCS_UNIFORM && i <= n; i++) mcsi_put_weight(vertex + i, 1.0f);
     return e;
 }
 MCS_FN const float *mcsi_pwl_vertices(const mcs_pwl *t) {
@@ -2969,11 +3219,13 @@ MCS_FN const float *mcsi_pwl_vertices(const mcs_pwl *t) {
 }
 /* Within cell i the density is mass * n times a linear density on [0,1]. */
 MCSI_CORE mcs_cell mcsi_pwl_cell_at(const mcs_pwl *t, mcsi_pwc_place p, int ok) {
-    mcs_cell c;
-    double a = (double)mcsi_pwl_vertices(t)[p.i], b = (double)mcsi_pwl_vertices(t)[p.i + 1], r = a + b;
+    double a = (double)mcsi_pwl_vertices(t)[p.i];
+    double b = (double)mcsi_pwl_vertices(t)[p.i + 1];
+    double r = a + b;
     a /= r;
     b /= r;
     r = mcsi_sqrt_d((1.0 - p.place) * a * a + p.place * b * b);
+    mcs_cell c;
     c.i = p.i;
     c.x = mcsi_in_cell(p.i, r > 0.0 ? p.place / (a + r) : 0.0, t->cells.n);
     c.pdf = ok ? (float)((double)p.mass / MCSI_ONE * t->cells.n * 2.0 * r) : 0.0f;
@@ -2981,7 +3233,7 @@ MCSI_CORE mcs_cell mcsi_pwl_cell_at(const mcs_pwl *t, mcsi_pwc_place p, int ok) 
 }
 MCS_FN mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u) {
     int32_t ok = 1;
-    u = mcsi_unit(u, &ok);
+    u = mcsi_sane_u(u, &ok);
     return mcsi_pwl_cell_at(t, mcsi_pwc_draw(&t->cells, u), ok);
 }
 MCS_FN mcs_cell mcs_pwl_sample_bits(const mcs_pwl *t, uint32_t b1, uint32_t b2) {
@@ -2989,28 +3241,30 @@ MCS_FN mcs_cell mcs_pwl_sample_bits(const mcs_pwl *t, uint32_t b1, uint32_t b2) 
 }
 MCS_FN float mcs_pwl_pdf(const mcs_pwl *t, float x) {
     const float *v = mcsi_pwl_vertices(t);
-    double place, sum, mass;
+    double place;
     int ok;
-    uint32_t i = mcsi_pwc_cell(&t->cells, x, &place, &ok);
-    mass = mcsi_cdf(&t->cells)[i + 1] - mcsi_cdf(&t->cells)[i], sum = (double)v[i] + (double)v[i + 1];
-    return ok && sum > 0.0
-               ? (float)(mass / MCSI_ONE * t->cells.n * 2.0 * ((1.0 - place) * (double)v[i] + place * (double)v[i + 1]) / sum)
-               : 0.0f;
+    const uint32_t i = mcsi_pwc_cell(&t->cells, x, &place, &ok);
+    const double mass = mcsi_cdf(&t->cells)[i + 1] - mcsi_cdf(&t->cells)[i];
+    const double sum = (double)v[i] + (double)v[i + 1];
+    return ok && sum > 0.0 ? (float)(mass / MCSI_ONE * t->cells.n * 2.0 *
+                                     ((1.0 - place) * (double)v[i] + place * (double)v[i + 1]) / sum)
+                           : 0.0f;
 }
 MCS_FN float mcs_pwl_invert(const mcs_pwl *t, float x) {
     const float *v = mcsi_pwl_vertices(t);
-    double place, sum, mass, a;
+    double place;
     int ok;
-    uint32_t i = mcsi_pwc_cell(&t->cells, x > 1.0f ? 1.0f : x, &place, &ok);
-    a = mcsi_cdf(&t->cells)[i], mass = mcsi_cdf(&t->cells)[i + 1] - a, sum = (double)v[i] + (double)v[i + 1];
+    const uint32_t i = mcsi_pwc_cell(&t->cells, x > 1.0f ? 1.0f : x, &place, &ok);
+    const double a = mcsi_cdf(&t->cells)[i];
+    const double mass = mcsi_cdf(&t->cells)[i + 1] - a;
+    const double sum = (double)v[i] + (double)v[i + 1];
     place = sum > 0.0 ? place * ((double)v[i] * (2.0 - place) + (double)v[i + 1] * place) / sum : 0.0;
     return mcsi_below_one((a + place * mass) / MCSI_ONE);
 }
 #ifndef MCS_NO_BATCH
 MCS_FN void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float *x, float *pdf) {
-    size_t k;
-    for (k = 0; k < n; k++) {
-        mcs_cell c = mcs_pwl_sample(t, u[k]);
+    for (size_t k = 0; k < n; k++) {
+        const mcs_cell c = mcs_pwl_sample(t, u[k]);
         if (x) x[k] = c.x;
         if (pdf) pdf[k] = c.pdf;
     }
@@ -3027,57 +3281,70 @@ typedef struct {
     double total;
     uint32_t n, bad;
 } mcs_alias; /* then column[n] */
-MCS_FN mcsi_column *mcsi_columns(const mcs_alias *t) { return (mcsi_column *)(void *)((char *)(uintptr_t)t + sizeof(mcs_alias)); }
+MCS_FN mcsi_column *mcsi_columns(const mcs_alias *t) {
+    return (mcsi_column *)(void *)((char *)(uintptr_t)t + sizeof(mcs_alias));
+}
 MCS_FN size_t mcs_alias_bytes(uint32_t n) { /* the largest do not fit the size_t of a 32-bit machine */
-    uint64_t bytes = sizeof(mcs_alias) + (uint64_t)n * sizeof(mcsi_column);
+    const uint64_t bytes = sizeof(mcs_alias) + (uint64_t)n * sizeof(mcsi_column);
     return n && n <= MCSI_CELLS_MAX && (size_t)bytes == bytes ? (size_t)bytes : 0;
 }
 MCS_FN uint64_t mcsi_column_left(const mcsi_column *c) { return ((uint64_t)c->alias << 32) | c->cut; }
-MCS_FN void mcsi_column_leave(mcsi_column *c, uint64_t left) { c->cut = (uint32_t)left, c->alias = (uint32_t)(left >> 32); }
+MCS_FN void mcsi_column_leave(mcsi_column *c, uint64_t left) {
+    c->cut = (uint32_t)left;
+    c->alias = (uint32_t)(left >> 32);
+}
 MCS_FN mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n) {
-    mcs_status e = mcsi_table_check(t, bytes, w, mcs_alias_bytes(n));
-    mcsi_column *c;
+    const mcs_status e = mcsi_table_check(t, bytes, w, mcs_alias_bytes(n));
     double sum = 0.0;
-    uint64_t all = (uint64_t)n << 31, given = 0;
-    uint32_t i, some = 0, seen = 0, donor = 0, bad = 0;
+    const uint64_t all = (uint64_t)n << 31;
+    uint64_t given = 0;
+    uint32_t some = 0;
+    uint32_t seen = 0;
+    uint32_t donor = 0;
+    uint32_t bad = 0;
     if (e) return e;
-    c = mcsi_columns(t);
-    t->n = n, t->total = 0.0;
-    for (i = 0; i < n; i++) {
-        double v = (double)mcsi_clean(w[i], &bad);
-        t->total += v, some += v > 0.0;
+    mcsi_column *c = mcsi_columns(t);
+    t->n = n;
+    t->total = 0.0;
+    for (uint32_t i = 0; i < n; i++) {
+        const double v = (double)mcsi_clean(w[i], &bad);
+        t->total += v;
+        some += v > 0.0;
     }
     t->bad = bad;
-    for (i = 0; i < n; i++) { /* cumulative shares, so that they add up to n * 2^31 exactly */
-        double v = some ? (double)mcsi_clean(w[i], &bad) : 1.0, part;
-        uint64_t upto;
-        sum += v, seen += v > 0.0;
-        part = some ? sum / t->total * (double)(all - some) : (double)seen * MCSI_ONE;
-        upto = (uint64_t)part, upto = upto < all - some ? upto : all - some; /* their difference as double rounds, up to 2^54 */
+    for (uint32_t i = 0; i < n; i++) { /* cumulative shares, so that they add up to n * 2^31 exactly */
+        const double v = some ? (double)mcsi_clean(w[i], &bad) : 1.0;
+        sum += v;
+        seen += v > 0.0;
+        const double part = some ? sum / t->total * (double)(all - some) : (double)seen * MCSI_ONE;
+        uint64_t upto = (uint64_t)part;
+        upto = upto < all - some ? upto : all - some; /* their difference as double rounds, up to 2^54 */
         upto = seen == (some ? some : n) ? all : (some ? seen : 0) + upto;
-        c[i].weight = upto - given, given = upto;
+        c[i].weight = upto - given;
+        given = upto;
         mcsi_column_leave(&c[i], c[i].weight);
     }
     /* Columns short of 2^31 are filled up by the current donor. A donor that falls short thereby is filled by the next one: at once
      * if the scan has passed it, else when the scan comes to it. */
     while (donor < n && c[donor].weight < MCSI_ONE) donor++;
-    for (i = 0; i < n; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         uint32_t k = i;
         while (k <= i && mcsi_column_left(&c[k]) < MCSI_ONE) {
-            uint64_t left = mcsi_column_left(&c[donor]) - (MCSI_ONE - mcsi_column_left(&c[k]));
-            c[k].alias = donor, k = donor;
+            const uint64_t left = mcsi_column_left(&c[donor]) - (MCSI_ONE - mcsi_column_left(&c[k]));
+            c[k].alias = donor;
+            k = donor;
             mcsi_column_leave(&c[k], left);
             if (left < MCSI_ONE)
                 for (donor++; donor < n && c[donor].weight < MCSI_ONE;) donor++;
         }
     }
-    for (i = 0; i < n; i++)
+    for (uint32_t i = 0; i < n; i++)
         if (c[i].cut == MCSI_ONE) c[i].alias = i;
     return some ? MCS_OK : MCS_UNIFORM;
 }
 MCSI_CORE mcs_pick mcsi_alias_pick(const mcs_alias *t, uint32_t i, double place, int ok) {
-    mcs_pick c;
     const mcsi_column *k = mcsi_columns(t) + i;
+    mcs_pick c;
     c.i = place < k->cut ? i : k->alias;
     c.u = mcsi_below_one(place < k->cut ? place / k->cut : (place - k->cut) / (MCSI_ONE - k->cut));
     c.pmf = ok ? (float)((double)mcsi_columns(t)[c.i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
@@ -3085,11 +3352,11 @@ MCSI_CORE mcs_pick mcsi_alias_pick(const mcs_alias *t, uint32_t i, double place,
 }
 MCS_FN mcs_pick mcs_alias_sample(const mcs_alias *t, float u) {
     int32_t ok = 1;
-    double U = (double)mcsi_unit(u, &ok) * t->n;
+    const double U = (double)mcsi_sane_u(u, &ok) * t->n;
     return mcsi_alias_pick(t, (uint32_t)U, (U - (uint32_t)U) * MCSI_ONE, ok);
 }
 MCS_FN mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t b2) {
-    uint64_t U = (uint64_t)b1 * t->n + ((uint64_t)b2 * t->n >> 32); /* 2^32 times that of sample */
+    const uint64_t U = (uint64_t)b1 * t->n + ((uint64_t)b2 * t->n >> 32); /* 2^32 times that of sample */
     return mcsi_alias_pick(t, (uint32_t)(U >> 32), 0.5 * (uint32_t)U, 1);
 }
 MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
@@ -3163,19 +3430,22 @@ typedef struct {
 #define MCSI_ENV_MARGIN 2.384185791015625e-07
 /* `turn` is a column's width, `inner` the part of it within the margins. */
 MCSI_CORE mcs_vec3 mcsi_env_direction(const mcs_frame *f, const mcsi_env_point *p, float turn, float inner) {
-    mcs_f t = p->edge + p->row_rest / p->row_mass * p->height, sine = mcsi_sqrt(t * (2.0f - t)), s, c;
-    mcs_f turns = p->col * turn + (p->col_rest / p->col_mass * inner + (float)MCSI_ENV_MARGIN);
+    const mcs_f t = p->edge + p->row_rest / p->row_mass * p->height;
+    const mcs_f sine = mcsi_sqrt(t * (2.0f - t));
+    const mcs_f turns = p->col * turn + (p->col_rest / p->col_mass * inner + (float)MCSI_ENV_MARGIN);
+    mcs_f s, c;
     mcsi_sincos_turns(turns, &s, &c);
-    return mcsi_to_world(
-        f, mcsi_vec3(sine * c, sine * s, mcsi_from_bits(mcsi_bits(1.0f - t) ^ (mcsi_bits(p->height) & (-0x7fffffff - 1)))));
+    return mcsi_to_world(f,
+                         mcsi_vec3(sine * c, sine * s,
+                                   mcsi_from_bits(mcsi_bits(1.0f - t) ^ (mcsi_bits(p->height) & (-0x7fffffff - 1)))));
 }
 /* Where a direction lies: 1 - |cos(theta)|, with the sign of cos(theta), and 4 for a bad direction; the angle to the nearer pole
  * and the azimuth in turns. */
 MCSI_CORE void mcsi_env_locate(const mcs_frame *f, mcs_vec3 w, mcs_f *off_pole, mcs_f *polar, mcs_f *turns) {
     mcs_i ok = mcsi_always();
-    mcs_f sine2, up;
-    w = mcsi_to_local(f, mcsi_direction(w, &ok));
-    sine2 = w.x * w.x + w.y * w.y, up = mcsi_abs(w.z);
+    w = mcsi_to_local(f, mcsi_sane_direction(w, &ok));
+    const mcs_f sine2 = w.x * w.x + w.y * w.y;
+    const mcs_f up = mcsi_abs(w.z);
     *off_pole = mcsi_sel(ok, mcsi_with_sign(sine2 / (1.0f + up), w.z), mcs_set(4.0f));
     *polar = mcsi_atan2_turns(mcsi_sqrt(sine2), up);
     *turns = mcsi_atan2_turns(w.y, w.x);
@@ -3187,9 +3457,9 @@ typedef struct {
     const uint16_t *guide[MCSI_ENV_BLOCK];
     double scale[MCSI_ENV_BLOCK], at[MCSI_ENV_BLOCK];
     uint32_t in_col[MCSI_ENV_BLOCK], in_row[MCSI_ENV_BLOCK]; /* texel */
-    float row_rest[MCSI_ENV_BLOCK], row_mass[MCSI_ENV_BLOCK], edge[MCSI_ENV_BLOCK], height[MCSI_ENV_BLOCK], col[MCSI_ENV_BLOCK],
-        col_rest[MCSI_ENV_BLOCK], col_mass[MCSI_ENV_BLOCK], x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK], z[MCSI_ENV_BLOCK],
-        pdf[MCSI_ENV_BLOCK];
+    float row_rest[MCSI_ENV_BLOCK], row_mass[MCSI_ENV_BLOCK], edge[MCSI_ENV_BLOCK], height[MCSI_ENV_BLOCK],
+        col[MCSI_ENV_BLOCK], col_rest[MCSI_ENV_BLOCK], col_mass[MCSI_ENV_BLOCK], x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK],
+        z[MCSI_ENV_BLOCK], pdf[MCSI_ENV_BLOCK];
 } mcsi_env_block;
 #endif
 #ifdef MCSI_LOOPS
@@ -3200,12 +3470,11 @@ MCSI_CORE mcs_frame mcsi_spread_frame(const mcsi_scalar_frame *f) {
     r.n = mcsi_spread(f->n);
     return r;
 }
-MCSI_LOOP void mcsi_env_directions_loop(const mcsi_scalar_frame *f, size_t n, mcsi_env_block *b, float turn, float inner) {
-    mcs_frame frame = mcsi_spread_frame(f);
-    size_t i;
-    for (i = 0; i < n; i += MCSI_W) {
+MCSI_LOOP void mcsi_env_directions_loop(const mcsi_scalar_frame *f, size_t n, mcsi_env_block *b, float turn,
+                                        float inner) {
+    const mcs_frame frame = mcsi_spread_frame(f);
+    for (size_t i = 0; i < n; i += MCSI_W) {
         mcsi_env_point p;
-        mcs_vec3 v;
         p.row_rest = mcs_load(b->row_rest + i);
         p.row_mass = mcs_load(b->row_mass + i);
         p.edge = mcs_load(b->edge + i);
@@ -3213,16 +3482,16 @@ MCSI_LOOP void mcsi_env_directions_loop(const mcsi_scalar_frame *f, size_t n, mc
         p.col = mcs_load(b->col + i);
         p.col_rest = mcs_load(b->col_rest + i);
         p.col_mass = mcs_load(b->col_mass + i);
-        v = mcsi_env_direction(&frame, &p, turn, inner);
+        mcs_vec3 v = mcsi_env_direction(&frame, &p, turn, inner);
         mcs_store(b->x + i, v.x);
         mcs_store(b->y + i, v.y);
         mcs_store(b->z + i, v.z);
     }
 }
-MCSI_LOOP void mcsi_env_locate_loop(const mcsi_scalar_frame *f, size_t n, const float *x, const float *y, const float *z,
-                                    float *off_pole, float *polar, float *turns) {
+MCSI_LOOP void mcsi_env_locate_loop(const mcsi_scalar_frame *f, size_t n, const float *x, const float *y,
+                                    const float *z, float *off_pole, float *polar, float *turns) {
+    const mcs_frame frame = mcsi_spread_frame(f);
     mcsi_batch b;
-    mcs_frame frame = mcsi_spread_frame(f);
     mcsi_batch_start(&b, n, x, y, z);
     b.out[0] = off_pole;
     b.out[1] = polar;
@@ -3239,8 +3508,8 @@ MCSI_LOOP void mcsi_env_locate_loop(const mcsi_scalar_frame *f, size_t n, const 
 #if MCSI_W == 1
 /* By the widest loop that this processor has; defined behind the passes. */
 MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner);
-MCS_FN void mcsi_env_locate_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z, float *off_pole,
-                              float *polar, float *turns);
+MCS_FN void mcsi_env_locate_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z,
+                              float *off_pole, float *polar, float *turns);
 #endif
 
 #if MCSI_W == 1
@@ -3254,7 +3523,10 @@ typedef struct {
 MCS_FN mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels) {
     mcs_image im;
     MCSI_FILL(&im, 0, sizeof im);
-    im.pixels = pixels, im.w = w, im.h = h, im.channels = channels;
+    im.pixels = pixels;
+    im.w = w;
+    im.h = h;
+    im.channels = channels;
     return im;
 }
 /* Where things lie behind the header, in bytes: edge[] = 1 - cos(theta) of the row borders from a pole to the equator (double),
@@ -3313,17 +3585,23 @@ enum { MCSI_ENV_MAX = 1 << 16, MCSI_ENV_VERSION = 4, MCSI_ENV_CELLS = 8, MCSI_EN
 MCS_FN uint64_t mcsi_up8(uint64_t bytes) { return (bytes + 7) / 8 * 8; }
 MCS_FN mcsi_env_parts mcsi_env_layout(uint32_t w, uint32_t h) {
     mcsi_env_parts p;
-    p.row_shift = mcsi_guide_shift(h, 1), p.col_shift = mcsi_guide_shift(w, MCSI_ENV_CELLS), p.unused = 0;
+    p.row_shift = mcsi_guide_shift(h, 1);
+    p.col_shift = mcsi_guide_shift(w, MCSI_ENV_CELLS);
+    p.unused = 0;
     p.guides = (MCSI_ONE >> p.col_shift) + 1;
-    p.edge = sizeof(mcs_env), p.line = p.edge + ((h + 1) / 2 + 1) * sizeof(double);
-    p.info = p.line + h * sizeof(mcsi_env_line), p.rows = p.info + h * sizeof(mcsi_env_info);
+    p.edge = sizeof(mcs_env);
+    p.line = p.edge + ((h + 1) / 2 + 1) * sizeof(double);
+    p.info = p.line + h * sizeof(mcsi_env_line);
+    p.rows = p.info + h * sizeof(mcsi_env_info);
     p.row_guide = p.rows + (h + 1) * sizeof(uint32_t);
     p.cdf = mcsi_up8(p.row_guide + ((MCSI_ONE >> p.row_shift) + 1) * sizeof(uint16_t));
     p.col_guide = p.cdf + (w + (uint64_t)1) * h * sizeof(uint32_t);
     p.bytes = mcsi_up8(p.col_guide + (uint64_t)p.guides * h * sizeof(uint16_t));
     return p;
 }
-MCSI_CORE const double *mcsi_env_edge(const mcs_env *e) { return (const double *)(const void *)((const char *)e + e->at.edge); }
+MCSI_CORE const double *mcsi_env_edge(const mcs_env *e) {
+    return (const double *)(const void *)((const char *)e + e->at.edge);
+}
 MCSI_CORE const uint32_t *mcsi_env_cdf(const mcs_env *e, uint32_t row) {
     return (const uint32_t *)(const void *)((const char *)e + e->at.cdf) + (size_t)row * (e->w + 1);
 }
@@ -3334,8 +3612,14 @@ MCSI_CORE mcsi_env_view mcsi_env_whole(const mcs_env *e) {
     mcsi_env_view v;
     v.rows = (const uint32_t *)(const void *)((const char *)e + e->at.rows);
     v.guide = (const uint16_t *)(const void *)((const char *)e + e->at.row_guide);
-    v.line = (const mcsi_env_line *)(const void *)((const char *)e + e->at.line), v.span = NULL;
-    v.row = 0, v.count = e->h, v.col = 0, v.cols = e->w, v.shift = e->at.row_shift, v.uniform = e->uniform;
+    v.line = (const mcsi_env_line *)(const void *)((const char *)e + e->at.line);
+    v.span = NULL;
+    v.row = 0;
+    v.count = e->h;
+    v.col = 0;
+    v.cols = e->w;
+    v.shift = e->at.row_shift;
+    v.uniform = e->uniform;
     return v;
 }
 /* Checksums: words of 8 bytes are mixed, each one-to-one, into one of eight sums, and these into one. So a change within one word
@@ -3352,15 +3636,14 @@ MCSI_CORE uint64_t mcsi_check_word(const char *at, size_t bytes) {
 MCS_FN uint64_t mcsi_checksum(uint64_t before, const void *memory, size_t bytes) {
     const char *at = (const char *)memory;
     uint64_t sum[8] = {0};
-    int k;
     sum[0] = before;
     for (; bytes >= 64; at += 64, bytes -= 64) {
         MCSI_UNROLL
-        for (k = 0; k < 8; k++) sum[k] = mcsi_check_mix(sum[k], mcsi_check_word(at + 8 * k, 8));
+        for (int k = 0; k < 8; k++) sum[k] = mcsi_check_mix(sum[k], mcsi_check_word(at + 8 * k, 8));
     }
     for (; bytes >= 8; at += 8, bytes -= 8) sum[0] = mcsi_check_mix(sum[0], mcsi_check_word(at, 8));
     if (bytes) sum[0] = mcsi_check_mix(sum[0], mcsi_check_word(at, bytes));
-    for (k = 1; k < 8; k++) sum[0] = mcsi_check_mix(sum[0], sum[k]);
+    for (int k = 1; k < 8; k++) sum[0] = mcsi_check_mix(sum[0], sum[k]);
     return sum[0];
 }
 /* Of a row's cumulative sums and its guide; 0 of a black row. */
@@ -3368,7 +3651,9 @@ MCSI_CORE uint64_t mcsi_env_row_sum(const uint32_t *cdf, uint32_t w, const uint1
     return mcsi_checksum(mcsi_checksum(0, cdf, ((size_t)w + 1) * sizeof *cdf), guide, guides * sizeof *guide);
 }
 /* Where the last row's guide ends. */
-MCSI_CORE uint64_t mcsi_env_end(const mcs_env *e) { return e->at.col_guide + (uint64_t)e->at.guides * e->h * sizeof(uint16_t); }
+MCSI_CORE uint64_t mcsi_env_end(const mcs_env *e) {
+    return e->at.col_guide + (uint64_t)e->at.guides * e->h * sizeof(uint16_t);
+}
 /* Of the whole table but the frame, which may change; rows count by their own sums. */
 MCS_FN uint64_t mcsi_env_sum(const mcs_env *e) {
     const char *at = (const char *)e;
@@ -3378,23 +3663,28 @@ MCS_FN uint64_t mcsi_env_sum(const mcs_env *e) {
 }
 /* 1 - cos(pi x), x in [0,1], without libm so that tables are the same everywhere: 2 sin^2(pi x/2) by Taylor to x^17. */
 MCS_FN double mcsi_one_minus_cos_pi(double x) {
-    double far_half = x > 0.5 ? 1.0 - x : x, t = far_half * 1.5707963267948966, z = t * t, s;
-    s = t * (1.0 + z * (-1.0 / 6 + z * (1.0 / 120 +
-                                        z * (-1.0 / 5040 + z * (1.0 / 362880 + z * (-1.0 / 39916800 +
-                                                                                    z * (1.0 / 6227020800.0 +
-                                                                                         z * (-1.0 / 1307674368000.0 +
-                                                                                              z * (1.0 / 355687428096000.0)))))))));
+    const double far_half = x > 0.5 ? 1.0 - x : x;
+    const double t = far_half * 1.5707963267948966;
+    const double z = t * t;
+    const double s =
+        t * (1.0 + z * (-1.0 / 6 +
+                        z * (1.0 / 120 + z * (-1.0 / 5040 +
+                                              z * (1.0 / 362880 + z * (-1.0 / 39916800 +
+                                                                       z * (1.0 / 6227020800.0 +
+                                                                            z * (-1.0 / 1307674368000.0 +
+                                                                                 z * (1.0 / 355687428096000.0)))))))));
     return x > 0.5 ? 2.0 - 2.0 * s * s : 2.0 * s * s;
 }
 /* A row as counted from the nearer pole, where its borders 1 - cos(theta) keep their digits. */
 MCSI_CORE uint32_t mcsi_env_from_pole(uint32_t row, uint32_t h) { return 2 * row < h ? row : h - 1 - row; }
 MCS_FN double mcsi_env_height(uint32_t row, uint32_t h) {
-    uint32_t m = mcsi_env_from_pole(row, h);
+    const uint32_t m = mcsi_env_from_pole(row, h);
     return mcsi_one_minus_cos_pi((m + 1.0) / h) - mcsi_one_minus_cos_pi((double)m / h);
 }
 MCS_FN void mcsi_env_set_line(mcsi_env_line *line, uint32_t row, uint32_t w, uint32_t h) {
-    double height = mcsi_env_height(row, h), margin = MCSI_ENV_MARGIN * h;
-    uint32_t m = mcsi_env_from_pole(row, h);
+    double height = mcsi_env_height(row, h);
+    const double margin = MCSI_ENV_MARGIN * h;
+    const uint32_t m = mcsi_env_from_pole(row, h);
     line->unit = w / (6.2831853071795865 * height) * (1.0 / MCSI_ONE / MCSI_ONE);
     height = m == row ? height : -height;
     line->edge = (float)(mcsi_one_minus_cos_pi((m + (m != row)) / (double)h) + margin * height);
@@ -3402,11 +3692,12 @@ MCS_FN void mcsi_env_set_line(mcsi_env_line *line, uint32_t row, uint32_t w, uin
 }
 /* Density of a texel per unit of the 2^31 of row i of the view, which has light. */
 MCSI_CORE double mcsi_env_scale(const mcsi_env_view *v, uint32_t i) {
-    double unit = (v->rows[i + 1] - v->rows[i]) * v->line[i].unit;
+    const double unit = (v->rows[i + 1] - v->rows[i]) * v->line[i].unit;
     return v->span ? unit * ((double)MCSI_ONE / v->span[i].mass) : unit;
 }
 MCSI_CORE void mcsi_env_set_turn(mcs_env *e) {
-    e->turn = (float)(1.0 / e->w), e->inner = (float)(1.0 / e->w - 2 * MCSI_ENV_MARGIN);
+    e->turn = (float)(1.0 / e->w);
+    e->inner = (float)(1.0 / e->w - 2 * MCSI_ENV_MARGIN);
 }
 
 /* ---- building ---- */
@@ -3418,13 +3709,14 @@ MCS_FN size_t mcs_env_bytes(uint32_t w, uint32_t h) {
 /* How many floats a row or an image spans must be a size that memory can have. */
 MCS_FN int mcsi_image_ok(const mcs_image *im) {
     const uint64_t most = PTRDIFF_MAX / sizeof(float) / ((uint64_t)im->h + 1);
-    uint64_t row = im->row_stride < 0 ? -(uint64_t)im->row_stride : (uint64_t)im->row_stride;
-    uint64_t step = im->pixel_stride ? (uint64_t)im->pixel_stride : im->channels;
+    const uint64_t row = im->row_stride < 0 ? -(uint64_t)im->row_stride : (uint64_t)im->row_stride;
+    const uint64_t step = im->pixel_stride ? (uint64_t)im->pixel_stride : im->channels;
     if (im->pixel_stride < 0 || step < im->channels || step > most || step * im->w > most) return 0;
     return !row || (row >= (im->w - 1) * step + im->channels && row <= most);
 }
 MCS_FN mcs_status mcsi_env_refuse(const mcs_env *e, size_t bytes, const mcs_image *im) {
-    if (!e || !im || !im->pixels || ((uintptr_t)e & MCSI_ALIGN) || im->channels == 0 || im->channels == 2) return MCS_ERR_ARG;
+    if (!e || !im || !im->pixels || ((uintptr_t)e & MCSI_ALIGN) || im->channels == 0 || im->channels == 2)
+        return MCS_ERR_ARG;
     if (!mcs_env_bytes(im->w, im->h) || !mcsi_image_ok(im)) return MCS_ERR_SIZE;
     return bytes < mcs_env_bytes(im->w, im->h) ? MCS_ERR_MEMORY : MCS_OK;
 }
@@ -3433,58 +3725,61 @@ MCS_FN mcs_status mcsi_env_refuse(const mcs_env *e, size_t bytes, const mcs_imag
 MCSI_CORE float mcsi_luminance(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
 MCSI_CORE float mcsi_pixel(const float *p, uint32_t *bad) {
     uint32_t channels = 0;
-    float r, g, b, plain = mcsi_luminance(p[0], p[1], p[2]);
-    if (mcsi_min(mcsi_min(p[0], p[1]), p[2]) >= 0.0f && plain <= FLT_MAX) return plain; /* which NaN and infinity never are */
-    r = mcsi_clean(p[0], &channels);
-    g = mcsi_clean(p[1], &channels);
-    b = mcsi_clean(p[2], &channels);
+    const float plain = mcsi_luminance(p[0], p[1], p[2]);
+    if (mcsi_min(mcsi_min(p[0], p[1]), p[2]) >= 0.0f && plain <= FLT_MAX)
+        return plain; /* which NaN and infinity never are */
+    const float r = mcsi_clean(p[0], &channels);
+    const float g = mcsi_clean(p[1], &channels);
+    const float b = mcsi_clean(p[2], &channels);
     *bad += channels != 0;
     return mcsi_luminance(r, g, b);
 }
 /* Texels [x, x + n) of a row. */
 MCS_FN void mcsi_image_texels(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
-    ptrdiff_t step = im->pixel_stride ? im->pixel_stride : (ptrdiff_t)im->channels;
-    const float *p = im->pixels + (ptrdiff_t)y * (im->row_stride ? im->row_stride : step * (ptrdiff_t)im->w) + (ptrdiff_t)x * step;
-    uint32_t k;
+    const ptrdiff_t step = im->pixel_stride ? im->pixel_stride : (ptrdiff_t)im->channels;
+    const float *p =
+        im->pixels + (ptrdiff_t)y * (im->row_stride ? im->row_stride : step * (ptrdiff_t)im->w) + (ptrdiff_t)x * step;
     if (im->channels >= 3)
-        for (k = 0; k < n; k++, p += step) v[k] = mcsi_pixel(p, bad);
+        for (uint32_t k = 0; k < n; k++, p += step) v[k] = mcsi_pixel(p, bad);
     else
-        for (k = 0; k < n; k++, p += step) v[k] = mcsi_clean(*p, bad);
+        for (uint32_t k = 0; k < n; k++, p += step) v[k] = mcsi_clean(*p, bad);
 }
 /* The weights of texels [x, x + n), n <= MCSI_ENV_CHUNK. */
 MCS_FN void mcsi_image_weights(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
-    uint32_t k;
     if (im->bilinear) {
-        float sum[MCSI_ENV_CHUNK + 2] = {0.0f}, line[MCSI_ENV_CHUNK + 2];
-        int r;
-        for (r = -1; r <= 1; r++) {
-            uint32_t near_y = r < 0 && y > 0 ? y - 1 : r > 0 && y + 1 < im->h ? y + 1 : y, uncounted = 0;
+        float sum[MCSI_ENV_CHUNK + 2] = {0.0f};
+        for (int r = -1; r <= 1; r++) {
+            const uint32_t near_y = r < 0 && y > 0 ? y - 1 : r > 0 && y + 1 < im->h ? y + 1 : y;
+            uint32_t uncounted = 0;
+            float line[MCSI_ENV_CHUNK + 2];
             mcsi_image_texels(im, near_y, (x + im->w - 1) % im->w, 1, line, &uncounted);
             mcsi_image_texels(im, near_y, x, n, line + 1, r ? &uncounted : bad);
             mcsi_image_texels(im, near_y, (x + n) % im->w, 1, line + n + 1, &uncounted);
-            for (k = 0; k < n + 2; k++) sum[k] += (r ? 0.25f : 0.5f) * line[k];
+            for (uint32_t k = 0; k < n + 2; k++) sum[k] += (r ? 0.25f : 0.5f) * line[k];
         }
-        for (k = 0; k < n; k++) v[k] = 0.25f * sum[k] + 0.5f * sum[k + 1] + 0.25f * sum[k + 2];
+        for (uint32_t k = 0; k < n; k++) v[k] = 0.25f * sum[k] + 0.5f * sum[k + 1] + 0.25f * sum[k + 2];
     } else {
         mcsi_image_texels(im, y, x, n, v, bad);
     }
     if (im->floor > 0.0f)
-        for (k = 0; k < n; k++) v[k] = mcsi_max(v[k] - im->floor, 0.0f);
+        for (uint32_t k = 0; k < n; k++) v[k] = mcsi_max(v[k] - im->floor, 0.0f);
 }
 MCS_FN float mcs_env_mean(const mcs_image *im) {
-    mcs_image plain;
     double sum = 0.0;
-    uint32_t x, y, k, n, bad = 0;
-    float v[MCSI_ENV_CHUNK];
-    if (!im || !im->pixels || im->channels == 0 || im->channels == 2 || !mcs_env_bytes(im->w, im->h) || !mcsi_image_ok(im))
+    uint32_t bad = 0;
+    if (!im || !im->pixels || im->channels == 0 || im->channels == 2 || !mcs_env_bytes(im->w, im->h) ||
+        !mcsi_image_ok(im))
         return 0.0f;
-    plain = *im, plain.floor = 0.0f;
-    for (y = 0; y < im->h; y++) {
+    mcs_image plain = *im;
+    plain.floor = 0.0f;
+    uint32_t n;
+    for (uint32_t y = 0; y < im->h; y++) {
         double row = 0.0;
-        for (x = 0; x < im->w; x += n) {
+        for (uint32_t x = 0; x < im->w; x += n) {
             n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : (uint32_t)MCSI_ENV_CHUNK;
+            float v[MCSI_ENV_CHUNK];
             mcsi_image_weights(&plain, y, x, n, v, &bad);
-            for (k = 0; k < n; k++) row += (double)v[k];
+            for (uint32_t k = 0; k < n; k++) row += (double)v[k];
         }
         sum += row * mcsi_env_height(y, im->h);
     }
@@ -3493,15 +3788,20 @@ MCS_FN float mcs_env_mean(const mcs_image *im) {
 
 MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, uint16_t *guide, uint32_t shift,
                                mcsi_env_info *info) {
-    uint32_t x, n, first = im->w, last = 0, same = 0, guides = (MCSI_ONE >> shift) + 1;
-    float v[MCSI_ENV_CHUNK], level = 0.0f;
+    uint32_t first = im->w;
+    uint32_t last = 0;
+    uint32_t same = 0;
+    const uint32_t guides = (MCSI_ONE >> shift) + 1;
+    float level = 0.0f;
     info->bad = 0;
-    for (x = 0; x < im->w; x += n) {
-        uint32_t lit;
+    uint32_t n;
+    for (uint32_t x = 0; x < im->w; x += n) {
         n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : (uint32_t)MCSI_ENV_CHUNK;
+        float v[MCSI_ENV_CHUNK];
         mcsi_image_weights(im, y, x, n, v, &info->bad);
         level = x ? level : v[0];
         while (same < x + n && same >= x && v[same - x] == level) same++;
+        uint32_t lit;
         for (lit = same == x + n && !(level > 0.0f) ? 0 : n; lit > 0 && !(v[lit - 1] > 0.0f);) lit--;
         if (lit) { /* weights are kept from the first light on */
             if (!last) {
@@ -3527,12 +3827,11 @@ MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, u
     info->sum = mcsi_env_row_sum(cdf, im->w, guide, guides);
 }
 MCS_FN mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1) {
-    mcs_status status = mcsi_env_refuse(e, bytes, im);
-    mcsi_env_parts at;
+    const mcs_status status = mcsi_env_refuse(e, bytes, im);
     char *p = (char *)e;
     if (status) return status;
     if (y0 > y1 || y1 > im->h) return MCS_ERR_SIZE;
-    at = mcsi_env_layout(im->w, im->h);
+    const mcsi_env_parts at = mcsi_env_layout(im->w, im->h);
     for (; y0 < y1; y0++)
         mcsi_env_build_row(im, y0, (uint32_t *)(void *)(p + at.cdf) + (size_t)y0 * (im->w + 1),
                            (uint16_t *)(void *)(p + at.col_guide) + (size_t)y0 * at.guides, at.col_shift,
@@ -3540,66 +3839,74 @@ MCS_FN mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *
     return MCS_OK;
 }
 MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) {
-    mcs_status status = mcsi_env_refuse(e, bytes, im);
-    const mcsi_env_info *info;
-    mcsi_env_line *line;
-    uint32_t *rows, y;
-    uint16_t *guide;
-    double *edge, top = 0.0;
+    const mcs_status status = mcsi_env_refuse(e, bytes, im);
+    double top = 0.0;
     if (status) return status;
     MCSI_FILL(e, 0, sizeof *e);
-    e->magic = MCSI_ENV_MAGIC, e->version = MCSI_ENV_VERSION, e->at = mcsi_env_layout(im->w, im->h);
-    e->w = im->w, e->h = im->h, e->row0 = im->h, e->col0 = im->w, e->uniform = 1, e->incomplete = im->floor > 0.0f;
+    e->magic = MCSI_ENV_MAGIC;
+    e->version = MCSI_ENV_VERSION;
+    e->at = mcsi_env_layout(im->w, im->h);
+    e->w = im->w;
+    e->h = im->h;
+    e->row0 = im->h;
+    e->col0 = im->w;
+    e->uniform = 1;
+    e->incomplete = im->floor > 0.0f;
     mcsi_env_set_turn(e);
     e->frame.s.x = e->frame.t.y = e->frame.n.z = 1.0f;
-    edge = (double *)(void *)((char *)e + e->at.edge), line = (mcsi_env_line *)(void *)((char *)e + e->at.line);
-    info = (const mcsi_env_info *)(const void *)((const char *)e + e->at.info);
-    rows = (uint32_t *)(void *)((char *)e + e->at.rows), guide = (uint16_t *)(void *)((char *)e + e->at.row_guide);
+    double *edge = (double *)(void *)((char *)e + e->at.edge);
+    mcsi_env_line *line = (mcsi_env_line *)(void *)((char *)e + e->at.line);
+    const mcsi_env_info *info = (const mcsi_env_info *)(const void *)((const char *)e + e->at.info);
+    uint32_t *rows = (uint32_t *)(void *)((char *)e + e->at.rows);
+    uint16_t *guide = (uint16_t *)(void *)((char *)e + e->at.row_guide);
     MCSI_FILL(rows, 0, (size_t)(e->at.cdf - e->at.rows)); /* this list and its guide do not always fill their parts */
     MCSI_FILL((char *)e + mcsi_env_end(e), 0, (size_t)(e->at.bytes - mcsi_env_end(e)));
-    for (y = 0; y <= (e->h + 1) / 2; y++) edge[y] = mcsi_one_minus_cos_pi((double)y / e->h);
-    for (y = 0; y < e->h; y++) {
-        e->bad += info[y].bad, e->total += info[y].power * (6.2831853071795865 / e->w);
+    for (uint32_t y = 0; y <= (e->h + 1) / 2; y++) edge[y] = mcsi_one_minus_cos_pi((double)y / e->h);
+    for (uint32_t y = 0; y < e->h; y++) {
+        e->bad += info[y].bad;
+        e->total += info[y].power * (6.2831853071795865 / e->w);
         e->uniform &= info[y].level >= 0.0f && info[y].level == info[0].level;
         top = info[y].power > top ? info[y].power : top;
         if (!(info[y].power > 0.0)) continue;
-        e->row0 = y < e->row0 ? y : e->row0, e->row1 = y + 1;
-        e->col0 = info[y].col0 < e->col0 ? info[y].col0 : e->col0, e->col1 = info[y].col1 > e->col1 ? info[y].col1 : e->col1;
+        e->row0 = y < e->row0 ? y : e->row0;
+        e->row1 = y + 1;
+        e->col0 = info[y].col0 < e->col0 ? info[y].col0 : e->col0;
+        e->col1 = info[y].col1 > e->col1 ? info[y].col1 : e->col1;
     }
-    for (y = 0; y < e->h; y++) {
-        double p = top > 0.0 ? info[y].power / top : 0.0;
+    for (uint32_t y = 0; y < e->h; y++) {
+        const double p = top > 0.0 ? info[y].power / top : 0.0;
         mcsi_put_weight(rows + y, (float)(p > 0.0 && p < 1e-30 ? 1e-30 : p));
     }
     mcsi_cdf_build(rows, e->h);
     MCSI_GUIDE_BUILD(guide, uint16_t, e->at.row_shift, rows, e->h);
-    for (y = 0; y < e->h; y++) mcsi_env_set_line(&line[y], y, e->w, e->h);
+    for (uint32_t y = 0; y < e->h; y++) mcsi_env_set_line(&line[y], y, e->w, e->h);
     e->sum = mcsi_env_sum(e);
     return top > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 MCS_FN mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im) {
-    mcs_status status = mcs_env_build_rows(e, bytes, im, 0, im ? im->h : 0);
+    const mcs_status status = mcs_env_build_rows(e, bytes, im, 0, im ? im->h : 0);
     return status ? status : mcs_env_finish(e, bytes, im);
 }
 
 /* A cumulative list and its guide as the builders leave them. */
 MCS_FN int mcsi_cdf_ok(const uint32_t *cdf, uint32_t n, const uint16_t *guide, uint32_t shift) {
-    uint32_t i, g, end = MCSI_ONE >> shift;
+    const uint32_t end = MCSI_ONE >> shift;
     if (cdf[0] != 0 || cdf[n] != MCSI_ONE) return 0;
-    for (i = 0; i < n; i++)
+    for (uint32_t i = 0; i < n; i++)
         if (cdf[i] > cdf[i + 1]) return 0;
-    for (g = 0; g < end; g++)
+    for (uint32_t g = 0; g < end; g++)
         if (guide[g] >= n || cdf[guide[g]] > g << shift || cdf[guide[g] + 1] <= g << shift) return 0;
     return guide[end] < n && cdf[guide[end]] < MCSI_ONE && cdf[guide[end] + 1] == MCSI_ONE;
 }
 /* Equal but for the compilers' freedom to contract a*b + c. */
 MCS_FN int mcsi_same(double a, double b, double relative) {
-    double slack = relative * (b < 0.0 ? -b : b);
+    const double slack = relative * (b < 0.0 ? -b : b);
     return a - b <= slack && b - a <= slack;
 }
 /* Whether a frame is orthonormal to 1e-4. Its nine numbers may be a product of rotations: with floats each of them leaves 3 * 2^-24
  * in every number, thus 2 sqrt(3) times as much in the dot product of two columns, 1e-4 after 160 of them. */
 MCSI_CORE int mcsi_dot_is(mcs_vec3 a, mcs_vec3 b, double want) {
-    double off = (double)a.x * (double)b.x + (double)a.y * (double)b.y + (double)a.z * (double)b.z - want;
+    const double off = (double)a.x * (double)b.x + (double)a.y * (double)b.y + (double)a.z * (double)b.z - want;
     return off <= 1e-4 && off >= -1e-4;
 }
 MCS_FN int mcsi_frame_ok(const mcs_frame *f) {
@@ -3612,33 +3919,38 @@ MCS_FN int mcsi_env_holds(const mcs_env *e, uint32_t row0, uint32_t row1, uint32
 }
 MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     mcsi_env_parts at;
-    mcsi_env_view v;
-    mcs_env turns;
-    const mcsi_env_info *info;
-    const uint32_t *cdf;
-    uint32_t y, row0, row1 = 0, col0, col1 = 0;
-    size_t i;
+    uint32_t row1 = 0;
+    uint32_t col1 = 0;
     if (!e || ((uintptr_t)e & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (bytes < sizeof *e) return MCS_ERR_MEMORY;
-    if (e->magic != MCSI_ENV_MAGIC || e->version != MCSI_ENV_VERSION || !mcs_env_bytes(e->w, e->h)) return MCS_ERR_FORMAT;
+    if (e->magic != MCSI_ENV_MAGIC || e->version != MCSI_ENV_VERSION || !mcs_env_bytes(e->w, e->h))
+        return MCS_ERR_FORMAT;
     at = mcsi_env_layout(e->w, e->h);
-    for (i = 0; i < sizeof at; i++) /* memcmp, which kernels do not have */
+    for (size_t i = 0; i < sizeof at; i++) /* memcmp, which kernels do not have */
         if (((const char *)&at)[i] != ((const char *)&e->at)[i]) return MCS_ERR_FORMAT;
     if (e->uniform > 1 || e->incomplete > 1 || !(e->total >= 0.0 && e->total <= DBL_MAX)) return MCS_ERR_FORMAT;
     if (!mcsi_frame_ok(&e->frame)) return MCS_ERR_FORMAT;
     if (bytes < at.bytes) return MCS_ERR_MEMORY;
     if (e->sum != mcsi_env_sum(e)) return MCS_ERR_FORMAT;
-    info = (const mcsi_env_info *)(const void *)((const char *)e + at.info);
-    for (y = 0; y < e->h; y++)
-        if (info[y].sum != mcsi_env_row_sum(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), at.guides)) return MCS_ERR_FORMAT;
-    v = mcsi_env_whole(e), row0 = e->h, col0 = e->w, turns.w = e->w, mcsi_env_set_turn(&turns);
-    if (!mcsi_same((double)e->turn, (double)turns.turn, 1.2e-7) || !mcsi_same((double)e->inner, (double)turns.inner, 1.2e-7))
+    const mcsi_env_info *info = (const mcsi_env_info *)(const void *)((const char *)e + at.info);
+    for (uint32_t y = 0; y < e->h; y++)
+        if (info[y].sum != mcsi_env_row_sum(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), at.guides))
+            return MCS_ERR_FORMAT;
+    const mcsi_env_view v = mcsi_env_whole(e);
+    uint32_t row0 = e->h;
+    uint32_t col0 = e->w;
+    mcs_env turns;
+    turns.w = e->w;
+    mcsi_env_set_turn(&turns);
+    if (!mcsi_same((double)e->turn, (double)turns.turn, 1.2e-7) ||
+        !mcsi_same((double)e->inner, (double)turns.inner, 1.2e-7))
         return MCS_ERR_FORMAT;
-    for (y = 0; y <= (e->h + 1) / 2; y++)
+    for (uint32_t y = 0; y <= (e->h + 1) / 2; y++)
         if (!mcsi_same(mcsi_env_edge(e)[y], mcsi_one_minus_cos_pi((double)y / e->h), 1e-14)) return MCS_ERR_FORMAT;
-    if (e->uniform) return mcsi_env_holds(e, 0, e->h, 0, e->w) || mcsi_env_holds(e, e->h, 0, e->w, 0) ? MCS_OK : MCS_ERR_FORMAT;
+    if (e->uniform)
+        return mcsi_env_holds(e, 0, e->h, 0, e->w) || mcsi_env_holds(e, e->h, 0, e->w, 0) ? MCS_OK : MCS_ERR_FORMAT;
     if (!mcsi_cdf_ok(v.rows, e->h, v.guide, v.shift)) return MCS_ERR_FORMAT;
-    for (y = 0; y < e->h; y++) {
+    for (uint32_t y = 0; y < e->h; y++) {
         const mcsi_env_line *line = v.line + y;
         mcsi_env_line want;
         mcsi_env_set_line(&want, y, e->w, e->h);
@@ -3647,7 +3959,10 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
             return MCS_ERR_FORMAT;
         if (v.rows[y] == v.rows[y + 1]) continue;
         if (!mcsi_cdf_ok(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.col_shift)) return MCS_ERR_FORMAT;
-        cdf = mcsi_env_cdf(e, y), row0 = y < row0 ? y : row0, row1 = y + 1;
+        const uint32_t *cdf = mcsi_env_cdf(e, y);
+        row0 = y < row0 ? y : row0;
+        row1 = y + 1;
+        size_t i;
         for (i = 0; cdf[i + 1] == 0; i++) {}
         col0 = i < col0 ? (uint32_t)i : col0;
         for (i = e->w; cdf[i - 1] == MCSI_ONE; i--) {}
@@ -3659,23 +3974,26 @@ MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
 /* ---- drawing ---- */
 
 /* A random number times 2^31. */
-MCSI_CORE double mcsi_times_one(float u, int32_t *ok) { return (double)mcsi_unit(u, ok) * MCSI_ONE; }
+MCSI_CORE double mcsi_times_one(float u, int32_t *ok) { return (double)mcsi_sane_u(u, ok) * MCSI_ONE; }
 /* The place of U in row i of the view. */
 MCSI_CORE double mcsi_env_within(const mcsi_env_view *v, uint32_t i, double U) {
-    mcsi_env_span part;
     if (!v->span) return U;
-    part = v->span[i], U *= part.mass * (1.0 / MCSI_ONE); /* and the sum must not round up to the end */
+    const mcsi_env_span part = v->span[i];
+    U *= part.mass * (1.0 / MCSI_ONE); /* and the sum must not round up to the end */
     U = part.begin + (U < part.mass - 4.76837158203125e-07 ? U : part.mass - 4.76837158203125e-07);
-    U -= U > MCSI_ONE - 2.384185791015625e-07 ? (double)MCSI_ONE : 0.0; /* the next double is 2^31: one of x87 may lie between */
+    U -= U > MCSI_ONE - 2.384185791015625e-07 ? (double)MCSI_ONE
+                                              : 0.0; /* the next double is 2^31: one of x87 may lie between */
     return U > 0.0 ? U : 0.0;
 }
 /* Row of the view. */
 MCSI_CORE uint32_t mcsi_env_draw_row(const mcsi_env_view *v, double U2, mcsi_env_point *p) {
-    uint32_t U = (uint32_t)(int32_t)U2, i;
+    const uint32_t U = (uint32_t)(int32_t)U2;
     const uint16_t *guide = v->guide + (U >> v->shift);
-    i = mcsi_cdf_search(v->rows, v->count, guide[0], guide[1], U);
-    p->row_rest = (float)(U2 - (int32_t)v->rows[i]), p->row_mass = (float)(v->rows[i + 1] - v->rows[i]);
-    p->edge = v->line[i].edge, p->height = v->line[i].height;
+    const uint32_t i = mcsi_cdf_search(v->rows, v->count, guide[0], guide[1], U);
+    p->row_rest = (float)(U2 - (int32_t)v->rows[i]);
+    p->row_mass = (float)(v->rows[i + 1] - v->rows[i]);
+    p->edge = v->line[i].edge;
+    p->height = v->line[i].height;
     return i;
 }
 /* Columns from one guide entry to the next, which hold U, and the first of eight that do if those are alike. */
@@ -3684,8 +4002,11 @@ typedef struct {
 } mcsi_env_cells;
 MCSI_CORE mcsi_env_cells mcsi_env_cells_of(const uint16_t *guide, uint32_t w, uint32_t U, uint32_t shift) {
     mcsi_env_cells c;
-    c.lo = guide[0], c.hi = guide[1], c.first = c.lo + (uint32_t)((uint64_t)(U & ((1u << shift) - 1)) * (c.hi - c.lo) >> shift);
-    c.first = c.first < 4 ? 0 : c.first - 4, c.first = c.first + 8 < w ? c.first : w < 8 ? 0 : w - 8;
+    c.lo = guide[0];
+    c.hi = guide[1];
+    c.first = c.lo + (uint32_t)((uint64_t)(U & ((1u << shift) - 1)) * (c.hi - c.lo) >> shift);
+    c.first = c.first < 4 ? 0 : c.first - 4;
+    c.first = c.first + 8 < w ? c.first : w < 8 ? 0 : w - 8;
     return c;
 }
 /* The column that holds U. Both ends of the eight are asked for at once, so that memory is waited for once. */
@@ -3696,25 +4017,28 @@ MCSI_CORE uint32_t mcsi_env_search(const uint32_t *cdf, uint32_t w, const mcsi_e
     c += (uint32_t)(cdf[c + 2] <= U) << 1;
     return c + (uint32_t)(cdf[c + 1] <= U);
 }
-MCSI_CORE uint32_t mcsi_env_draw_col(const uint32_t *cdf, uint32_t w, const mcsi_env_cells *cells, double U1, mcsi_env_point *p,
-                                     uint32_t *mass) {
-    uint32_t c = mcsi_env_search(cdf, w, cells, (uint32_t)(int32_t)U1);
+MCSI_CORE uint32_t mcsi_env_draw_col(const uint32_t *cdf, uint32_t w, const mcsi_env_cells *cells, double U1,
+                                     mcsi_env_point *p, uint32_t *mass) {
+    const uint32_t c = mcsi_env_search(cdf, w, cells, (uint32_t)(int32_t)U1);
     *mass = cdf[c + 1] - cdf[c];
-    p->col = (float)(int32_t)c, p->col_rest = (float)(U1 - (int32_t)cdf[c]), p->col_mass = (float)*mass;
+    p->col = (float)(int32_t)c;
+    p->col_rest = (float)(U1 - (int32_t)cdf[c]);
+    p->col_mass = (float)*mass;
     return c;
 }
 /* Row of a direction that mcsi_env_locate has placed. */
 MCSI_CORE uint32_t mcsi_env_row_at(const mcs_env *e, float off_pole, float polar) {
     const double *edge = mcsi_env_edge(e);
-    uint32_t last = (e->h - 1) / 2, m = (uint32_t)(2.0f * polar * (float)e->h);
-    double t = (double)mcsi_abs(off_pole);
+    const uint32_t last = (e->h - 1) / 2;
+    uint32_t m = (uint32_t)(2.0f * polar * (float)e->h);
+    const double t = (double)mcsi_abs(off_pole);
     m = m < last ? m : last;
     while (m > 0 && t < edge[m]) m--;
     while (m < last && t >= edge[m + 1]) m++;
     return mcsi_bits(off_pole) < 0 ? e->h - 1 - m : m;
 }
 MCSI_CORE uint32_t mcsi_env_col_at(const mcs_env *e, float turns) {
-    uint32_t col = (uint32_t)((double)turns * e->w);
+    const uint32_t col = (uint32_t)((double)turns * e->w);
     return col < e->w ? col : e->w - 1;
 }
 /* Constant maps: solid angle of the rows and columns of the view over 4 pi, and a point of them. */
@@ -3723,37 +4047,50 @@ MCS_FN double mcsi_env_top(const mcs_env *e, uint32_t y) {
 }
 MCSI_CORE float mcsi_env_uniform_pdf(const mcs_env *e, const mcsi_env_view *v) {
     const double *edge = mcsi_env_edge(e);
-    uint32_t end = v->row + v->count;
-    double height = 2 * v->row >= e->h ? edge[e->h - v->row] - edge[e->h - end] : mcsi_env_top(e, end) - mcsi_env_top(e, v->row);
+    const uint32_t end = v->row + v->count;
+    const double height =
+        2 * v->row >= e->h ? edge[e->h - v->row] - edge[e->h - end] : mcsi_env_top(e, end) - mcsi_env_top(e, v->row);
     return (float)(1.0 / (6.2831853071795865 * height * v->cols / e->w));
 }
-MCSI_CORE void mcsi_env_draw_uniform(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, mcsi_env_point *p) {
-    double a = mcsi_env_top(e, v->row), b = mcsi_env_top(e, v->row + v->count), margin = MCSI_ENV_MARGIN * e->h, t;
+MCSI_CORE void mcsi_env_draw_uniform(const mcs_env *e, const mcsi_env_view *v, double U1, double U2,
+                                     mcsi_env_point *p) {
+    double a = mcsi_env_top(e, v->row);
+    double b = mcsi_env_top(e, v->row + v->count);
+    const double margin = MCSI_ENV_MARGIN * e->h;
     double at = v->col + U1 / MCSI_ONE * v->cols;
-    a += (mcsi_env_top(e, v->row + 1) - a) * margin, b -= (b - mcsi_env_top(e, v->row + v->count - 1)) * margin;
-    t = a + (b - a) * (U2 / MCSI_ONE), at = at < e->w ? at : at - e->w;
-    p->row_rest = 0.5f, p->row_mass = 1.0f, p->edge = (float)(t < 1.0 ? t : 2.0 - t), p->height = t < 1.0 ? FLT_MIN : -FLT_MIN;
-    p->col = (float)(uint32_t)at, p->col_rest = (float)(at - (uint32_t)at), p->col_mass = 1.0f;
+    a += (mcsi_env_top(e, v->row + 1) - a) * margin;
+    b -= (b - mcsi_env_top(e, v->row + v->count - 1)) * margin;
+    const double t = a + (b - a) * (U2 / MCSI_ONE);
+    at = at < e->w ? at : at - e->w;
+    p->row_rest = 0.5f;
+    p->row_mass = 1.0f;
+    p->edge = (float)(t < 1.0 ? t : 2.0 - t);
+    p->height = t < 1.0 ? FLT_MIN : -FLT_MIN;
+    p->col = (float)(uint32_t)at;
+    p->col_rest = (float)(at - (uint32_t)at);
+    p->col_mass = 1.0f;
 }
 MCSI_CORE int mcsi_env_in_view(const mcs_env *e, const mcsi_env_view *v, uint32_t row, uint32_t col) {
     return row - v->row < v->count && (col >= v->col ? col - v->col : col + e->w - v->col) < v->cols;
 }
 MCSI_CORE float mcsi_env_density(const mcs_env *e, const mcsi_env_view *v, uint32_t row, uint32_t col) {
-    const uint32_t *cdf;
-    uint32_t i = row - v->row;
+    const uint32_t i = row - v->row;
     if (!mcsi_env_in_view(e, v, row, col)) return 0.0f;
     if (v->uniform) return mcsi_env_uniform_pdf(e, v);
     if (v->rows[i] == v->rows[i + 1] || col < e->col0 || col >= e->col1) return 0.0f;
-    cdf = mcsi_env_cdf(e, row) + col;
+    const uint32_t *cdf = mcsi_env_cdf(e, row) + col;
     return (float)((cdf[1] - cdf[0]) * mcsi_env_scale(v, i));
 }
 /* Of a map that is not constant: the point, its texel, the density when `part` of all draws come here. */
-MCSI_CORE float mcsi_env_draw_point(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, mcsi_env_point *p,
-                                    uint32_t *row, uint32_t *col) {
-    uint32_t i = mcsi_env_draw_row(v, U2, p), mass, U;
-    mcsi_env_cells cells;
-    *row = v->row + i, U1 = mcsi_env_within(v, i, U1), U = (uint32_t)(int32_t)U1;
-    cells = mcsi_env_cells_of(mcsi_env_guide(e, *row) + (U >> e->at.col_shift), e->w, U, e->at.col_shift);
+MCSI_CORE float mcsi_env_draw_point(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part,
+                                    mcsi_env_point *p, uint32_t *row, uint32_t *col) {
+    const uint32_t i = mcsi_env_draw_row(v, U2, p);
+    *row = v->row + i;
+    U1 = mcsi_env_within(v, i, U1);
+    const uint32_t U = (uint32_t)(int32_t)U1;
+    const mcsi_env_cells cells =
+        mcsi_env_cells_of(mcsi_env_guide(e, *row) + (U >> e->at.col_shift), e->w, U, e->at.col_shift);
+    uint32_t mass;
     *col = mcsi_env_draw_col(mcsi_env_cdf(e, *row), e->w, &cells, U1, p, &mass);
     return (float)(mass * (part * mcsi_env_scale(v, i)));
 }
@@ -3761,24 +4098,28 @@ MCSI_CORE float mcsi_env_draw_point(const mcs_env *e, const mcsi_env_view *v, do
 MCSI_CORE void mcsi_env_texel_of(const mcs_env *e, mcs_vec3 w, uint32_t *col, uint32_t *row) {
     float off_pole, polar, turns;
     mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
-    *row = mcsi_env_row_at(e, off_pole, polar), *col = mcsi_env_col_at(e, turns);
+    *row = mcsi_env_row_at(e, off_pole, polar);
+    *col = mcsi_env_col_at(e, turns);
 }
 MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, int ok) {
     mcsi_env_point p;
     mcs_texel r;
     if (v->uniform) {
         mcsi_env_draw_uniform(e, v, U1, U2, &p);
-        r.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner), mcsi_env_texel_of(e, r.w, &r.col, &r.row);
+        r.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner);
+        mcsi_env_texel_of(e, r.w, &r.col, &r.row);
         r.pdf = ok ? (float)(part * (double)mcsi_env_uniform_pdf(e, v)) : 0.0f;
     } else {
-        r.pdf = mcsi_env_draw_point(e, v, U1, U2, part, &p, &r.row, &r.col), r.pdf = ok ? r.pdf : 0.0f;
+        r.pdf = mcsi_env_draw_point(e, v, U1, U2, part, &p, &r.row, &r.col);
+        r.pdf = ok ? r.pdf : 0.0f;
         r.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner);
     }
     return r;
 }
 MCSI_CORE mcs_texel mcsi_env_draw_u(const mcs_env *e, const mcsi_env_view *v, float u1, float u2) {
     int32_t ok = 1;
-    double U1 = mcsi_times_one(u1, &ok), U2 = mcsi_times_one(u2, &ok);
+    const double U1 = mcsi_times_one(u1, &ok);
+    const double U2 = mcsi_times_one(u2, &ok);
     return mcsi_env_draw(e, v, U1, U2, 1.0, ok);
 }
 /* Texel of a direction and the place in it, down from its upper border and across from its first azimuth; 0 for bad directions. */
@@ -3789,22 +4130,24 @@ typedef struct {
 MCSI_CORE int mcsi_env_find(const mcs_env *e, mcs_vec3 w, mcsi_env_place_of *at) {
     const double *edge = mcsi_env_edge(e);
     float off_pole, polar, turns;
-    double t;
-    uint32_t m;
     mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
     if (!(off_pole < 4.0f)) return 0;
-    at->row = mcsi_env_row_at(e, off_pole, polar), at->col = mcsi_env_col_at(e, turns), m = mcsi_env_from_pole(at->row, e->h);
-    t = ((double)mcsi_abs(off_pole) - edge[m]) / (edge[m + 1] - edge[m]), t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
-    at->down = mcsi_bits(off_pole) < 0 ? 1.0 - t : t, at->across = (double)turns * e->w - at->col;
+    at->row = mcsi_env_row_at(e, off_pole, polar);
+    at->col = mcsi_env_col_at(e, turns);
+    const uint32_t m = mcsi_env_from_pole(at->row, e->h);
+    double t = ((double)mcsi_abs(off_pole) - edge[m]) / (edge[m + 1] - edge[m]);
+    t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
+    at->down = mcsi_bits(off_pole) < 0 ? 1.0 - t : t;
+    at->across = (double)turns * e->w - at->col;
     return 1;
 }
 MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, mcs_vec3 w) {
     float off_pole, polar, turns;
-    mcs_texel r;
-    int ok;
     mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
-    ok = off_pole < 4.0f;
-    r.row = ok ? mcsi_env_row_at(e, off_pole, polar) : 0, r.col = mcsi_env_col_at(e, turns);
+    const int ok = off_pole < 4.0f;
+    mcs_texel r;
+    r.row = ok ? mcsi_env_row_at(e, off_pole, polar) : 0;
+    r.col = mcsi_env_col_at(e, turns);
     r.w = ok ? w : e->frame.n;
     r.pdf = ok ? mcsi_env_density(e, v, r.row, r.col) : 0.0f;
     return r;
@@ -3813,49 +4156,58 @@ MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, m
 /* Blocks of points, so that the misses of one stage (guide, cumulative sums) are under way together before the next one needs
  * them: aim all of them, then land. */
 MCSI_CORE void mcsi_env_block_start(mcsi_env_block *b, size_t n) {
-    size_t k;
     if (n >= MCSI_ENV_BLOCK) return;
     MCSI_FILL(b, 0, sizeof *b); /* directions are computed by whole vectors */
-    for (k = n; k < MCSI_ENV_BLOCK; k++) b->row_mass[k] = b->col_mass[k] = 1.0f;
+    for (size_t k = n; k < MCSI_ENV_BLOCK; k++) b->row_mass[k] = b->col_mass[k] = 1.0f;
 }
-MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi_env_block *b, size_t k, double U1, double U2,
-                                  double part, int ok) {
+MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi_env_block *b, size_t k, double U1,
+                                  double U2, double part, int ok) {
+    b->cdf[k] = NULL;
+    b->pdf[k] = ok ? 1.0f : 0.0f;
     mcsi_env_point p;
-    b->cdf[k] = NULL, b->pdf[k] = ok ? 1.0f : 0.0f;
     if (v->uniform) {
         mcsi_env_draw_uniform(e, v, U1, U2, &p);
-        b->col[k] = p.col, b->col_rest[k] = p.col_rest, b->col_mass[k] = p.col_mass;
+        b->col[k] = p.col;
+        b->col_rest[k] = p.col_rest;
+        b->col_mass[k] = p.col_mass;
         b->pdf[k] *= (float)(part * (double)mcsi_env_uniform_pdf(e, v));
     } else {
-        uint32_t i = mcsi_env_draw_row(v, U2, &p);
-        b->in_row[k] = v->row + i, b->at[k] = mcsi_env_within(v, i, U1), b->scale[k] = part * mcsi_env_scale(v, i);
-        b->cdf[k] = mcsi_env_cdf(e, v->row + i),
+        const uint32_t i = mcsi_env_draw_row(v, U2, &p);
+        b->in_row[k] = v->row + i;
+        b->at[k] = mcsi_env_within(v, i, U1);
+        b->scale[k] = part * mcsi_env_scale(v, i);
+        b->cdf[k] = mcsi_env_cdf(e, v->row + i);
         b->guide[k] = mcsi_env_guide(e, v->row + i) + ((uint32_t)(int32_t)b->at[k] >> e->at.col_shift);
         MCSI_PREFETCH(b->guide[k]);
     }
-    b->row_rest[k] = p.row_rest, b->row_mass[k] = p.row_mass, b->edge[k] = p.edge, b->height[k] = p.height;
+    b->row_rest[k] = p.row_rest;
+    b->row_mass[k] = p.row_mass;
+    b->edge[k] = p.edge;
+    b->height[k] = p.height;
 }
 MCS_FN void mcsi_env_block_land(const mcs_env *e, mcsi_env_block *b, size_t n, float *x, float *y, float *z, float *pdf,
                                 uint32_t *col, uint32_t *row) {
     mcsi_env_cells cells[MCSI_ENV_BLOCK];
-    uint32_t mass;
-    size_t k;
-    int even;
-    for (k = 0; k < n; k++) {
+    for (size_t k = 0; k < n; k++) {
         if (!b->cdf[k]) continue;
         cells[k] = mcsi_env_cells_of(b->guide[k], e->w, (uint32_t)(int32_t)b->at[k], e->at.col_shift);
-        MCSI_PREFETCH(b->cdf[k] + cells[k].first), MCSI_PREFETCH(b->cdf[k] + cells[k].first + 8);
+        MCSI_PREFETCH(b->cdf[k] + cells[k].first);
+        MCSI_PREFETCH(b->cdf[k] + cells[k].first + 8);
     }
-    for (k = 0; k < n; k++) {
-        mcsi_env_point p;
+    for (size_t k = 0; k < n; k++) {
         if (!b->cdf[k]) continue;
+        uint32_t mass;
+        mcsi_env_point p;
         b->in_col[k] = mcsi_env_draw_col(b->cdf[k], e->w, &cells[k], b->at[k], &p, &mass);
-        b->col[k] = p.col, b->col_rest[k] = p.col_rest, b->col_mass[k] = p.col_mass;
+        b->col[k] = p.col;
+        b->col_rest[k] = p.col_rest;
+        b->col_mass[k] = p.col_mass;
         b->pdf[k] *= (float)(mass * b->scale[k]);
     }
-    even = !b->cdf[0] && (col || row); /* a constant map: texels lie where directions do */
+    const int even = !b->cdf[0] && (col || row); /* a constant map: texels lie where directions do */
     if (x || y || z || even) mcsi_env_directions_n(&e->frame, n, b, e->turn, e->inner);
-    for (k = 0; even && k < n; k++) mcsi_env_texel_of(e, mcsi_vec3(b->x[k], b->y[k], b->z[k]), &b->in_col[k], &b->in_row[k]);
+    for (size_t k = 0; even && k < n; k++)
+        mcsi_env_texel_of(e, mcsi_vec3(b->x[k], b->y[k], b->z[k]), &b->in_col[k], &b->in_row[k]);
     if (x) MCSI_COPY(x, b->x, n * sizeof *x);
     if (y) MCSI_COPY(y, b->y, n * sizeof *y);
     if (z) MCSI_COPY(z, b->z, n * sizeof *z);
@@ -3863,44 +4215,46 @@ MCS_FN void mcsi_env_block_land(const mcs_env *e, mcsi_env_block *b, size_t n, f
     if (col) MCSI_COPY(col, b->in_col, n * sizeof *col);
     if (row) MCSI_COPY(row, b->in_row, n * sizeof *row);
 }
-MCS_FN void mcsi_env_draw_n(const mcs_env *e, const mcsi_env_view *v, size_t n, const float *u1, const float *u2, float *x,
-                            float *y, float *z, float *pdf, uint32_t *col, uint32_t *row) {
+MCS_FN void mcsi_env_draw_n(const mcs_env *e, const mcsi_env_view *v, size_t n, const float *u1, const float *u2,
+                            float *x, float *y, float *z, float *pdf, uint32_t *col, uint32_t *row) {
     mcsi_env_block b;
-    size_t i, k, m;
     mcsi_env_block_start(&b, n);
-    for (i = 0; i < n; i += m) {
+    size_t m;
+    for (size_t i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
-        for (k = 0; k < m; k++) {
+        for (size_t k = 0; k < m; k++) {
             int32_t ok = 1;
-            double U1 = mcsi_times_one(u1[i + k], &ok), U2 = mcsi_times_one(u2[i + k], &ok);
+            const double U1 = mcsi_times_one(u1[i + k], &ok);
+            const double U2 = mcsi_times_one(u2[i + k], &ok);
             mcsi_env_block_aim(e, v, &b, k, U1, U2, 1.0, ok);
         }
         mcsi_env_block_land(e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL,
                             col ? col + i : NULL, row ? row + i : NULL);
     }
 }
-MCS_FN void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf,
-                             uint32_t *col, uint32_t *row) {
-    mcsi_env_view v = mcsi_env_whole(e);
+MCS_FN void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                             float *pdf, uint32_t *col, uint32_t *row) {
+    const mcsi_env_view v = mcsi_env_whole(e);
     mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf, col, row);
 }
 MCS_FN void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
                             uint32_t *row, float *pdf) {
-    mcsi_env_view v = mcsi_env_whole(e);
-    float off_pole[MCSI_ENV_BLOCK], polar[MCSI_ENV_BLOCK], turns[MCSI_ENV_BLOCK];
+    const mcsi_env_view v = mcsi_env_whole(e);
     uint32_t at_row[MCSI_ENV_BLOCK], at_col[MCSI_ENV_BLOCK];
-    size_t i, k, m;
-    for (i = 0; i < n; i += m) {
+    size_t m;
+    for (size_t i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
+        float off_pole[MCSI_ENV_BLOCK], polar[MCSI_ENV_BLOCK], turns[MCSI_ENV_BLOCK];
         mcsi_env_locate_n(&e->frame, m, x + i, y + i, z + i, off_pole, polar, turns);
-        for (k = 0; k < m; k++) {
-            int ok = off_pole[k] < 4.0f;
-            at_row[k] = ok ? mcsi_env_row_at(e, off_pole[k], polar[k]) : e->h, at_col[k] = mcsi_env_col_at(e, turns[k]);
+        for (size_t k = 0; k < m; k++) {
+            const int ok = off_pole[k] < 4.0f;
+            at_row[k] = ok ? mcsi_env_row_at(e, off_pole[k], polar[k]) : e->h;
+            at_col[k] = mcsi_env_col_at(e, turns[k]);
             if (pdf && ok && !v.uniform) MCSI_PREFETCH(mcsi_env_cdf(e, at_row[k]) + at_col[k]);
             if (col) col[i + k] = at_col[k];
             if (row) row[i + k] = ok ? at_row[k] : 0;
         }
-        for (k = 0; pdf && k < m; k++) pdf[i + k] = mcsi_env_density(e, &v, at_row[k], at_col[k]);
+        for (size_t k = 0; pdf && k < m; k++) pdf[i + k] = mcsi_env_density(e, &v, at_row[k], at_col[k]);
     }
 }
 MCS_FN void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
@@ -3908,26 +4262,27 @@ MCS_FN void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const floa
 }
 #endif
 MCS_FN mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2) {
-    mcsi_env_view v = mcsi_env_whole(e);
+    const mcsi_env_view v = mcsi_env_whole(e);
     return mcsi_env_draw_u(e, &v, u1, u2);
 }
 MCS_FN mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2) {
-    mcsi_env_view v = mcsi_env_whole(e);
+    const mcsi_env_view v = mcsi_env_whole(e);
     return mcsi_env_draw(e, &v, 0.5 * b1, 0.5 * b2, 1.0, 1);
 }
 MCS_FN mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w) {
-    mcsi_env_view v = mcsi_env_whole(e);
+    const mcsi_env_view v = mcsi_env_whole(e);
     return mcsi_env_look_up(e, &v, w);
 }
 MCS_FN float mcs_env_pdf(const mcs_env *e, mcs_vec3 w) { return mcs_env_texel(e, w).pdf; }
 MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
-    mcsi_env_view v = mcsi_env_whole(e);
+    const mcsi_env_view v = mcsi_env_whole(e);
     mcsi_env_place_of at;
-    double u1, u2;
     if (!mcsi_env_find(e, w, &at)) return mcsi_vec2(0.0f, 0.0f);
+    double u1, u2;
     if (v.uniform) {
-        double a = mcsi_env_top(e, at.row);
-        u1 = (at.col + at.across) / e->w, u2 = 0.5 * (a + at.down * (mcsi_env_top(e, at.row + 1) - a));
+        const double a = mcsi_env_top(e, at.row);
+        u1 = (at.col + at.across) / e->w;
+        u2 = 0.5 * (a + at.down * (mcsi_env_top(e, at.row + 1) - a));
     } else {
         const uint32_t *cdf = mcsi_env_cdf(e, at.row) + at.col;
         u1 = v.rows[at.row] < v.rows[at.row + 1] ? (cdf[0] + at.across * (cdf[1] - cdf[0])) / MCSI_ONE : 0.0;
@@ -3937,7 +4292,7 @@ MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
 }
 MCS_FN float mcs_env_weight(const mcs_env *e, float pdf) {
     MCS_ASSERT(!e->incomplete);
-    return mcsi_keep(!e->incomplete & (pdf > 0.0f), mcsi_quotient(1.0f, pdf));
+    return mcsi_sane_result(!e->incomplete & (pdf > 0.0f), mcsi_quotient(1.0f, pdf));
 }
 
 /* ---- windows ---- */
@@ -3945,55 +4300,65 @@ MCS_FN float mcs_env_weight(const mcs_env *e, float pdf) {
 MCSI_CORE mcsi_env_view mcsi_env_part(const mcs_env *e, const mcs_env_window *m) {
     mcsi_env_view v;
     v.line = (const mcsi_env_line *)(const void *)((const char *)e + e->at.line) + m->row;
-    v.span = (const mcsi_env_span *)(const void *)(m + 1), v.rows = (const uint32_t *)(const void *)(v.span + m->rows);
+    v.span = (const mcsi_env_span *)(const void *)(m + 1);
+    v.rows = (const uint32_t *)(const void *)(v.span + m->rows);
     v.guide = (const uint16_t *)(const void *)(v.rows + m->rows + 1);
-    v.row = m->row, v.count = m->rows, v.col = m->col, v.cols = m->cols, v.shift = m->shift, v.uniform = m->uniform;
+    v.row = m->row;
+    v.count = m->rows;
+    v.col = m->col;
+    v.cols = m->cols;
+    v.shift = m->shift;
+    v.uniform = m->uniform;
     return v;
 }
 MCS_FN size_t mcs_env_window_bytes(uint32_t rows) {
     if (rows == 0 || rows > MCSI_ENV_MAX) return 0;
-    return (size_t)mcsi_up8(sizeof(mcs_env_window) + rows * (sizeof(mcsi_env_span) + sizeof(uint32_t)) + sizeof(uint32_t) +
-                            ((MCSI_ONE >> mcsi_guide_shift(rows, 1)) + 1) * sizeof(uint16_t));
+    return (size_t)mcsi_up8(sizeof(mcs_env_window) + rows * (sizeof(mcsi_env_span) + sizeof(uint32_t)) +
+                            sizeof(uint32_t) + ((MCSI_ONE >> mcsi_guide_shift(rows, 1)) + 1) * sizeof(uint16_t));
 }
-MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows, uint32_t col,
-                                       uint32_t cols) {
-    mcsi_env_span *span;
-    mcsi_env_view all;
-    uint32_t *cdf, i;
-    uint16_t *guide;
-    double total;
+MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
+                                       uint32_t col, uint32_t cols) {
     if (!m || !e || ((uintptr_t)m & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (rows == 0 || cols == 0 || rows > e->h || row > e->h - rows || cols > e->w || col >= e->w) return MCS_ERR_SIZE;
     if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
-    all = mcsi_env_whole(e), span = (mcsi_env_span *)(void *)(m + 1);
-    cdf = (uint32_t *)(void *)(span + rows), guide = (uint16_t *)(void *)(cdf + rows + 1);
+    const mcsi_env_view all = mcsi_env_whole(e);
+    mcsi_env_span *span = (mcsi_env_span *)(void *)(m + 1);
+    uint32_t *cdf = (uint32_t *)(void *)(span + rows);
+    uint16_t *guide = (uint16_t *)(void *)(cdf + rows + 1);
     MCSI_FILL(m, 0, mcs_env_window_bytes(rows)); /* the guide does not always fill its part */
-    m->row = row, m->rows = rows, m->col = col, m->cols = cols, m->shift = mcsi_guide_shift(rows, 1);
-    for (i = 0; i < rows; i++) {
-        uint32_t mass = e->uniform ? 0 : all.rows[row + i + 1] - all.rows[row + i], end = col + cols;
+    m->row = row;
+    m->rows = rows;
+    m->col = col;
+    m->cols = cols;
+    m->shift = mcsi_guide_shift(rows, 1);
+    for (uint32_t i = 0; i < rows; i++) {
+        const uint32_t mass = e->uniform ? 0 : all.rows[row + i + 1] - all.rows[row + i];
+        const uint32_t end = col + cols;
         if (mass) {
             const uint32_t *c = mcsi_env_cdf(e, row + i);
-            span[i].begin = c[col], span[i].mass = end <= e->w ? c[end] - c[col] : MCSI_ONE - c[col] + c[end - e->w];
+            span[i].begin = c[col];
+            span[i].mass = end <= e->w ? c[end] - c[col] : MCSI_ONE - c[col] + c[end - e->w];
         }
         mcsi_put_weight(cdf + i, (float)((double)mass * span[i].mass));
     }
-    total = mcsi_cdf_build(cdf, rows);
+    const double total = mcsi_cdf_build(cdf, rows);
     m->uniform = !(total > 0.0);
     MCSI_GUIDE_BUILD(guide, uint16_t, m->shift, cdf, rows);
     return m->uniform && !(e->uniform && e->total > 0.0) ? MCS_UNIFORM : MCS_OK;
 }
 MCS_FN mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2) {
-    mcsi_env_view v = mcsi_env_part(e, m);
+    const mcsi_env_view v = mcsi_env_part(e, m);
     return mcsi_env_draw_u(e, &v, u1, u2);
 }
 MCS_FN float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_vec3 w) {
-    mcsi_env_view v = mcsi_env_part(e, m);
+    const mcsi_env_view v = mcsi_env_part(e, m);
     return mcsi_env_look_up(e, &v, w).pdf;
 }
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1, const float *u2, float *x,
-                                    float *y, float *z, float *pdf, uint32_t *col, uint32_t *row) {
-    mcsi_env_view v = mcsi_env_part(e, m);
+MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1,
+                                    const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
+                                    uint32_t *row) {
+    const mcsi_env_view v = mcsi_env_part(e, m);
     mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf, col, row);
 }
 #endif
@@ -4063,8 +4428,8 @@ enum {
     MCSI_TILE_PULL,
     MCSI_TILE_FIELDS
 };
-#define MCSI_ROW_LEAST 1e-30f           /* below it a sum of weights has too few digits left for shares */
-#define MCSI_FINE_BELOW 8.0f            /* tiles, of 4 pi alpha_x alpha_y cos(theta_o): below it a lobe needs a finer grid */
+#define MCSI_ROW_LEAST 1e-30f /* below it a sum of weights has too few digits left for shares */
+#define MCSI_FINE_BELOW 8.0f  /* tiles, of 4 pi alpha_x alpha_y cos(theta_o): below it a lobe needs a finer grid */
 #define MCSI_TILE_LEAST 3.18309873e-05f /* a ten-thousandth of a white matte surface that faces the light */
 typedef enum { MCS_PROFILE_GGX, MCS_PROFILE_GAUSS, MCS_PROFILE_PHONG } mcs_profile;
 /* The reflection as seen from the map: axes of the surface in its frame. */
@@ -4078,50 +4443,74 @@ typedef struct {
 /* Nearly exp(-x), x >= 0, and never less. */
 MCSI_CORE mcs_f mcsi_falloff(mcs_f x) {
     mcs_f p = 1.0f / (1.0f + 0.00390625f * mcsi_min(x, mcs_set(64.0f))); /* subnormal products would be slow */
-    p = p * p, p = p * p, p = p * p, p = p * p;
-    p = p * p, p = p * p, p = p * p, p = p * p;
+    p = p * p;
+    p = p * p;
+    p = p * p;
+    p = p * p;
+    p = p * p;
+    p = p * p;
+    p = p * p;
+    p = p * p;
     return p;
 }
 /* The lobe times cosine towards the light of a tile whose direction spreads: Ward (MCS_WARD_GMD), Phong, GGX. */
 MCSI_CORE mcs_f mcsi_tile_lobe(const mcsi_facing *s, mcs_vec3 w, mcs_f spread) {
-    mcs_f ax2 = s->ax2 + 0.25f * spread, ay2 = s->ay2 + 0.25f * spread, aa = ax2 * ay2, root = mcsi_sqrt(aa);
-    mcs_f hx = w.x + s->wo.x, hy = w.y + s->wo.y, hz = w.z + s->wo.z, hh = hx * hx + hy * hy + hz * hz;
-    mcs_f ratio, shadow, least = mcs_set(FLT_MIN);
+    const mcs_f ax2 = s->ax2 + 0.25f * spread;
+    const mcs_f ay2 = s->ay2 + 0.25f * spread;
+    const mcs_f aa = ax2 * ay2;
+    const mcs_f root = mcsi_sqrt(aa);
+    const mcs_f hx = w.x + s->wo.x;
+    const mcs_f hy = w.y + s->wo.y;
+    const mcs_f hz = w.z + s->wo.z;
+    const mcs_f hh = hx * hx + hy * hy + hz * hz;
+    const mcs_f least = mcs_set(FLT_MIN);
     if (s->profile == MCS_PROFILE_GAUSS) {
-        mcs_f h2 = hz * hz, a = hx * hx * ay2 + hy * hy * ax2, b = mcsi_max(aa * h2, least);
+        const mcs_f h2 = hz * hz;
+        mcs_f a = hx * hx * ay2 + hy * hy * ax2;
+        const mcs_f b = mcsi_max(aa * h2, least);
         a = mcsi_falloff(mcsi_min(a, 64.0f * b) / b); /* which is as far as it falls */
         return mcsi_quotient(MCSI_1_PI * a * hh * w.z, mcsi_max(root * h2 * h2, least));
     }
     if (s->profile == MCS_PROFILE_PHONG) {
-        mcs_f n = mcsi_max(0.5f / root - 2.0f, mcs_set(0.0f)), z = w.z - s->wo.z; /* h without its z: w less the mirror's */
+        const mcs_f n = mcsi_max(0.5f / root - 2.0f, mcs_set(0.0f));
+        const mcs_f z = w.z - s->wo.z; /* h without its z: w less the mirror's */
         return (n + 2.0f) * MCSI_1_2PI * mcsi_falloff(0.5f * n * (hx * hx + hy * hy + z * z)) * w.z;
     }
-    ratio = root * hh / mcsi_max(hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa, least);
-    shadow = s->wo.z * mcsi_sqrt(ax2 * w.x * w.x + ay2 * w.y * w.y + w.z * w.z) +
-             w.z * mcsi_sqrt(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
+    const mcs_f ratio = root * hh / mcsi_max(hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa, least);
+    const mcs_f shadow = s->wo.z * mcsi_sqrt(ax2 * w.x * w.x + ay2 * w.y * w.y + w.z * w.z) +
+                         w.z * mcsi_sqrt(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
     return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / mcsi_max(shadow, least);
 }
 /* Never 0, nor what bad axes make of it. */
-MCSI_CORE mcs_f mcsi_reflected(mcs_f f) { return mcsi_sel(f > 0.0f, mcsi_min(f, mcs_set(1e30f)), mcs_set(0.0f)) + MCSI_TILE_LEAST; }
+MCSI_CORE mcs_f mcsi_reflected(mcs_f f) {
+    return mcsi_sel(f > 0.0f, mcsi_min(f, mcs_set(1e30f)), mcs_set(0.0f)) + MCSI_TILE_LEAST;
+}
 /* Reflection towards the light of tiles; more than 0 wherever there may be light above the horizon. */
 MCSI_CORE mcs_f mcsi_tile_value(const mcs_frame *axes, const mcsi_facing *s, const float *tile, size_t stride) {
-    mcs_f r = mcs_load(tile + MCSI_TILE_RADIUS * stride);
-    mcs_f reach = mcsi_max(mcs_load(tile + MCSI_TILE_REACH * stride), mcs_set(1e-6f)); /* beyond the last tile it is 0 */
-    mcs_f c, crossing, cosine, f, zero = mcs_set(0.0f);
+    const mcs_f r = mcs_load(tile + MCSI_TILE_RADIUS * stride);
+    const mcs_f reach =
+        mcsi_max(mcs_load(tile + MCSI_TILE_REACH * stride), mcs_set(1e-6f)); /* beyond the last tile it is 0 */
+    const mcs_f zero = mcs_set(0.0f);
     mcs_vec3 m;
-    m.x = mcs_load(tile + MCSI_TILE_X * stride), m.y = mcs_load(tile + MCSI_TILE_Y * stride);
-    m.z = mcs_load(tile + MCSI_TILE_Z * stride), c = mcsi_dot(axes->n, m), crossing = mcsi_max(c + reach, zero);
-    cosine = mcsi_sel(c >= reach, c, crossing * crossing / (4.0f * reach)), f = MCSI_1_PI * cosine;
+    m.x = mcs_load(tile + MCSI_TILE_X * stride);
+    m.y = mcs_load(tile + MCSI_TILE_Y * stride);
+    m.z = mcs_load(tile + MCSI_TILE_Z * stride);
+    const mcs_f c = mcsi_dot(axes->n, m);
+    const mcs_f crossing = mcsi_max(c + reach, zero);
+    const mcs_f cosine = mcsi_sel(c >= reach, c, crossing * crossing / (4.0f * reach));
+    mcs_f f = MCSI_1_PI * cosine;
     if (s->matte < 1.0f) {
-        mcs_f unit = mcs_load(tile + MCSI_TILE_UNIT * stride);
-        mcs_vec3 w = mcsi_vec3(mcsi_dot(axes->s, m) * unit, mcsi_dot(axes->t, m) * unit, mcsi_max(c * unit, cosine));
+        const mcs_f unit = mcs_load(tile + MCSI_TILE_UNIT * stride);
+        const mcs_vec3 w =
+            mcsi_vec3(mcsi_dot(axes->s, m) * unit, mcsi_dot(axes->t, m) * unit, mcsi_max(c * unit, cosine));
         f = s->matte * f + (1.0f - s->matte) * mcsi_tile_lobe(s, w, mcs_load(tile + MCSI_TILE_SPREAD * stride));
     }
     return mcsi_sel(c + r > 0.0f, mcsi_reflected(f), zero);
 }
 /* Reflection towards the corners of tiles. */
 MCSI_CORE mcs_f mcsi_corner_value(const mcs_frame *axes, const mcsi_facing *s, mcs_vec3 w) {
-    mcs_f z = mcsi_max(mcsi_dot(axes->n, w), mcs_set(0.0f)), f = MCSI_1_PI * z;
+    const mcs_f z = mcsi_max(mcsi_dot(axes->n, w), mcs_set(0.0f));
+    mcs_f f = MCSI_1_PI * z;
     if (s->matte < 1.0f) {
         w = mcsi_vec3(mcsi_dot(axes->s, w), mcsi_dot(axes->t, w), z);
         f = s->matte * f + (1.0f - s->matte) * mcsi_tile_lobe(s, w, mcs_set(0.0f));
@@ -4134,17 +4523,24 @@ typedef struct {
     mcs_f v[4];
 } mcsi_warp;
 MCSI_CORE mcsi_warp mcsi_warp_make(mcs_f value, mcs_f pull, mcs_f v00, mcs_f v01, mcs_f v10, mcs_f v11) {
-    mcsi_warp w;
-    mcs_f least, mean;
     value = value * (1.0f - pull); /* so that no difference falls below 0 */
-    w.v[0] = value + pull * v00, w.v[1] = value + pull * v01, w.v[2] = value + pull * v10, w.v[3] = value + pull * v11;
-    mean = (w.v[0] + w.v[1]) + (w.v[2] + w.v[3]), least = 0.0075f * mean, mean = 1.0f / (0.25f * mean + least);
-    w.v[0] = (w.v[0] + least) * mean, w.v[1] = (w.v[1] + least) * mean, w.v[2] = (w.v[2] + least) * mean,
+    mcsi_warp w;
+    w.v[0] = value + pull * v00;
+    w.v[1] = value + pull * v01;
+    w.v[2] = value + pull * v10;
+    w.v[3] = value + pull * v11;
+    mcs_f mean = (w.v[0] + w.v[1]) + (w.v[2] + w.v[3]);
+    const mcs_f least = 0.0075f * mean;
+    mean = 1.0f / (0.25f * mean + least);
+    w.v[0] = (w.v[0] + least) * mean;
+    w.v[1] = (w.v[1] + least) * mean;
+    w.v[2] = (w.v[2] + least) * mean;
     w.v[3] = (w.v[3] + least) * mean;
     return w;
 }
 MCSI_CORE mcs_f mcsi_warp_density(const mcsi_warp *w, mcs_f t1, mcs_f t2) {
-    mcs_f a = w->v[0] + t2 * (w->v[1] - w->v[0]), b = w->v[2] + t2 * (w->v[3] - w->v[2]);
+    const mcs_f a = w->v[0] + t2 * (w->v[1] - w->v[0]);
+    const mcs_f b = w->v[2] + t2 * (w->v[3] - w->v[2]);
     return a + t1 * (b - a);
 }
 /* The place of u when a linear density has a and b at its ends. */
@@ -4153,49 +4549,61 @@ MCSI_CORE mcs_f mcsi_linear_place(mcs_f a, mcs_f b, mcs_f u) {
 }
 /* u1 and u2 become places; returns the density there. */
 MCSI_CORE mcs_f mcsi_warp_draw(const mcsi_warp *w, mcs_f *u1, mcs_f *u2) {
-    mcs_f a, b;
     *u2 = mcsi_linear_place(w->v[0] + w->v[2], w->v[1] + w->v[3], *u2);
-    a = w->v[0] + *u2 * (w->v[1] - w->v[0]), b = w->v[2] + *u2 * (w->v[3] - w->v[2]), *u1 = mcsi_linear_place(a, b, *u1);
+    const mcs_f a = w->v[0] + *u2 * (w->v[1] - w->v[0]);
+    const mcs_f b = w->v[2] + *u2 * (w->v[3] - w->v[2]);
+    *u1 = mcsi_linear_place(a, b, *u1);
     return a + *u1 * (b - a);
 }
 /* A grid of weights, light times value, column by column, as integers: cum[j][i] is the sum of row i's shares before column j,
  * cum[cols][i] that of the whole row. row[i] is the weight of a row. */
-MCSI_CORE void mcsi_grid_rows(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
-    size_t i, j;
-    for (i = 0; i < rows; i += MCSI_W) {
-        mcs_f sum = mcs_set(0.0f), scale;
+MCSI_CORE void mcsi_grid_rows(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum,
+                              float *row) {
+    for (size_t i = 0; i < rows; i += MCSI_W) {
+        mcs_f sum = mcs_set(0.0f);
         mcs_i at = mcsi_trunc(sum);
-        for (j = 0; j < cols; j++) sum = sum + mcs_load(light + j * rows + i) * mcs_load(value + j * rows + i);
-        scale = (16777216.0f - (float)cols) / mcsi_max(sum, mcs_set(MCSI_ROW_LEAST));
-        for (j = 0; j < cols; j++) {
-            mcs_f w = mcs_load(light + j * rows + i) * mcs_load(value + j * rows + i);
+        for (size_t j = 0; j < cols; j++) sum = sum + mcs_load(light + j * rows + i) * mcs_load(value + j * rows + i);
+        const mcs_f scale = (16777216.0f - (float)cols) / mcsi_max(sum, mcs_set(MCSI_ROW_LEAST));
+        for (size_t j = 0; j < cols; j++) {
+            const mcs_f w = mcs_load(light + j * rows + i) * mcs_load(value + j * rows + i);
             mcsi_store_int(cum + j * rows + i, at);
             at = at + mcsi_trunc(mcsi_sel(w > 0.0f, w * scale + 1.0f, mcs_set(0.0f)));
         }
-        mcsi_store_int(cum + cols * rows + i, at), mcs_store(row + i, sum);
+        mcsi_store_int(cum + cols * rows + i, at);
+        mcs_store(row + i, sum);
     }
 }
 /* What tiles weigh at most, by their mean direction or a corner, and the sums of rows. Then values that the mean of their warp is
  * below come three quarters of the way down to it: beside the peak of a narrow lobe the spread of the light says too much. */
-MCSI_CORE void mcsi_grid_bounds(size_t rows, size_t cols, const float *light, const float *pull, const float *corner, float *value,
-                                float *weight, float *row) {
-    size_t i, j;
-    for (i = 0; i < rows; i += MCSI_W) {
-        mcs_f sum = mcs_set(0.0f), a = mcs_load(corner + i), b = mcs_load(corner + i + 1);
-        mcs_f most = mcsi_max(a, b), both = a + b, first_most = most, first_both = both;
-        for (j = 0; j < cols; j++) {
+MCSI_CORE void mcsi_grid_bounds(size_t rows, size_t cols, const float *light, const float *pull, const float *corner,
+                                float *value, float *weight, float *row) {
+    for (size_t i = 0; i < rows; i += MCSI_W) {
+        mcs_f sum = mcs_set(0.0f);
+        mcs_f a = mcs_load(corner + i);
+        mcs_f b = mcs_load(corner + i + 1);
+        mcs_f most = mcsi_max(a, b);
+        mcs_f both = a + b;
+        const mcs_f first_most = most;
+        const mcs_f first_both = both;
+        for (size_t j = 0; j < cols; j++) {
             const float *next = corner + (j + 1) * (rows + 1) + i;
-            mcs_f next_most = first_most, next_both = first_both, v = mcs_load(value + j * rows + i), bound, mean;
+            mcs_f next_most = first_most;
+            mcs_f next_both = first_both;
+            const mcs_f v = mcs_load(value + j * rows + i);
             if (j + 1 < cols) {
-                a = mcs_load(next), b = mcs_load(next + 1);
-                next_most = mcsi_max(a, b), next_both = a + b;
+                a = mcs_load(next);
+                b = mcs_load(next + 1);
+                next_most = mcsi_max(a, b);
+                next_both = a + b;
             }
-            bound = mcsi_keep(v > 0.0f, mcsi_max(v, mcsi_max(most, next_most)));
-            bound = mcs_load(light + j * rows + i) * bound, sum = sum + bound;
-            mean = v + mcs_load(pull + j * rows + i) * (0.25f * (both + next_both) - v);
+            mcs_f bound = mcsi_sane_result(v > 0.0f, mcsi_max(v, mcsi_max(most, next_most)));
+            bound = mcs_load(light + j * rows + i) * bound;
+            sum = sum + bound;
+            const mcs_f mean = v + mcs_load(pull + j * rows + i) * (0.25f * (both + next_both) - v);
             mcs_store(weight + j * rows + i, bound);
             mcs_store(value + j * rows + i, mcsi_sel(mean < v, 0.25f * v + 0.75f * mean, v));
-            most = next_most, both = next_both;
+            most = next_most;
+            both = next_both;
         }
         mcs_store(row + i, sum);
     }
@@ -4209,44 +4617,44 @@ typedef struct {
 #endif
 #ifdef MCSI_LOOPS
 MCSI_LOOP void mcsi_tile_values_loop(const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value) {
-    mcs_frame axes = mcsi_spread_frame(&s->axes);
-    size_t i;
-    for (i = 0; i < n; i += MCSI_W) mcs_store(value + i, mcsi_tile_value(&axes, s, tile + i, stride));
+    const mcs_frame axes = mcsi_spread_frame(&s->axes);
+    for (size_t i = 0; i < n; i += MCSI_W) mcs_store(value + i, mcsi_tile_value(&axes, s, tile + i, stride));
 }
-MCSI_LOOP void mcsi_patch_weights_loop(const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight) {
-    mcs_frame axes = mcsi_spread_frame(&s->axes);
-    size_t i;
-    for (i = 0; i < n; i += MCSI_W) {
-        mcs_f v = mcsi_tile_value(&axes, s, patch + i, n);
+MCSI_LOOP void mcsi_patch_weights_loop(const mcsi_facing *s, size_t n, const float *patch, float *value,
+                                       float *weight) {
+    const mcs_frame axes = mcsi_spread_frame(&s->axes);
+    for (size_t i = 0; i < n; i += MCSI_W) {
+        const mcs_f v = mcsi_tile_value(&axes, s, patch + i, n);
         mcs_store(value + i, v);
         mcs_store(weight + i, v * mcs_load(patch + i));
     }
 }
-MCSI_LOOP void mcsi_corner_values_loop(const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value) {
-    mcs_frame axes = mcsi_spread_frame(&s->axes);
-    size_t i;
-    for (i = 0; i < n; i += MCSI_W) {
+MCSI_LOOP void mcsi_corner_values_loop(const mcsi_facing *s, size_t n, const float *corner, size_t stride,
+                                       float *value) {
+    const mcs_frame axes = mcsi_spread_frame(&s->axes);
+    for (size_t i = 0; i < n; i += MCSI_W) {
         const float *c = corner + i;
-        mcs_vec3 w = mcsi_vec3(mcs_load(c), mcs_load(c + stride), mcs_load(c + 2 * stride));
+        const mcs_vec3 w = mcsi_vec3(mcs_load(c), mcs_load(c + stride), mcs_load(c + 2 * stride));
         mcs_store(value + i, mcsi_corner_value(&axes, s, w));
     }
 }
 MCSI_LOOP void mcsi_warps_loop(size_t n, mcsi_warp_block *b) {
-    size_t i;
-    for (i = 0; i < n; i += MCSI_W) {
-        mcs_f u1 = mcs_load(b->u1 + i), u2 = mcs_load(b->u2 + i);
-        mcsi_warp w = mcsi_warp_make(mcs_load(b->value + i), mcs_load(b->pull + i), mcs_load(b->v00 + i), mcs_load(b->v01 + i),
-                                     mcs_load(b->v10 + i), mcs_load(b->v11 + i));
+    for (size_t i = 0; i < n; i += MCSI_W) {
+        mcs_f u1 = mcs_load(b->u1 + i);
+        mcs_f u2 = mcs_load(b->u2 + i);
+        const mcsi_warp w = mcsi_warp_make(mcs_load(b->value + i), mcs_load(b->pull + i), mcs_load(b->v00 + i),
+                                           mcs_load(b->v01 + i), mcs_load(b->v10 + i), mcs_load(b->v11 + i));
         mcs_store(b->density + i, mcsi_warp_draw(&w, &u1, &u2));
         mcs_store(b->u1 + i, u1);
         mcs_store(b->u2 + i, u2);
     }
 }
-MCSI_LOOP void mcsi_grid_rows_loop(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
+MCSI_LOOP void mcsi_grid_rows_loop(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum,
+                                   float *row) {
     mcsi_grid_rows(rows, cols, light, value, cum, row);
 }
-MCSI_LOOP void mcsi_grid_bounds_loop(size_t rows, size_t cols, const float *light, const float *pull, const float *corner,
-                                     float *value, float *weight, float *row) {
+MCSI_LOOP void mcsi_grid_bounds_loop(size_t rows, size_t cols, const float *light, const float *pull,
+                                     const float *corner, float *value, float *weight, float *row) {
     mcsi_grid_bounds(rows, cols, light, pull, corner, value, weight, row);
 }
 #endif
@@ -4256,9 +4664,10 @@ MCS_FN void mcsi_tile_values_n(const mcsi_facing *s, size_t n, const float *tile
 MCS_FN void mcsi_patch_weights_n(const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight);
 MCS_FN void mcsi_corner_values_n(const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value);
 MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b);
-MCS_FN void mcsi_grid_rows_n(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row);
-MCS_FN void mcsi_grid_bounds_n(size_t rows, size_t cols, const float *light, const float *pull, const float *corner, float *value,
-                               float *weight, float *row);
+MCS_FN void mcsi_grid_rows_n(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum,
+                             float *row);
+MCS_FN void mcsi_grid_bounds_n(size_t rows, size_t cols, const float *light, const float *pull, const float *corner,
+                               float *value, float *weight, float *row);
 #endif
 
 #if MCSI_W == 1
@@ -4305,7 +4714,9 @@ MCSI_CORE const float *mcsi_tiles_patches(const mcs_tiles *t) {
     return mcsi_tiles_fields(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols;
 }
 /* Rows of parts that a patch has, one of `above` rows of patches. */
-MCSI_CORE uint32_t mcsi_patch_side(const mcs_tiles *t, uint32_t above) { return above == MCSI_PATCH_ROWS ? 4 : t->rows / above; }
+MCSI_CORE uint32_t mcsi_patch_side(const mcs_tiles *t, uint32_t above) {
+    return above == MCSI_PATCH_ROWS ? 4 : t->rows / above;
+}
 /* Patches of all levels, for n tiles. */
 MCSI_CORE size_t mcsi_patches(size_t n) { return n == 16 * MCSI_PATCHES ? MCSI_PATCHES + n : 17 * MCSI_PATCHES + n; }
 MCSI_CORE const float *mcsi_tiles_corners(const mcs_tiles *t) {
@@ -4313,17 +4724,20 @@ MCSI_CORE const float *mcsi_tiles_corners(const mcs_tiles *t) {
 }
 MCSI_CORE size_t mcsi_corners(const mcs_tiles *t) { return (size_t)t->cols * (t->rows + 1); }
 MCSI_CORE const float *mcsi_tiles_around(const mcs_tiles *t) { return mcsi_tiles_corners(t) + 3 * mcsi_corners(t); }
-MCSI_CORE const float *mcsi_tiles_nodes(const mcs_tiles *t) { return mcsi_tiles_around(t) + 12 * (size_t)t->rows * t->cols; }
+MCSI_CORE const float *mcsi_tiles_nodes(const mcs_tiles *t) {
+    return mcsi_tiles_around(t) + 12 * (size_t)t->rows * t->cols;
+}
 MCSI_CORE const mcs_env_window *mcsi_tiles_window(const mcs_tiles *t, uint32_t row, uint32_t col) {
     const char *p = (const char *)(mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * t->rows * t->cols);
     return (const mcs_env_window *)(const void *)(p + ((size_t)col * t->rows + row) * t->window_bytes);
 }
 MCS_FN int mcsi_tiles_ok(uint32_t rows) { return rows == 16 || rows == 32 || rows == MCSI_TILES_MAX; }
 MCS_FN size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows) {
-    size_t n = 2 * (size_t)rows * rows;
+    const size_t n = 2 * (size_t)rows * rows;
     if (!e || !mcsi_tiles_ok(rows)) return 0;
     return sizeof(mcs_tiles) +
-           (MCSI_TILE_FIELDS * (n + mcsi_patches(n)) + 3 * (n + 2 * (size_t)rows) + (12 + 3 * MCSI_GRID) * n) * sizeof(float) +
+           (MCSI_TILE_FIELDS * (n + mcsi_patches(n)) + 3 * (n + 2 * (size_t)rows) + (12 + 3 * MCSI_GRID) * n) *
+               sizeof(float) +
            n * mcs_env_window_bytes(e->h / rows + 1);
 }
 /* First texel row or column of a tile, and the tile of a texel. */
@@ -4340,64 +4754,87 @@ typedef struct {
     uint32_t row0, row1, col0, col1;
 } mcsi_patch;
 MCS_FN void mcsi_patch_corner(const mcs_env *e, uint32_t row, uint32_t col, mcs_vec3 *w) {
-    double t = mcsi_env_top(e, row);
-    float s, c, sine = mcsi_sqrt((float)(t * (2.0 - t)));
+    const double t = mcsi_env_top(e, row);
+    const float sine = mcsi_sqrt((float)(t * (2.0 - t)));
+    float s, c;
     mcsi_sincos_turns((float)((double)col / e->w), &s, &c);
     *w = mcsi_vec3(sine * c, sine * s, (float)(1.0 - t));
 }
 MCS_FN void mcsi_patch_store(const mcs_env *e, const mcsi_patch *p, float *field, size_t stride) {
-    double d = mcsi_sqrt_d(p->x * p->x + p->y * p->y + p->z * p->z), r2 = 0.0, spread, reach, pull = 1.0;
-    mcs_vec3 m, corner;
-    int k;
+    double d = mcsi_sqrt_d(p->x * p->x + p->y * p->y + p->z * p->z);
+    double r2 = 0.0;
+    double pull = 1.0;
+    mcs_vec3 m;
     if (d > 0.0) {
         m = mcsi_vec3((float)(p->x / d), (float)(p->y / d), (float)(p->z / d));
     } else {
         mcsi_patch_corner(e, (p->row0 + p->row1) / 2, (p->col0 + p->col1) / 2, &m);
     }
-    for (k = 0; k < 4; k++) {
-        double x, y, z;
+    mcs_vec3 corner;
+    for (int k = 0; k < 4; k++) {
         mcsi_patch_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0, &corner);
-        x = (double)(corner.x - m.x), y = (double)(corner.y - m.y), z = (double)(corner.z - m.z), x = x * x + y * y + z * z;
+        double x = (double)(corner.x - m.x);
+        const double y = (double)(corner.y - m.y);
+        const double z = (double)(corner.z - m.z);
+        x = x * x + y * y + z * z;
         r2 = x > r2 ? x : r2;
     }
     d = p->e > 0.0 && d > 0.0 ? d / p->e : 1.0;
     d = d < 1.0 ? d : 1.0;
-    spread = 1.0 - d * d + (p->e > 0.0 ? p->within / p->e : 0.0), spread = spread < 1.0 ? spread : 1.0, r2 = mcsi_sqrt_d(r2),
-    reach = 1.5 * mcsi_sqrt_d(spread);
+    double spread = 1.0 - d * d + (p->e > 0.0 ? p->within / p->e : 0.0);
+    spread = spread < 1.0 ? spread : 1.0;
+    r2 = mcsi_sqrt_d(r2);
+    const double reach = 1.5 * mcsi_sqrt_d(spread);
     if (p->area > 0.0 && p->col1 > p->col0) {
+        double even = p->up * p->up;
+        const double turns = 0.5 * (p->col1 - p->col0) / e->w;
         float s, c;
-        double even = p->up * p->up, turns = 0.5 * (p->col1 - p->col0) / e->w;
         mcsi_sincos_turns((float)turns, &s, &c); /* a column's mean lies sin(x)/x from the axis, x half its width */
         even += p->across * p->across * ((double)s * (double)s / (turns * turns * 39.478417604357432));
-        even = 1.0 - even / (p->area * p->area), pull = even > 1e-12 ? spread / even : 1.0;
+        even = 1.0 - even / (p->area * p->area);
+        pull = even > 1e-12 ? spread / even : 1.0;
         pull = pull < 1.0 ? mcsi_sqrt_d(pull) : 1.0;
     }
     field[MCSI_TILE_PULL * stride] = (float)pull;
     field[MCSI_TILE_E * stride] = (float)p->e;
-    field[MCSI_TILE_X * stride] = m.x * (float)d, field[MCSI_TILE_Y * stride] = m.y * (float)d;
-    field[MCSI_TILE_Z * stride] = m.z * (float)d, field[MCSI_TILE_UNIT * stride] = (float)(1.0 / d);
-    field[MCSI_TILE_SPREAD * stride] = (float)spread, field[MCSI_TILE_RADIUS * stride] = (float)r2 + 1e-6f;
+    field[MCSI_TILE_X * stride] = m.x * (float)d;
+    field[MCSI_TILE_Y * stride] = m.y * (float)d;
+    field[MCSI_TILE_Z * stride] = m.z * (float)d;
+    field[MCSI_TILE_UNIT * stride] = (float)(1.0 / d);
+    field[MCSI_TILE_SPREAD * stride] = (float)spread;
+    field[MCSI_TILE_RADIUS * stride] = (float)r2 + 1e-6f;
     field[MCSI_TILE_REACH * stride] = (float)(reach < r2 ? reach : r2) + 1e-6f;
 }
 /* Light of a tile: of row y, the texels of a window's columns. */
 MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_env_view *all, uint32_t y, mcsi_patch *p) {
-    double t = 0.5 * (mcsi_env_top(e, y) + mcsi_env_top(e, y + 1)), sine = mcsi_sqrt_d(t * (2.0 - t)), row = 0.0, cx = 0.0,
-           cy = 0.0;
-    uint32_t mass = all->rows[y + 1] - all->rows[y], x;
+    const double t = 0.5 * (mcsi_env_top(e, y) + mcsi_env_top(e, y + 1));
+    const double sine = mcsi_sqrt_d(t * (2.0 - t));
+    double row = 0.0;
+    double cx = 0.0;
+    double cy = 0.0;
+    const uint32_t mass = all->rows[y + 1] - all->rows[y];
     const uint32_t *cdf = mcsi_env_cdf(e, y);
     double height = mcsi_env_height(y, e->h);
-    p->area += height, p->across += height * sine, p->up += height * (1.0 - t);
+    p->area += height;
+    p->across += height * sine;
+    p->up += height * (1.0 - t);
     if (!e->uniform && mass == 0) return;
-    for (x = p->col0; x < p->col1; x++) {
-        float s, c;
-        double w = e->uniform ? (double)MCSI_ONE / e->w : cdf[x + 1] - cdf[x];
+    for (uint32_t x = p->col0; x < p->col1; x++) {
+        const double w = e->uniform ? (double)MCSI_ONE / e->w : cdf[x + 1] - cdf[x];
         if (!(w > 0.0)) continue;
+        float s, c;
         mcsi_sincos_turns((float)((x + 0.5) / e->w), &s, &c);
-        row += w, cx += w * (double)c, cy += w * (double)s;
+        row += w;
+        cx += w * (double)c;
+        cy += w * (double)s;
     }
     height = (e->uniform ? 0.5 * height : mass / (double)MCSI_ONE) / MCSI_ONE;
-    p->e += height * row, p->x += height * sine * cx, p->y += height * sine * cy, p->z += height * row * (1.0 - t);
-    p->within += height * row * 0.82246703342411322 * (1.0 / ((double)e->h * e->h) + 4.0 * sine * sine / ((double)e->w * e->w));
+    p->e += height * row;
+    p->x += height * sine * cx;
+    p->y += height * sine * cy;
+    p->z += height * row * (1.0 - t);
+    p->within +=
+        height * row * 0.82246703342411322 * (1.0 / ((double)e->h * e->h) + 4.0 * sine * sine / ((double)e->w * e->w));
 }
 /* Places of nodes: even, but for the outer ones, which keep a hundredth of the light off the border, as what lies there is
  * often far from the rest: beside a sun it is the edge of the tile. */
@@ -4406,94 +4843,112 @@ MCSI_CORE double mcsi_node_place(uint32_t k) {
 }
 /* Directions, in the map's frame, of a grid of places among a tile's light, from its first to its last; column by column. */
 MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mcsi_patch *p, float *node) {
-    mcsi_env_view v;
-    mcs_frame axes;
-    uint32_t k, row, col;
     if (!(p->e > 0.0)) { /* never asked for */
         MCSI_FILL(node, 0, 3 * MCSI_GRID * sizeof *node);
         return;
     }
-    MCSI_FILL(&axes, 0, sizeof axes), axes.s.x = axes.t.y = axes.n.z = 1.0f, v = mcsi_env_part(e, m);
-    for (k = 0; k < MCSI_GRID; k++) {
+    mcs_frame axes;
+    MCSI_FILL(&axes, 0, sizeof axes);
+    axes.s.x = axes.t.y = axes.n.z = 1.0f;
+    const mcsi_env_view v = mcsi_env_part(e, m);
+    uint32_t row, col;
+    for (uint32_t k = 0; k < MCSI_GRID; k++) {
+        const double U1 = mcsi_node_place(k / MCSI_NODES);
+        const double U2 = mcsi_node_place(k % MCSI_NODES);
         mcsi_env_point at;
-        mcs_vec3 w;
-        double U1 = mcsi_node_place(k / MCSI_NODES), U2 = mcsi_node_place(k % MCSI_NODES);
         if (v.uniform) mcsi_env_draw_uniform(e, &v, U1, U2, &at);
         else mcsi_env_draw_point(e, &v, U1, U2, 1.0, &at, &row, &col);
-        w = mcsi_env_direction(&axes, &at, e->turn, e->inner);
-        node[k] = w.x, node[MCSI_GRID + k] = w.y, node[2 * MCSI_GRID + k] = w.z;
+        const mcs_vec3 w = mcsi_env_direction(&axes, &at, e->turn, e->inner);
+        node[k] = w.x;
+        node[MCSI_GRID + k] = w.y;
+        node[2 * MCSI_GRID + k] = w.z;
     }
 }
 /* Patch (i, j) of a map cut into `rows` rows of them: a tile, or the sum of its parts, whose fields are stored from `level` on. */
-MCS_FN void mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, uint32_t i, uint32_t j, float *level, mcsi_patch *p) {
-    uint32_t side, parts, k, y, n = t->rows * t->cols;
+MCS_FN void mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, uint32_t i, uint32_t j, float *level,
+                             mcsi_patch *p) {
+    const uint32_t n = t->rows * t->cols;
     MCSI_FILL(p, 0, sizeof *p);
-    p->row0 = mcsi_tile_begin(i, rows, e->h), p->row1 = mcsi_tile_begin(i + 1, rows, e->h);
-    p->col0 = mcsi_tile_begin(j, 2 * rows, e->w), p->col1 = mcsi_tile_begin(j + 1, 2 * rows, e->w);
+    p->row0 = mcsi_tile_begin(i, rows, e->h);
+    p->row1 = mcsi_tile_begin(i + 1, rows, e->h);
+    p->col0 = mcsi_tile_begin(j, 2 * rows, e->w);
+    p->col1 = mcsi_tile_begin(j + 1, 2 * rows, e->w);
     if (rows == t->rows) {
         mcs_env_window *m = (mcs_env_window *)(void *)((char *)(uintptr_t)mcsi_tiles_window(t, i, j));
-        mcsi_env_view all = mcsi_env_whole(e);
-        size_t at = (size_t)j * rows + i;
+        const mcsi_env_view all = mcsi_env_whole(e);
+        const size_t at = (size_t)j * rows + i;
         float *around = (float *)(uintptr_t)mcsi_tiles_around(t) + 12 * at;
-        for (y = p->row0; y < p->row1; y++) mcsi_patch_add_row(e, &all, y, p);
+        for (uint32_t y = p->row0; y < p->row1; y++) mcsi_patch_add_row(e, &all, y, p);
         MCSI_FILL(m, 0, t->window_bytes); /* where no light is, and where windows of other tiles have one row more */
-        if (p->e > 0.0) mcs_env_window_build(m, t->window_bytes, e, p->row0, p->row1 - p->row0, p->col0, p->col1 - p->col0);
+        if (p->e > 0.0)
+            mcs_env_window_build(m, t->window_bytes, e, p->row0, p->row1 - p->row0, p->col0, p->col1 - p->col0);
         mcsi_patch_store(e, p, (float *)(uintptr_t)mcsi_tiles_fields(t) + at, n);
         mcsi_patch_nodes(e, m, p, (float *)(uintptr_t)mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * at);
-        for (k = 0; k < 4; k++) {
+        for (uint32_t k = 0; k < 4; k++) {
             mcs_vec3 w;
             mcsi_patch_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0, &w);
-            around[k] = w.x, around[4 + k] = w.y, around[8 + k] = w.z;
+            around[k] = w.x;
+            around[4 + k] = w.y;
+            around[8 + k] = w.z;
         }
         return;
     }
-    side = mcsi_patch_side(t, rows), parts = side * side;
-    for (k = 0; k < parts; k++) {
+    const uint32_t side = mcsi_patch_side(t, rows);
+    const uint32_t parts = side * side;
+    for (uint32_t k = 0; k < parts; k++) {
         mcsi_patch part;
         mcsi_patch_build(e, t, rows * side, i * side + k % side, j * side + k / side,
                          level + MCSI_TILE_FIELDS * 2 * (size_t)rows * rows * parts, &part);
         mcsi_patch_store(e, &part, level + MCSI_TILE_FIELDS * (size_t)(j * rows + i) * parts + k, parts);
-        p->e += part.e, p->x += part.x, p->y += part.y, p->z += part.z, p->within += part.within;
+        p->e += part.e;
+        p->x += part.x;
+        p->y += part.y;
+        p->z += part.z;
+        p->within += part.within;
     }
 }
 MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows) {
-    uint32_t i, j;
-    float *level, *corner;
     if (!t || !e || ((uintptr_t)t & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (!mcsi_tiles_ok(rows)) return MCS_ERR_SIZE;
     if (bytes < mcs_tiles_bytes(e, rows)) return MCS_ERR_MEMORY;
-    t->rows = rows, t->cols = 2 * rows, t->window_bytes = (uint32_t)mcs_env_window_bytes(e->h / rows + 1), t->unused = 0;
-    level = (float *)(uintptr_t)mcsi_tiles_patches(t);
-    for (j = 0; j < MCSI_PATCH_COLS; j++)
-        for (i = 0; i < MCSI_PATCH_ROWS; i++) {
+    t->rows = rows;
+    t->cols = 2 * rows;
+    t->window_bytes = (uint32_t)mcs_env_window_bytes(e->h / rows + 1);
+    t->unused = 0;
+    float *level = (float *)(uintptr_t)mcsi_tiles_patches(t);
+    for (uint32_t j = 0; j < MCSI_PATCH_COLS; j++)
+        for (uint32_t i = 0; i < MCSI_PATCH_ROWS; i++) {
             mcsi_patch p;
             mcsi_patch_build(e, t, MCSI_PATCH_ROWS, i, j, level + (int)MCSI_TILE_FIELDS * MCSI_PATCHES, &p);
             mcsi_patch_store(e, &p, level + j * MCSI_PATCH_ROWS + i, MCSI_PATCHES);
         }
-    corner = (float *)(uintptr_t)mcsi_tiles_corners(t);
-    for (j = 0; j < t->cols; j++)
-        for (i = 0; i <= rows; i++, corner++) {
+    float *corner = (float *)(uintptr_t)mcsi_tiles_corners(t);
+    for (uint32_t j = 0; j < t->cols; j++)
+        for (uint32_t i = 0; i <= rows; i++, corner++) {
             mcs_vec3 w;
             mcsi_patch_corner(e, mcsi_tile_begin(i, rows, e->h), mcsi_tile_begin(j, t->cols, e->w), &w);
-            corner[0] = w.x, corner[mcsi_corners(t)] = w.y, corner[2 * mcsi_corners(t)] = w.z;
+            corner[0] = w.x;
+            corner[mcsi_corners(t)] = w.y;
+            corner[2 * mcsi_corners(t)] = w.z;
         }
     return e->total > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 /* World direction in which the light of tile k (column by column) lies. */
 MCS_FN mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k) {
-    size_t n = (size_t)t->rows * t->cols;
+    const size_t n = (size_t)t->rows * t->cols;
     const float *f = mcsi_tiles_fields(t) + (k < n ? k : n - 1);
-    float unit = f[MCSI_TILE_UNIT * n];
-    return mcsi_to_world(&e->frame, mcsi_vec3(f[MCSI_TILE_X * n] * unit, f[MCSI_TILE_Y * n] * unit, f[MCSI_TILE_Z * n] * unit));
+    const float unit = f[MCSI_TILE_UNIT * n];
+    return mcsi_to_world(&e->frame,
+                         mcsi_vec3(f[MCSI_TILE_X * n] * unit, f[MCSI_TILE_Y * n] * unit, f[MCSI_TILE_Z * n] * unit));
 }
 
 /* Integer shares of a list, at least 1 unless it is zero. Returns their sum. */
 MCSI_CORE uint32_t mcsi_shares(uint32_t *cum, const float *weight, uint32_t n) {
-    float sum = 0.0f, scale;
-    uint32_t i, at = 0;
-    for (i = 0; i < n; i++) sum += weight[i];
-    scale = (16777216.0f - (float)n) / mcsi_max(sum, MCSI_ROW_LEAST);
-    for (i = 0; i < n; i++) {
+    float sum = 0.0f;
+    uint32_t at = 0;
+    for (uint32_t i = 0; i < n; i++) sum += weight[i];
+    const float scale = (16777216.0f - (float)n) / mcsi_max(sum, MCSI_ROW_LEAST);
+    for (uint32_t i = 0; i < n; i++) {
         cum[i] = at;
         at += (uint32_t)(int32_t)(weight[i] * scale) + (uint32_t)(weight[i] > 0.0f);
     }
@@ -4501,25 +4956,28 @@ MCSI_CORE uint32_t mcsi_shares(uint32_t *cum, const float *weight, uint32_t n) {
 }
 /* The last of n (a power of two) cumulative sums, `stride` apart, that is not above U. */
 MCSI_CORE uint32_t mcsi_shares_find(const uint32_t *cum, uint32_t n, uint32_t stride, uint32_t U) {
-    uint32_t i = 0, step;
-    for (step = n / 2; step; step /= 2) i += (uint32_t)(cum[(i + step) * stride] <= U) * step;
+    uint32_t i = 0;
+    for (uint32_t step = n / 2; step; step /= 2) i += (uint32_t)(cum[(i + step) * stride] <= U) * step;
     return i;
 }
 /* The place of U in [0, 2^31) within a share that begins at `begin` of `total`. */
 MCSI_CORE double mcsi_shares_rest(double V, uint32_t begin, uint32_t share) {
-    double rest = (V - (int32_t)begin) * ((double)MCSI_ONE / (int32_t)share);
+    const double rest = (V - (int32_t)begin) * ((double)MCSI_ONE / (int32_t)share);
     return rest < 2147483647.5 ? rest : 2147483647.5;
 }
 /* 0 where nothing is reflected. */
 MCS_FN int mcsi_facing_make(const mcs_env *e, const mcs_reflection *r, mcsi_facing *s) {
     int32_t ok = 1;
-    float ax = mcsi_within(r->alpha_x >= 0.0f, r->alpha_x, 1e-4f, 1e4f),
-          ay = mcsi_within(r->alpha_y >= 0.0f, r->alpha_y, 1e-4f, 1e4f);
-    s->wo = mcsi_above(r->wo, &ok);
-    s->axes.s = mcsi_to_local(&e->frame, r->frame.s), s->axes.t = mcsi_to_local(&e->frame, r->frame.t);
+    const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-4f, 1e4f);
+    const float ay = mcsi_sane_parameter(r->alpha_y >= 0.0f, r->alpha_y, 1e-4f, 1e4f);
+    s->wo = mcsi_sane_upper(r->wo, &ok);
+    s->axes.s = mcsi_to_local(&e->frame, r->frame.s);
+    s->axes.t = mcsi_to_local(&e->frame, r->frame.t);
     s->axes.n = mcsi_to_local(&e->frame, r->frame.n);
     s->profile = r->profile;
-    s->ax2 = ax * ax, s->ay2 = ay * ay, s->matte = mcsi_within(r->matte >= 0.0f, r->matte, 0.0f, 1.0f);
+    s->ax2 = ax * ax;
+    s->ay2 = ay * ay;
+    s->matte = mcsi_sane_parameter(r->matte >= 0.0f, r->matte, 0.0f, 1.0f);
     return ok;
 }
 
@@ -4533,12 +4991,16 @@ MCS_FN size_t mcs_product_bytes(uint32_t rows) { return mcsi_tiles_ok(rows) ? MC
  * reflection of tiles, and towards their corners; sums of rows; grids of fine tiles, each followed by what its rows of nodes weigh;
  * which of them a tile has, from 1 on, 0: none. */
 MCSI_CORE double *mcsi_product_units(const mcs_product *p) { return (double *)(uintptr_t)(p + 1); }
-MCSI_CORE uint32_t *mcsi_product_rows(const mcs_product *p) { return (uint32_t *)(void *)(mcsi_product_units(p) + p->t->rows); }
+MCSI_CORE uint32_t *mcsi_product_rows(const mcs_product *p) {
+    return (uint32_t *)(void *)(mcsi_product_units(p) + p->t->rows);
+}
 MCSI_CORE uint32_t *mcsi_product_cum(const mcs_product *p) { return mcsi_product_rows(p) + p->t->rows + 2; }
 MCSI_CORE float *mcsi_product_values(const mcs_product *p) {
     return (float *)(void *)(mcsi_product_cum(p) + (size_t)p->t->rows * (p->t->cols + 1));
 }
-MCSI_CORE float *mcsi_product_corners(const mcs_product *p) { return mcsi_product_values(p) + (size_t)p->t->rows * p->t->cols; }
+MCSI_CORE float *mcsi_product_corners(const mcs_product *p) {
+    return mcsi_product_values(p) + (size_t)p->t->rows * p->t->cols;
+}
 MCSI_CORE float *mcsi_product_sums(const mcs_product *p) { return mcsi_product_corners(p) + mcsi_corners(p->t); }
 MCSI_CORE float *mcsi_product_grids(const mcs_product *p) { return mcsi_product_sums(p) + p->t->rows; }
 MCSI_CORE uint8_t *mcsi_product_fine(const mcs_product *p) {
@@ -4548,7 +5010,8 @@ MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_til
     if (!p || !t || !e || ((uintptr_t)p & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (bytes < mcs_product_bytes(t->rows)) return MCS_ERR_MEMORY;
     MCSI_FILL(p, 0, sizeof *p);
-    p->t = t, p->e = e;
+    p->t = t;
+    p->e = e;
     mcsi_product_rows(p)[t->rows + 1] = 0; /* it only aligns what follows */
     MCSI_FILL(mcsi_product_fine(p), 0, (size_t)t->rows * t->cols);
     return MCS_OK;
@@ -4563,11 +5026,12 @@ MCSI_CORE void mcsi_product_add_up(mcs_product *p) {
                      mcsi_product_sums(p));
 }
 MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
-    size_t n = (size_t)p->t->rows * p->t->cols;
-    uint32_t *rows = mcsi_product_rows(p), lit, i;
+    const size_t n = (size_t)p->t->rows * p->t->cols;
+    uint32_t *rows = mcsi_product_rows(p);
     mcsi_product_add_up(p);
-    lit = mcsi_shares(rows, mcsi_product_sums(p), p->t->rows), p->lit = lit * (1.0 / MCSI_ONE);
-    for (i = 0; i < p->t->rows; i++)
+    const uint32_t lit = mcsi_shares(rows, mcsi_product_sums(p), p->t->rows);
+    p->lit = lit * (1.0 / MCSI_ONE);
+    for (uint32_t i = 0; i < p->t->rows; i++)
         mcsi_product_units(p)[i] =
             rows[i + 1] > rows[i] ? (rows[i + 1] - rows[i]) / ((double)lit * mcsi_product_cum(p)[n + i]) : 0.0;
     return lit ? MCS_OK : MCS_UNIFORM;
@@ -4575,23 +5039,28 @@ MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
 /* The tiles that may weigh most: their numbers, at most MCSI_FINE of them, each more than a 256th of all. The weights lie where the
  * integers of the columns will. */
 MCS_FN uint32_t mcsi_product_heaviest(mcs_product *p, uint32_t *tile) {
-    const float *fields = mcsi_tiles_fields(p->t), *corners = mcsi_product_corners(p);
-    float *sum = mcsi_product_sums(p), *weight = (float *)(void *)mcsi_product_cum(p), *values = mcsi_product_values(p),
-          least = 0.0f;
-    uint32_t rows = p->t->rows, cols = p->t->cols, count = 0, i, k, c;
+    const float *fields = mcsi_tiles_fields(p->t);
+    const float *corners = mcsi_product_corners(p);
+    float *sum = mcsi_product_sums(p);
+    float *weight = (float *)(void *)mcsi_product_cum(p);
+    float *values = mcsi_product_values(p);
+    float least = 0.0f;
+    const uint32_t rows = p->t->rows;
+    const uint32_t cols = p->t->cols;
+    uint32_t count = 0;
     const float *pull = fields + MCSI_TILE_PULL * (size_t)rows * cols;
     mcsi_grid_bounds_n(rows, cols, fields, pull, corners, values, weight, sum);
-    for (i = 0; i < rows; i++) least += sum[i] * 0.00390625f;
-    for (i = 0; i < rows; i++) {
+    for (uint32_t i = 0; i < rows; i++) least += sum[i] * 0.00390625f;
+    for (uint32_t i = 0; i < rows; i++) {
         if (!(sum[i] > least)) continue;
-        for (k = i; k < rows * cols; k += rows) {
+        for (uint32_t k = i; k < rows * cols; k += rows) {
             uint32_t at = 0;
             if (!(weight[k] > least)) continue;
             if (count < MCSI_FINE) {
                 tile[count++] = k;
                 continue;
             }
-            for (c = 1; c < MCSI_FINE; c++) at = weight[tile[c]] < weight[tile[at]] ? c : at;
+            for (uint32_t c = 1; c < MCSI_FINE; c++) at = weight[tile[c]] < weight[tile[at]] ? c : at;
             if (weight[k] > weight[tile[at]]) tile[at] = k;
         }
     }
@@ -4599,23 +5068,24 @@ MCS_FN uint32_t mcsi_product_heaviest(mcs_product *p, uint32_t *tile) {
 }
 /* Reflection on a grid of places among the light of a tile, then what its rows weigh. Returns the mean of the bilinear function. */
 MCS_FN float mcsi_grid_make(const mcsi_facing *s, const float *node, float *v) {
-    float sum[MCSI_NODES], mean = 0.0f, least;
-    uint32_t k, a;
+    float mean = 0.0f;
     mcsi_corner_values_n(s, MCSI_GRID, node, MCSI_GRID, v);
-    for (k = 0; k < MCSI_NODES; k++) sum[k] = 0.5f * (v[k] + v[MCSI_GRID - MCSI_NODES + k]);
-    for (a = MCSI_NODES; a < MCSI_GRID - MCSI_NODES; a += MCSI_NODES)
-        for (k = 0; k < MCSI_NODES; k++) sum[k] += v[a + k];
-    for (k = 1; k < MCSI_NODES - 1; k++) mean += sum[k];
-    mean = (0.5f * (sum[0] + sum[MCSI_NODES - 1]) + mean) * (1.0f / ((MCSI_NODES - 1) * (MCSI_NODES - 1))), least = 0.01f * mean;
-    for (k = 0; k < MCSI_GRID; k++) v[k] += least;
-    for (k = 0; k < MCSI_NODES; k++) v[MCSI_GRID + k] = sum[k] + (MCSI_NODES - 1) * least;
+    float sum[MCSI_NODES];
+    for (uint32_t k = 0; k < MCSI_NODES; k++) sum[k] = 0.5f * (v[k] + v[MCSI_GRID - MCSI_NODES + k]);
+    for (uint32_t a = MCSI_NODES; a < MCSI_GRID - MCSI_NODES; a += MCSI_NODES)
+        for (uint32_t k = 0; k < MCSI_NODES; k++) sum[k] += v[a + k];
+    for (uint32_t k = 1; k < MCSI_NODES - 1; k++) mean += sum[k];
+    mean = (0.5f * (sum[0] + sum[MCSI_NODES - 1]) + mean) * (1.0f / ((MCSI_NODES - 1) * (MCSI_NODES - 1)));
+    const float least = 0.01f * mean;
+    for (uint32_t k = 0; k < MCSI_GRID; k++) v[k] += least;
+    for (uint32_t k = 0; k < MCSI_NODES; k++) v[MCSI_GRID + k] = sum[k] + (MCSI_NODES - 1) * least;
     return mean + least;
 }
 /* The tiles that weigh most get a grid, and weigh what that says. Returns how many they are. */
 MCS_FN uint32_t mcsi_product_refine(mcs_product *p, const mcsi_facing *s) {
-    uint32_t tile[MCSI_FINE], count, i;
-    count = mcsi_product_heaviest(p, tile);
-    for (i = 0; i < count; i++) {
+    uint32_t tile[MCSI_FINE];
+    const uint32_t count = mcsi_product_heaviest(p, tile);
+    for (uint32_t i = 0; i < count; i++) {
         mcsi_product_values(p)[tile[i]] = mcsi_grid_make(s, mcsi_tiles_nodes(p->t) + 3 * (size_t)MCSI_GRID * tile[i],
                                                          mcsi_product_grids(p) + i * (size_t)(MCSI_GRID + MCSI_NODES));
         mcsi_product_fine(p)[tile[i]] = (uint8_t)(i + 1);
@@ -4623,18 +5093,22 @@ MCS_FN uint32_t mcsi_product_refine(mcs_product *p, const mcsi_facing *s) {
     return count;
 }
 /* Solid angle of a lobe, that of the sphere over `cells`: 1. */
-MCSI_CORE float mcsi_lobe_width(const mcsi_facing *s, size_t cells) { return (float)cells * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z; }
+MCSI_CORE float mcsi_lobe_width(const mcsi_facing *s, size_t cells) {
+    return (float)cells * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z;
+}
 /* The part of the samples that a lobe narrower than the cells gets for itself; without GGX's tails it falls within a third. */
 MCS_FN float mcsi_brdf_share(const mcsi_facing *s, size_t cells, float less) {
-    float m = (s->profile == MCS_PROFILE_GGX ? 1.0f : 3.0f) / mcsi_lobe_width(s, cells) - less;
+    const float m = (s->profile == MCS_PROFILE_GGX ? 1.0f : 3.0f) / mcsi_lobe_width(s, cells) - less;
     return m > 0.0f ? (1.0f - s->matte) * mcsi_min(m / (1.0f + m), 0.95f) : 0.0f;
 }
 MCSI_CORE mcsi_own_lobe mcsi_own_make(const mcs_reflection *r, const mcsi_facing *s) {
-    float ax = mcsi_within(r->alpha_x >= 0.0f, r->alpha_x, 1e-7f, 1e4f),
-          ay = mcsi_within(r->alpha_y >= 0.0f, r->alpha_y, 1e-7f, 1e4f);
+    const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-7f, 1e4f);
+    const float ay = mcsi_sane_parameter(r->alpha_y >= 0.0f, r->alpha_y, 1e-7f, 1e4f);
     mcsi_own_lobe l;
     MCSI_FILL(&l, 0, sizeof l);
-    l.frame = r->frame, l.wo = s->wo, l.profile = s->profile;
+    l.frame = r->frame;
+    l.wo = s->wo;
+    l.profile = s->profile;
     switch (l.profile) {
     case MCS_PROFILE_GAUSS: l.gauss = mcs_ward_make(ax, ay, MCS_WARD_GMD); break;
     case MCS_PROFILE_PHONG: l.phong = mcs_phong_make(mcsi_max(0.5f / ax / ay - 2.0f, 0.0f)); break;
@@ -4644,20 +5118,20 @@ MCSI_CORE mcsi_own_lobe mcsi_own_make(const mcs_reflection *r, const mcsi_facing
 }
 /* When u1 falls on the lobe's share, its direction in world space; else u1 becomes the place in the rest. */
 MCSI_CORE int mcsi_own_draw(const mcsi_own_lobe *l, float share, float *u1, float u2, mcs_vec3 *w, int32_t *kept) {
-    mcs_brdf b;
-    float u;
     if (!(share > 0.0f)) return 0;
     if (*u1 >= share) {
         *u1 = mcsi_min((*u1 - share) / (1.0f - share), 0.99999994f);
         return 0;
     }
-    u = mcsi_min(*u1 / share, 0.99999994f);
+    const float u = mcsi_min(*u1 / share, 0.99999994f);
+    mcs_brdf b;
     switch (l->profile) {
     case MCS_PROFILE_GAUSS: b = mcs_ward_sample(&l->gauss, l->wo, u, u2); break;
     case MCS_PROFILE_PHONG: b = mcs_phong_sample(&l->phong, l->wo, u, u2); break;
     default: b = mcs_ggx_vndf_sample(&l->ggx, l->wo, u, u2);
     }
-    *w = mcs_to_world(&l->frame, b.wi), *kept &= b.pdf > 0.0f;
+    *w = mcs_to_world(&l->frame, b.wi);
+    *kept &= b.pdf > 0.0f;
     return 1;
 }
 /* One body for sample and pdf: contraction that differs would show in lobes as narrow as the rounding of a direction. */
@@ -4674,19 +5148,21 @@ MCSI_LOUD
 MCSI_CORE float mcsi_own_mix(const mcsi_own_lobe *l, float share, mcs_vec3 w, float tiled) {
     return share > 0.0f ? mcs_mix_pdf(share, mcsi_own_pdf(l, w), tiled) : tiled;
 }
-MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
-    mcs_status status = mcsi_product_start(p, bytes, t, e);
-    mcsi_facing s;
+MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+                                    const mcs_reflection *r) {
+    const mcs_status status = mcsi_product_start(p, bytes, t, e);
     uint32_t fine = 0;
-    size_t n;
     if (status) return status;
     if (!r) return MCS_ERR_ARG;
+    mcsi_facing s;
     if (!mcsi_facing_make(e, r, &s)) {
         MCSI_FILL(mcsi_product_units(p), 0, mcs_product_bytes(t->rows) - sizeof *p);
         return MCS_UNIFORM;
     }
-    n = (size_t)t->rows * t->cols;
-    p->own = mcsi_own_make(r, &s), p->brdf_share = mcsi_brdf_share(&s, 14 * n, 0.03f), p->warped = 1;
+    const size_t n = (size_t)t->rows * t->cols;
+    p->own = mcsi_own_make(r, &s);
+    p->brdf_share = mcsi_brdf_share(&s, 14 * n, 0.03f);
+    p->warped = 1;
     mcsi_tile_values_n(&s, n, mcsi_tiles_fields(t), n, mcsi_product_values(p));
     mcsi_corner_values_n(&s, mcsi_corners(t), mcsi_tiles_corners(t), mcsi_corners(t), mcsi_product_corners(p));
     if (s.matte < 1.0f && mcsi_lobe_width(&s, n) < MCSI_FINE_BELOW) fine = mcsi_product_refine(p, &s);
@@ -4695,15 +5171,18 @@ MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tile
 }
 MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                             const float *weight) {
-    mcs_status status = mcsi_product_start(p, bytes, t, e);
-    size_t n, k;
-    float *value, top = 0.0f;
+    const mcs_status status = mcsi_product_start(p, bytes, t, e);
+    float top = 0.0f;
     uint32_t bad = 0;
     if (status) return status;
     if (!weight) return MCS_ERR_ARG;
-    n = (size_t)t->rows * t->cols, value = mcsi_product_values(p);
-    for (k = 0; k < n; k++) value[k] = mcsi_clean(weight[k], &bad), top = mcsi_max(top, value[k]);
-    for (k = 0; k < n; k++) /* of the size of reflections, and none lost to underflow */
+    const size_t n = (size_t)t->rows * t->cols;
+    float *value = mcsi_product_values(p);
+    for (size_t k = 0; k < n; k++) {
+        value[k] = mcsi_clean(weight[k], &bad);
+        top = mcsi_max(top, value[k]);
+    }
+    for (size_t k = 0; k < n; k++) /* of the size of reflections, and none lost to underflow */
         value[k] = value[k] > 0.0f ? mcsi_max((float)((double)value[k] / (double)top), 1e-18f) : 0.0f;
     MCSI_FILL(mcsi_product_corners(p), 0, mcsi_corners(t) * sizeof(float));
     mcsi_product_end_grids(p, 0);
@@ -4712,44 +5191,63 @@ MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const 
 /* A number in [0, 2^31) as one in [0, 1], and a place as such a number. */
 MCSI_CORE float mcsi_part_of_one(double U) { return (float)(U * (1.0 / MCSI_ONE)); }
 MCSI_CORE void mcsi_warp_place(const mcsi_warp *w, double *U1, double *U2, double *part) {
-    float u1 = mcsi_part_of_one(*U1), u2 = mcsi_part_of_one(*U2);
-    *part *= (double)mcsi_warp_draw(w, &u1, &u2), *U1 = (double)u1 * MCSI_ONE, *U2 = (double)u2 * MCSI_ONE;
+    float u1 = mcsi_part_of_one(*U1);
+    float u2 = mcsi_part_of_one(*U2);
+    *part *= (double)mcsi_warp_draw(w, &u1, &u2);
+    *U1 = (double)u1 * MCSI_ONE;
+    *U2 = (double)u2 * MCSI_ONE;
 }
 /* A cell of the grid of a fine tile: entry of a list whose borders weigh w, by trapezoids; U becomes the place in it. */
 MCSI_CORE uint32_t mcsi_nodes_draw(const float *w, double *U, double *part) {
-    double sum[MCSI_NODES], V, rest;
+    double sum[MCSI_NODES];
     uint32_t k;
     for (sum[0] = 0.0, k = 1; k < MCSI_NODES; k++) sum[k] = sum[k - 1] + ((double)w[k - 1] + (double)w[k]);
-    V = *U * (sum[MCSI_NODES - 1] * (1.0 / MCSI_ONE));
-    k = (uint32_t)(sum[4] <= V) << 2, k += (uint32_t)(sum[k + 2] <= V) << 1, k += (uint32_t)(sum[k + 1] <= V);
-    rest = (V - sum[k]) * (MCSI_ONE / (sum[k + 1] - sum[k])), *U = rest < 2147483647.5 ? rest : 2147483647.5;
+    const double V = *U * (sum[MCSI_NODES - 1] * (1.0 / MCSI_ONE));
+    k = (uint32_t)(sum[4] <= V) << 2;
+    k += (uint32_t)(sum[k + 2] <= V) << 1;
+    k += (uint32_t)(sum[k + 1] <= V);
+    const double rest = (V - sum[k]) * (MCSI_ONE / (sum[k + 1] - sum[k]));
+    *U = rest < 2147483647.5 ? rest : 2147483647.5;
     *part *= (MCSI_NODES - 1) * (sum[k + 1] - sum[k]) / sum[MCSI_NODES - 1];
     return k;
 }
 MCSI_CORE void mcsi_fine_draw(const float *v, double *U1, double *U2, double *part) {
-    float both[MCSI_NODES];
-    uint32_t i = mcsi_nodes_draw(v + MCSI_GRID, U2, part), j, k;
-    mcsi_warp w;
+    const uint32_t i = mcsi_nodes_draw(v + MCSI_GRID, U2, part);
     v += i;
-    for (k = 0; k < MCSI_NODES; k++) both[k] = v[k * MCSI_NODES] + v[k * MCSI_NODES + 1];
-    j = mcsi_nodes_draw(both, U1, part), v += j * MCSI_NODES;
-    w.v[0] = v[0], w.v[1] = v[1], w.v[2] = v[MCSI_NODES], w.v[3] = v[MCSI_NODES + 1];
+    float both[MCSI_NODES];
+    for (uint32_t k = 0; k < MCSI_NODES; k++) both[k] = v[k * MCSI_NODES] + v[k * MCSI_NODES + 1];
+    const uint32_t j = mcsi_nodes_draw(both, U1, part);
+    v += j * MCSI_NODES;
+    mcsi_warp w;
+    w.v[0] = v[0];
+    w.v[1] = v[1];
+    w.v[2] = v[MCSI_NODES];
+    w.v[3] = v[MCSI_NODES + 1];
     *part *= 4.0 / (((double)w.v[0] + (double)w.v[1]) + ((double)w.v[2] + (double)w.v[3]));
     mcsi_warp_place(&w, U1, U2, part);
-    *U1 = (j * (double)MCSI_ONE + *U1) * (1.0 / (MCSI_NODES - 1)), *U2 = (i * (double)MCSI_ONE + *U2) * (1.0 / (MCSI_NODES - 1));
+    *U1 = (j * (double)MCSI_ONE + *U1) * (1.0 / (MCSI_NODES - 1));
+    *U2 = (i * (double)MCSI_ONE + *U2) * (1.0 / (MCSI_NODES - 1));
 }
 MCSI_CORE float mcsi_fine_density(const float *v, float t1, float t2) {
     const float *row = v + MCSI_GRID;
-    float x = t1 * (MCSI_NODES - 1), y = t2 * (MCSI_NODES - 1), sum = 0.5f * (row[0] + row[MCSI_NODES - 1]);
-    uint32_t j = (uint32_t)(int32_t)x, i = (uint32_t)(int32_t)y, k;
+    const float x = t1 * (MCSI_NODES - 1);
+    const float y = t2 * (MCSI_NODES - 1);
+    float sum = 0.5f * (row[0] + row[MCSI_NODES - 1]);
+    uint32_t j = (uint32_t)(int32_t)x;
+    uint32_t i = (uint32_t)(int32_t)y;
+    i = i < MCSI_NODES - 2 ? i : MCSI_NODES - 2;
+    j = j < MCSI_NODES - 2 ? j : MCSI_NODES - 2;
+    v += j * MCSI_NODES + i;
+    for (uint32_t k = 1; k < MCSI_NODES - 1; k++) sum += row[k];
     mcsi_warp w;
-    i = i < MCSI_NODES - 2 ? i : MCSI_NODES - 2, j = j < MCSI_NODES - 2 ? j : MCSI_NODES - 2, v += j * MCSI_NODES + i;
-    for (k = 1; k < MCSI_NODES - 1; k++) sum += row[k];
-    w.v[0] = v[0], w.v[1] = v[1], w.v[2] = v[MCSI_NODES], w.v[3] = v[MCSI_NODES + 1];
+    w.v[0] = v[0];
+    w.v[1] = v[1];
+    w.v[2] = v[MCSI_NODES];
+    w.v[3] = v[MCSI_NODES + 1];
     return mcsi_warp_density(&w, x - (float)j, y - (float)i) * ((MCSI_NODES - 1) * (MCSI_NODES - 1)) / sum;
 }
 MCSI_CORE const float *mcsi_product_fine_of(const mcs_product *p, uint32_t i, uint32_t j) {
-    uint32_t k = mcsi_product_fine(p)[(size_t)j * p->t->rows + i];
+    const uint32_t k = mcsi_product_fine(p)[(size_t)j * p->t->rows + i];
     return k ? mcsi_product_grids(p) + (k - 1) * (size_t)(MCSI_GRID + MCSI_NODES) : NULL;
 }
 /* Of what the warp of a tile is made; corners at either azimuth. */
@@ -4758,40 +5256,46 @@ typedef struct {
 } mcsi_warp_source;
 MCSI_CORE mcsi_warp_source mcsi_product_source(const mcs_product *p, uint32_t i, uint32_t j) {
     const mcs_tiles *t = p->t;
-    size_t k = (size_t)j * t->rows + i;
+    const size_t k = (size_t)j * t->rows + i;
     mcsi_warp_source s;
-    s.value = mcsi_product_values(p) + k, s.pull = mcsi_tiles_fields(t) + MCSI_TILE_PULL * (size_t)t->rows * t->cols + k;
-    s.first = mcsi_product_corners(p) + i, s.last = s.first + (j + 1 < t->cols ? j + 1 : 0) * (t->rows + 1);
+    s.value = mcsi_product_values(p) + k;
+    s.pull = mcsi_tiles_fields(t) + MCSI_TILE_PULL * (size_t)t->rows * t->cols + k;
+    s.first = mcsi_product_corners(p) + i;
+    s.last = s.first + (j + 1 < t->cols ? j + 1 : 0) * (t->rows + 1);
     s.first += j * (t->rows + 1);
     return s;
 }
 MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, uint32_t i, uint32_t j) {
-    mcsi_warp_source s = mcsi_product_source(p, i, j);
+    const mcsi_warp_source s = mcsi_product_source(p, i, j);
     return mcsi_warp_make(*s.value, *s.pull, s.first[0], s.first[1], s.last[0], s.last[1]);
 }
 /* Where among a tile's light the place of a direction in a row with light lies, for mcsi_warp_density. */
-MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const mcsi_env_place_of *at, float *t1, float *t2) {
-    const uint32_t *rows = v->rows + (at->row - v->row), *cdf;
+MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const mcsi_env_place_of *at, float *t1,
+                                float *t2) {
+    const uint32_t *rows = v->rows + (at->row - v->row);
     const mcsi_env_span *span = v->span + (at->row - v->row);
     double P;
     if (v->uniform) {
-        double a = mcsi_env_top(e, v->row), b = mcsi_env_top(e, v->row + v->count);
-        P = mcsi_env_top(e, at->row), P += at->down * (mcsi_env_top(e, at->row + 1) - P);
-        *t1 = (float)((at->col + at->across - v->col) / v->cols), *t2 = (float)((P - a) / (b - a));
+        const double a = mcsi_env_top(e, v->row);
+        const double b = mcsi_env_top(e, v->row + v->count);
+        P = mcsi_env_top(e, at->row);
+        P += at->down * (mcsi_env_top(e, at->row + 1) - P);
+        *t1 = (float)((at->col + at->across - v->col) / v->cols);
+        *t2 = (float)((P - a) / (b - a));
     } else {
-        cdf = mcsi_env_cdf(e, at->row) + at->col;
+        const uint32_t *cdf = mcsi_env_cdf(e, at->row) + at->col;
         P = cdf[0] + at->across * (cdf[1] - cdf[0]) - span->begin;
         *t1 = (float)((P < 0.0 ? P + MCSI_ONE : P) / span->mass);
         *t2 = (float)((rows[0] + at->down * (rows[1] - rows[0])) / MCSI_ONE);
     }
-    *t1 = mcsi_min(mcsi_max(*t1, 0.0f), 1.0f), *t2 = mcsi_min(mcsi_max(*t2, 0.0f), 1.0f);
+    *t1 = mcsi_min(mcsi_max(*t1, 0.0f), 1.0f);
+    *t2 = mcsi_min(mcsi_max(*t2, 0.0f), 1.0f);
 }
 /* Density of the tiles alone; `part` of all draws fall on tile (i, j), there by a fine grid, a bilinear function or the light. */
-MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, const float *fine, const mcsi_warp *warp,
-                                   uint32_t i, uint32_t j, const mcsi_env_place_of *at) {
-    mcsi_env_view v = mcsi_env_part(e, mcsi_tiles_window(t, i, j));
-    const uint32_t *cdf;
-    uint32_t row = at->row - v.row;
+MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, const float *fine,
+                                   const mcsi_warp *warp, uint32_t i, uint32_t j, const mcsi_env_place_of *at) {
+    const mcsi_env_view v = mcsi_env_part(e, mcsi_tiles_window(t, i, j));
+    const uint32_t row = at->row - v.row;
     if (!v.uniform && v.rows[row] == v.rows[row + 1]) return 0.0f; /* no light in it */
     if (fine || warp) {
         float t1, t2;
@@ -4799,78 +5303,93 @@ MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double 
         part *= (double)(fine ? mcsi_fine_density(fine, t1, t2) : mcsi_warp_density(warp, t1, t2));
     }
     if (v.uniform) return (float)(part * (double)mcsi_env_uniform_pdf(e, &v));
-    part *= mcsi_env_scale(&v, row), cdf = mcsi_env_cdf(e, at->row) + at->col;
+    part *= mcsi_env_scale(&v, row);
+    const uint32_t *cdf = mcsi_env_cdf(e, at->row) + at->col;
     return (float)((cdf[1] - cdf[0]) * part);
 }
 MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcsi_env_place_of *at) {
     const mcs_tiles *t = p->t;
-    uint32_t i = mcsi_tile_of(at->row, t->rows, p->e->h), j = mcsi_tile_of(at->col, t->cols, p->e->w);
+    const uint32_t i = mcsi_tile_of(at->row, t->rows, p->e->h);
+    const uint32_t j = mcsi_tile_of(at->col, t->cols, p->e->w);
     const uint32_t *cum = mcsi_product_cum(p) + j * t->rows + i;
-    double part = mcsi_product_units(p)[i] * (int32_t)(cum[t->rows] - cum[0]);
+    const double part = mcsi_product_units(p)[i] * (int32_t)(cum[t->rows] - cum[0]);
     const float *fine = mcsi_product_fine_of(p, i, j);
-    mcsi_warp warp;
     if (!(part > 0.0)) return 0.0f;
+    mcsi_warp warp;
     if (p->warped) warp = mcsi_product_warp(p, i, j);
     return mcsi_tiled_density(t, p->e, part, fine, p->warped ? &warp : NULL, i, j, at);
 }
 MCSI_CORE mcs_texel mcsi_nothing(const mcs_env *e) {
     mcs_texel r;
-    r.w = e->frame.n, r.pdf = 0.0f, r.col = r.row = 0;
+    r.w = e->frame.n;
+    r.pdf = 0.0f;
+    r.col = r.row = 0;
     return r;
 }
 /* The same for a direction, with the lobe's share. */
 MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
     mcsi_env_place_of at;
-    mcs_texel r;
     if (!mcsi_env_find(p->e, w, &at)) return mcsi_nothing(p->e);
-    r.w = w, r.row = at.row, r.col = at.col;
+    mcs_texel r;
+    r.w = w;
+    r.row = at.row;
+    r.col = at.col;
     r.pdf = mcsi_own_mix(&p->own, p->brdf_share, w, p->lit > 0.0 ? mcsi_product_density(p, &at) : 0.0f);
     return r;
 }
 MCS_FN float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
 /* What a draw reads of a tile's rows near the place U2 of its light. */
 MCSI_CORE void mcsi_tile_prefetch(const mcs_env *e, const mcs_env_window *m, double U2) {
-    mcsi_env_view v = mcsi_env_part(e, m);
-    uint32_t row = (uint32_t)(U2 * v.count * (1.0 / MCSI_ONE));
-    MCSI_PREFETCH(v.guide + row), MCSI_PREFETCH(v.rows + row), MCSI_PREFETCH(v.span + row);
+    const mcsi_env_view v = mcsi_env_part(e, m);
+    const uint32_t row = (uint32_t)(U2 * v.count * (1.0 / MCSI_ONE));
+    MCSI_PREFETCH(v.guide + row);
+    MCSI_PREFETCH(v.rows + row);
+    MCSI_PREFETCH(v.span + row);
 }
 /* Tile row, then column; U2 and U1 become the place in it. */
 MCSI_CORE uint32_t mcsi_product_row(const mcs_product *p, double *U2) {
     const uint32_t *rows = mcsi_product_rows(p);
-    uint32_t i;
-    *U2 *= p->lit, i = mcsi_shares_find(rows, p->t->rows, 1, (uint32_t)(int32_t)*U2);
+    *U2 *= p->lit;
+    const uint32_t i = mcsi_shares_find(rows, p->t->rows, 1, (uint32_t)(int32_t)*U2);
     *U2 = mcsi_shares_rest(*U2, rows[i], rows[i + 1] - rows[i]);
     return i;
 }
 MCSI_CORE uint32_t mcsi_product_col(const mcs_product *p, uint32_t i, double *U1, double *part) {
     const uint32_t *cum = mcsi_product_cum(p) + i;
-    uint32_t n = p->t->rows, cols = p->t->cols, j;
-    *U1 *= (int32_t)cum[cols * n] * (1.0 / MCSI_ONE), j = mcsi_shares_find(cum, cols, n, (uint32_t)(int32_t)*U1), cum += j * n;
-    *U1 = mcsi_shares_rest(*U1, cum[0], cum[n] - cum[0]), *part = mcsi_product_units(p)[i] * (int32_t)(cum[n] - cum[0]);
+    const uint32_t n = p->t->rows;
+    const uint32_t cols = p->t->cols;
+    *U1 *= (int32_t)cum[cols * n] * (1.0 / MCSI_ONE);
+    const uint32_t j = mcsi_shares_find(cum, cols, n, (uint32_t)(int32_t)*U1);
+    cum += j * n;
+    *U1 = mcsi_shares_rest(*U1, cum[0], cum[n] - cum[0]);
+    *part = mcsi_product_units(p)[i] * (int32_t)(cum[n] - cum[0]);
     return j;
 }
-MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, double U1, double U2, double part, int ok) {
-    mcsi_env_view v = mcsi_env_part(e, m);
+MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, double U1, double U2, double part,
+                                    int ok) {
+    const mcsi_env_view v = mcsi_env_part(e, m);
     return mcsi_env_draw(e, &v, U1, U2, part, ok);
 }
 MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
     int32_t ok = 1;
-    double part = 1.0, U1, U2;
+    double part = 1.0;
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
     mcs_vec3 w;
     mcs_texel r;
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
     if (mcsi_own_draw(&p->own, p->brdf_share, &u1, u2, &w, &ok)) {
         r = mcsi_product_look_up(p, w);
     } else if (p->lit > 0.0) {
-        const float *fine;
-        uint32_t i, j;
-        U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE;
-        i = mcsi_product_row(p, &U2), j = mcsi_product_col(p, i, &U1, &part), fine = mcsi_product_fine_of(p, i, j);
+        double U1 = (double)u1 * MCSI_ONE;
+        double U2 = (double)u2 * MCSI_ONE;
+        const uint32_t i = mcsi_product_row(p, &U2);
+        const uint32_t j = mcsi_product_col(p, i, &U1, &part);
+        const float *fine = mcsi_product_fine_of(p, i, j);
         mcsi_tile_prefetch(p->e, mcsi_tiles_window(p->t, i, j), U2);
         if (fine) {
             mcsi_fine_draw(fine, &U1, &U2, &part);
         } else if (p->warped) {
-            mcsi_warp warp = mcsi_product_warp(p, i, j);
+            const mcsi_warp warp = mcsi_product_warp(p, i, j);
             mcsi_warp_place(&warp, &U1, &U2, &part);
         }
         r = mcsi_tiled_draw(p->e, mcsi_tiles_window(p->t, i, j), U1, U2, part, ok);
@@ -4882,19 +5401,11 @@ MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
     return r;
 }
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                 float *pdf, uint32_t *col, uint32_t *row) {
-    mcsi_env_block b;
-    mcsi_warp_block warps;
-    double U1[MCSI_ENV_BLOCK], U2[MCSI_ENV_BLOCK], part[MCSI_ENV_BLOCK];
-    const mcs_env_window *window[MCSI_ENV_BLOCK];
-    const float *fine[MCSI_ENV_BLOCK];
-    uint32_t tile_row[MCSI_ENV_BLOCK];
-    int32_t ok[MCSI_ENV_BLOCK];
-    size_t i, k, m;
+MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                 float *z, float *pdf, uint32_t *col, uint32_t *row) {
     if (p->brdf_share > 0.0f || !(p->lit > 0.0)) {
-        for (i = 0; i < n; i++) {
-            mcs_texel r = mcs_product_sample(p, u1[i], u2[i]);
+        for (size_t i = 0; i < n; i++) {
+            const mcs_texel r = mcs_product_sample(p, u1[i], u2[i]);
             if (x) x[i] = r.w.x;
             if (y) y[i] = r.w.y;
             if (z) z[i] = r.w.z;
@@ -4904,37 +5415,54 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
         }
         return;
     }
+    mcsi_env_block b;
     mcsi_env_block_start(&b, n);
+    mcsi_warp_block warps;
     if (n < MCSI_ENV_BLOCK) MCSI_FILL(&warps, 0, sizeof warps);
-    for (k = n; k < MCSI_ENV_BLOCK; k++) warps.value[k] = 1.0f;
-    for (i = 0; i < n; i += m) { /* by stages, as each of them is a long chain of operations */
+    for (size_t k = n; k < MCSI_ENV_BLOCK; k++) warps.value[k] = 1.0f;
+    double U1[MCSI_ENV_BLOCK], U2[MCSI_ENV_BLOCK], part[MCSI_ENV_BLOCK];
+    const mcs_env_window *window[MCSI_ENV_BLOCK];
+    const float *fine[MCSI_ENV_BLOCK];
+    uint32_t tile_row[MCSI_ENV_BLOCK];
+    int32_t ok[MCSI_ENV_BLOCK];
+    size_t m;
+    for (size_t i = 0; i < n; i += m) { /* by stages, as each of them is a long chain of operations */
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
-        for (k = 0; k < m; k++) {
-            ok[k] = 1, U1[k] = mcsi_times_one(u1[i + k], &ok[k]), U2[k] = mcsi_times_one(u2[i + k], &ok[k]);
+        for (size_t k = 0; k < m; k++) {
+            ok[k] = 1;
+            U1[k] = mcsi_times_one(u1[i + k], &ok[k]);
+            U2[k] = mcsi_times_one(u2[i + k], &ok[k]);
             tile_row[k] = mcsi_product_row(p, &U2[k]);
         }
-        for (k = 0; k < m; k++) {
-            uint32_t tile_col = mcsi_product_col(p, tile_row[k], &U1[k], &part[k]);
-            mcsi_warp_source s = mcsi_product_source(p, tile_row[k], tile_col);
-            window[k] = mcsi_tiles_window(p->t, tile_row[k], tile_col), fine[k] = mcsi_product_fine_of(p, tile_row[k], tile_col);
+        for (size_t k = 0; k < m; k++) {
+            const uint32_t tile_col = mcsi_product_col(p, tile_row[k], &U1[k], &part[k]);
+            const mcsi_warp_source s = mcsi_product_source(p, tile_row[k], tile_col);
+            window[k] = mcsi_tiles_window(p->t, tile_row[k], tile_col);
+            fine[k] = mcsi_product_fine_of(p, tile_row[k], tile_col);
             MCSI_PREFETCH(window[k]);
             if (!p->warped) continue;
-            warps.value[k] = *s.value, warps.pull[k] = *s.pull, warps.v00[k] = s.first[0], warps.v01[k] = s.first[1];
-            warps.v10[k] = s.last[0], warps.v11[k] = s.last[1];
-            warps.u1[k] = mcsi_part_of_one(U1[k]), warps.u2[k] = mcsi_part_of_one(U2[k]);
+            warps.value[k] = *s.value;
+            warps.pull[k] = *s.pull;
+            warps.v00[k] = s.first[0];
+            warps.v01[k] = s.first[1];
+            warps.v10[k] = s.last[0];
+            warps.v11[k] = s.last[1];
+            warps.u1[k] = mcsi_part_of_one(U1[k]);
+            warps.u2[k] = mcsi_part_of_one(U2[k]);
         }
         if (p->warped) mcsi_warps_n(m, &warps);
-        for (k = 0; k < m; k++) {
+        for (size_t k = 0; k < m; k++) {
             if (fine[k]) {
                 mcsi_fine_draw(fine[k], &U1[k], &U2[k], &part[k]);
             } else if (p->warped) {
                 part[k] *= (double)warps.density[k];
-                U1[k] = (double)warps.u1[k] * MCSI_ONE, U2[k] = (double)warps.u2[k] * MCSI_ONE;
+                U1[k] = (double)warps.u1[k] * MCSI_ONE;
+                U2[k] = (double)warps.u2[k] * MCSI_ONE;
             }
             mcsi_tile_prefetch(p->e, window[k], U2[k]);
         }
-        for (k = 0; k < m; k++) {
-            mcsi_env_view v = mcsi_env_part(p->e, window[k]);
+        for (size_t k = 0; k < m; k++) {
+            const mcsi_env_view v = mcsi_env_part(p->e, window[k]);
             mcsi_env_block_aim(p->e, &v, &b, k, U1[k], U2[k], part[k], ok[k]);
         }
         mcsi_env_block_land(p->e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL,
@@ -4948,107 +5476,138 @@ MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1
 /* A draw from a list of n (even) weights: entry, place in it, and the entry's part; with U < 0, the part of entry *k. In double,
  * where the part of an entry down to 2^-30 of the whole is that of the sums to 2^-22 of itself. 0: nothing to draw. */
 MCSI_CORE int mcsi_list_draw(const float *weight, uint32_t n, double *U, uint32_t *k, double *part) {
-    double cum[MCSI_PATCH_COLS], total = 0.0;
-    uint32_t i;
+    double total = 0.0;
+    double cum[MCSI_PATCH_COLS];
     MCSI_UNROLL
-    for (i = 0; i < n; i += 2) { /* by pairs: half the latency */
-        double a = (double)weight[i], both = a + (double)weight[i + 1];
-        cum[i] = total, cum[i + 1] = total + a, total += both;
+    for (uint32_t i = 0; i < n; i += 2) { /* by pairs: half the latency */
+        const double a = (double)weight[i];
+        const double both = a + (double)weight[i + 1];
+        cum[i] = total;
+        cum[i + 1] = total + a;
+        total += both;
     }
     if (!(total > 0.0)) return 0;
     if (*U >= 0.0) {
-        double V = *U * (total * (1.0 / MCSI_ONE)), rest;
+        const double V = *U * (total * (1.0 / MCSI_ONE));
         *k = 0;
         MCSI_UNROLL
-        for (i = 1; i < n; i++) *k += (uint32_t)(cum[i] <= V);
-        rest = (V - cum[*k]) * (MCSI_ONE / (double)weight[*k]), *U = rest < 2147483647.5 ? rest : 2147483647.5;
+        for (uint32_t i = 1; i < n; i++) *k += (uint32_t)(cum[i] <= V);
+        const double rest = (V - cum[*k]) * (MCSI_ONE / (double)weight[*k]);
+        *U = rest < 2147483647.5 ? rest : 2147483647.5;
     }
     if (!(weight[*k] > 0.0f)) return 0;
     *part *= (double)weight[*k] / total;
     return 1;
 }
 /* The same from a grid, column by column: the row, then its column. */
-MCSI_CORE int mcsi_grid_draw(const float *weight, uint32_t rows, uint32_t cols, double *U1, double *U2, uint32_t *i, uint32_t *j,
-                             double *part) {
-    float sum[MCSI_PATCHES], list[MCSI_PATCH_COLS], *to = sum;
+MCSI_CORE int mcsi_grid_draw(const float *weight, uint32_t rows, uint32_t cols, double *U1, double *U2, uint32_t *i,
+                             uint32_t *j, double *part) {
+    float sum[MCSI_PATCHES];
+    float *to = sum;
     const float *from = weight;
-    uint32_t k, n;
     MCSI_UNROLL
-    for (n = rows * cols / 2; n >= rows; from = to, to += n, n /= 2) {
+    for (uint32_t n = rows * cols / 2; n >= rows; from = to, to += n, n /= 2) {
         MCSI_UNROLL
-        for (k = 0; k < n; k++) to[k] = from[k] + from[k + n];
+        for (uint32_t k = 0; k < n; k++) to[k] = from[k] + from[k + n];
     }
     if (!mcsi_list_draw(from, rows, U2, i, part)) return 0;
+    float list[MCSI_PATCH_COLS];
     MCSI_UNROLL
-    for (k = 0; k < cols; k++) list[k] = weight[k * rows + *i];
+    for (uint32_t k = 0; k < cols; k++) list[k] = weight[k * rows + *i];
     return mcsi_list_draw(list, cols, U1, j, part);
 }
 /* The same from the parts of a patch; by their light alone when all are below the horizon that crosses the patch. */
-MCSI_CORE int mcsi_parts_draw(const float *light, uint32_t side, float *value, float *weight, double *U1, double *U2, uint32_t *i,
-                              uint32_t *j, double *part) {
-    uint32_t k, tried;
-    for (tried = 0; tried < 2; tried++) {
-        if (side == 4 ? mcsi_grid_draw(weight, 4, 4, U1, U2, i, j, part) : mcsi_grid_draw(weight, 2, 2, U1, U2, i, j, part))
+MCSI_CORE int mcsi_parts_draw(const float *light, uint32_t side, float *value, float *weight, double *U1, double *U2,
+                              uint32_t *i, uint32_t *j, double *part) {
+    for (uint32_t tried = 0; tried < 2; tried++) {
+        if (side == 4 ? mcsi_grid_draw(weight, 4, 4, U1, U2, i, j, part)
+                      : mcsi_grid_draw(weight, 2, 2, U1, U2, i, j, part))
             return 1;
-        for (k = 0; k < side * side; k++)
+        for (uint32_t k = 0; k < side * side; k++)
             if (weight[k] > 0.0f) return 0;
-        for (k = 0; k < side * side; k++) value[k] = MCSI_TILE_LEAST, weight[k] = light[k] * MCSI_TILE_LEAST;
+        for (uint32_t k = 0; k < side * side; k++) {
+            value[k] = MCSI_TILE_LEAST;
+            weight[k] = light[k] * MCSI_TILE_LEAST;
+        }
     }
     return 0;
 }
 /* Down to tile (i, j) and the place in it; with U1, U2 < 0, the part of all draws that tile (i, j) gets. */
-MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s, double *U1, double *U2, uint32_t *i,
-                                uint32_t *j, double *part, mcsi_warp *warp) {
-    float value[MCSI_PATCHES], weight[MCSI_PATCHES], v[MCSI_PATCHES]; /* whole vectors are computed */
+MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s, double *U1, double *U2,
+                                uint32_t *i, uint32_t *j, double *part, mcsi_warp *warp) {
     const float *level = mcsi_tiles_patches(t);
-    uint32_t rows = MCSI_PATCH_ROWS, below = t->rows / MCSI_PATCH_ROWS, in_row = *i / below, in_col = *j / below, k = 0;
-    size_t at;
+    uint32_t rows = MCSI_PATCH_ROWS;
+    uint32_t below = t->rows / MCSI_PATCH_ROWS;
+    uint32_t in_row = *i / below;
+    uint32_t in_col = *j / below;
+    uint32_t k = 0;
+    float value[MCSI_PATCHES], weight[MCSI_PATCHES];
     mcsi_patch_weights_n(s, MCSI_PATCHES, level, value, weight);
     if (!mcsi_grid_draw(weight, MCSI_PATCH_ROWS, MCSI_PATCH_COLS, U1, U2, &in_row, &in_col, part)) return 0;
     level += (int)MCSI_TILE_FIELDS * MCSI_PATCHES;
     do {
-        uint32_t side = mcsi_patch_side(t, rows), parts = side * side, y, x;
+        const uint32_t side = mcsi_patch_side(t, rows);
+        const uint32_t parts = side * side;
         const float *patch = level + MCSI_TILE_FIELDS * (size_t)(in_col * rows + in_row) * parts;
-        below /= side, y = *i / below % side, x = *j / below % side;
+        below /= side;
+        uint32_t y = *i / below % side;
+        uint32_t x = *j / below % side;
         mcsi_patch_weights_n(s, parts, patch, value, weight);
         if (!mcsi_parts_draw(patch, side, value, weight, U1, U2, &y, &x, part)) return 0;
-        in_row = in_row * side + y, in_col = in_col * side + x, k = x * side + y,
-        level += MCSI_TILE_FIELDS * 2 * (size_t)rows * rows * parts, rows *= side;
+        in_row = in_row * side + y;
+        in_col = in_col * side + x;
+        k = x * side + y;
+        level += MCSI_TILE_FIELDS * 2 * (size_t)rows * rows * parts;
+        rows *= side;
     } while (below > 1);
-    *i = in_row, *j = in_col, at = (size_t)in_col * rows + in_row;
+    *i = in_row;
+    *j = in_col;
+    const size_t at = (size_t)in_col * rows + in_row;
     mcsi_tile_prefetch(e, mcsi_tiles_window(t, in_row, in_col), *U2);
+    float v[MCSI_PATCHES]; /* whole vectors are computed */
     mcsi_corner_values_n(s, 4, mcsi_tiles_around(t) + 12 * at, 4, v);
-    *warp = mcsi_warp_make(value[k], mcsi_tiles_fields(t)[MCSI_TILE_PULL * (size_t)t->rows * t->cols + at], v[0], v[1], v[2], v[3]);
+    *warp = mcsi_warp_make(value[k], mcsi_tiles_fields(t)[MCSI_TILE_PULL * (size_t)t->rows * t->cols + at], v[0], v[1],
+                           v[2], v[3]);
     return 1;
 }
 /* Density of the tiles alone. */
-MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s, const mcsi_env_place_of *at) {
-    double part = 1.0, U1 = -1.0, U2 = -1.0;
-    uint32_t i = mcsi_tile_of(at->row, t->rows, e->h), j = mcsi_tile_of(at->col, t->cols, e->w);
+MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s,
+                                  const mcsi_env_place_of *at) {
+    double part = 1.0;
+    double U1 = -1.0;
+    double U2 = -1.0;
+    uint32_t i = mcsi_tile_of(at->row, t->rows, e->h);
+    uint32_t j = mcsi_tile_of(at->col, t->cols, e->w);
     mcsi_warp warp;
-    return mcsi_oneshot_tile(t, e, s, &U1, &U2, &i, &j, &part, &warp) ? mcsi_tiled_density(t, e, part, NULL, &warp, i, j, at)
-                                                                      : 0.0f;
+    return mcsi_oneshot_tile(t, e, s, &U1, &U2, &i, &j, &part, &warp)
+               ? mcsi_tiled_density(t, e, part, NULL, &warp, i, j, at)
+               : 0.0f;
 }
 MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2) {
     int32_t ok = 1;
-    double part = 1.0, U1, U2;
-    uint32_t i = 0, j = 0;
+    double part = 1.0;
+    uint32_t i = 0;
+    uint32_t j = 0;
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
     mcsi_facing s;
+    if (!mcsi_facing_make(e, r, &s)) return mcsi_nothing(e);
+    const float share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f);
     mcsi_own_lobe own;
-    mcsi_env_place_of at;
-    mcsi_warp warp;
+    if (share > 0.0f) own = mcsi_own_make(r, &s);
     mcs_texel x;
     mcs_vec3 w;
-    float share;
-    u1 = mcsi_unit(u1, &ok), u2 = mcsi_unit(u2, &ok);
-    if (!mcsi_facing_make(e, r, &s)) return mcsi_nothing(e);
-    share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f);
-    if (share > 0.0f) own = mcsi_own_make(r, &s);
     if (mcsi_own_draw(&own, share, &u1, u2, &w, &ok)) {
+        mcsi_env_place_of at;
         if (!mcsi_env_find(e, w, &at)) return mcsi_nothing(e);
-        x.w = w, x.row = at.row, x.col = at.col, x.pdf = mcsi_oneshot_density(t, e, &s, &at);
+        x.w = w;
+        x.row = at.row;
+        x.col = at.col;
+        x.pdf = mcsi_oneshot_density(t, e, &s, &at);
     } else {
-        U1 = (double)u1 * MCSI_ONE, U2 = (double)u2 * MCSI_ONE;
+        double U1 = (double)u1 * MCSI_ONE;
+        double U2 = (double)u2 * MCSI_ONE;
+        mcsi_warp warp;
         if (!mcsi_oneshot_tile(t, e, &s, &U1, &U2, &i, &j, &part, &warp)) return mcsi_nothing(e);
         mcsi_warp_place(&warp, &U1, &U2, &part);
         x = mcsi_tiled_draw(e, mcsi_tiles_window(t, i, j), U1, U2, part, ok);
@@ -5059,10 +5618,9 @@ MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const 
 MCS_FN float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w) {
     mcsi_env_place_of at;
     mcsi_facing s;
-    mcsi_own_lobe own;
-    float share;
     if (!mcsi_env_find(e, w, &at) || !mcsi_facing_make(e, r, &s)) return 0.0f;
-    share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f);
+    const float share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f);
+    mcsi_own_lobe own;
     if (share > 0.0f) own = mcsi_own_make(r, &s);
     return mcsi_own_mix(&own, share, w, mcsi_oneshot_density(t, e, &s, &at));
 }
@@ -5084,26 +5642,26 @@ typedef struct {
 /* sum + 4 a b k, where a b >= 0 and k >= 1/2; above DBL_MAX it is DBL_MAX, and nothing overflows on the way. */
 MCS_FN double mcsi_stat_sum(double sum, double a, double b, double k) {
     const double down = 7.458340731200207e-155; /* 2^-512 */
-    double part;
-    if (sum < 1e300 && k < 1e25 && a < 1e140 && a > -1e140 && b < 1e140 && b > -1e140) return sum + 2.0 * a * (2.0 * b) * k;
-    part = (a * down) * (b * down);
+    if (sum < 1e300 && k < 1e25 && a < 1e140 && a > -1e140 && b < 1e140 && b > -1e140)
+        return sum + 2.0 * a * (2.0 * b) * k;
+    const double part = (a * down) * (b * down);
     sum = 0.25 * (sum * down * down) + (part < 8.0 ? part : 8.0) * k;
     return sum < 0.25 ? 4.0 * sum / down / down : DBL_MAX;
 }
 /* Differences are halved, because their halves cannot overflow. */
 MCS_FN void mcs_stat_add(mcs_stat *s, double x) {
-    double d = 0.5 * x - 0.5 * s->mean;
+    const double d = 0.5 * x - 0.5 * s->mean;
     s->n += 1.0;
     s->mean += 2.0 * (d / s->n);
     s->m2 = mcsi_stat_sum(s->m2, d, 0.5 * x - 0.5 * s->mean, 1.0);
 }
 MCS_FN mcs_stat mcs_stat_merge(mcs_stat a, mcs_stat b) {
-    mcs_stat s;
-    double d = 0.5 * b.mean - 0.5 * a.mean, step;
+    const double d = 0.5 * b.mean - 0.5 * a.mean;
     if (!(a.n > 0.0)) return b;
     if (!(b.n > 0.0)) return a;
+    mcs_stat s;
     s.n = a.n + b.n;
-    step = d * (b.n / s.n);
+    const double step = d * (b.n / s.n);
     s.mean = step < 1e300 && step > -1e300 ? a.mean + 2.0 * step : a.mean + step + step;
     s.m2 = mcsi_stat_sum(a.m2 < DBL_MAX - b.m2 ? a.m2 + b.m2 : DBL_MAX, d, d, a.n * b.n / s.n);
     return s;
@@ -5283,7 +5841,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_ward_pdf MCS_(ward_pdf)
 #define mcs_ward_sample MCS_(ward_sample)
 #define mcs_ward_weight MCS_(ward_weight)
-#define mcsi_above MCSI_(above)
 #define mcsi_abs MCSI_(abs)
 #define mcsi_always MCSI_(always)
 #define mcsi_any MCSI_(any)
@@ -5317,7 +5874,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_cosine_loop MCSI_(cosine_loop)
 #define mcsi_d MCSI_D
 #define mcsi_deviation MCSI_(deviation)
-#define mcsi_direction MCSI_(direction)
 #define mcsi_disk_loop MCSI_(disk_loop)
 #define mcsi_disk_pdf MCSI_(disk_pdf)
 #define mcsi_dot MCSI_(dot)
@@ -5364,7 +5920,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_hemisphere_loop MCSI_(hemisphere_loop)
 #define mcsi_in MCSI_(in)
 #define mcsi_in_radii MCSI_(in_radii)
-#define mcsi_keep MCSI_(keep)
 #define mcsi_linear_ends MCSI_(linear_ends)
 #define mcsi_linear_loop MCSI_(linear_loop)
 #define mcsi_linear_place MCSI_(linear_place)
@@ -5411,6 +5966,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_root MCSI_(root)
 #define mcsi_sample1 MCSI_(sample1)
 #define mcsi_sample2 MCSI_(sample2)
+#define mcsi_sane_direction MCSI_(sane_direction)
+#define mcsi_sane_parameter MCSI_(sane_parameter)
+#define mcsi_sane_result MCSI_(sane_result)
+#define mcsi_sane_u MCSI_(sane_u)
+#define mcsi_sane_upper MCSI_(sane_upper)
 #define mcsi_scale_ok MCSI_(scale_ok)
 #define mcsi_scramble_reversed MCSI_(scramble_reversed)
 #define mcsi_secant2 MCSI_(secant2)
@@ -5450,7 +6010,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_truncexp_ends MCSI_(truncexp_ends)
 #define mcsi_truncexp_loop MCSI_(truncexp_loop)
 #define mcsi_u_of MCSI_(u_of)
-#define mcsi_unit MCSI_(unit)
 #define mcsi_uv MCSI_(uv)
 #define mcsi_vec2 MCSI_(vec2)
 #define mcsi_vec3 MCSI_(vec3)
@@ -5476,7 +6035,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_warp_make MCSI_(warp_make)
 #define mcsi_warps_loop MCSI_(warps_loop)
 #define mcsi_with_sign MCSI_(with_sign)
-#define mcsi_within MCSI_(within)
 
 #define MCSI_W 4
 #define MCS_(name) mcs4_##name
@@ -5700,7 +6258,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_ward_pdf
 #undef mcs_ward_sample
 #undef mcs_ward_weight
-#undef mcsi_above
 #undef mcsi_abs
 #undef mcsi_always
 #undef mcsi_any
@@ -5734,7 +6291,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_cosine_loop
 #undef mcsi_d
 #undef mcsi_deviation
-#undef mcsi_direction
 #undef mcsi_disk_loop
 #undef mcsi_disk_pdf
 #undef mcsi_dot
@@ -5781,7 +6337,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_hemisphere_loop
 #undef mcsi_in
 #undef mcsi_in_radii
-#undef mcsi_keep
 #undef mcsi_linear_ends
 #undef mcsi_linear_loop
 #undef mcsi_linear_place
@@ -5828,6 +6383,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_root
 #undef mcsi_sample1
 #undef mcsi_sample2
+#undef mcsi_sane_direction
+#undef mcsi_sane_parameter
+#undef mcsi_sane_result
+#undef mcsi_sane_u
+#undef mcsi_sane_upper
 #undef mcsi_scale_ok
 #undef mcsi_scramble_reversed
 #undef mcsi_secant2
@@ -5867,7 +6427,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_truncexp_ends
 #undef mcsi_truncexp_loop
 #undef mcsi_u_of
-#undef mcsi_unit
 #undef mcsi_uv
 #undef mcsi_vec2
 #undef mcsi_vec3
@@ -5893,7 +6452,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_warp_make
 #undef mcsi_warps_loop
 #undef mcsi_with_sign
-#undef mcsi_within
 #endif
 
 /* ==== array functions ==========================================================================================================
@@ -5918,8 +6476,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner) {
     MCSI_WIDEST(env_directions_loop, (f, n, b, turn, inner));
 }
-MCS_FN void mcsi_env_locate_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z, float *off_pole,
-                              float *polar, float *turns) {
+MCS_FN void mcsi_env_locate_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z,
+                              float *off_pole, float *polar, float *turns) {
     MCSI_WIDEST(env_locate_loop, (f, n, x, y, z, off_pole, polar, turns));
 }
 #ifndef MCS_NO_LOBES
@@ -5933,11 +6491,12 @@ MCS_FN void mcsi_corner_values_n(const mcsi_facing *s, size_t n, const float *co
     MCSI_WIDEST(corner_values_loop, (s, n, corner, stride, value));
 }
 MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b) { MCSI_WIDEST(warps_loop, (n, b)); }
-MCS_FN void mcsi_grid_rows_n(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum, float *row) {
+MCS_FN void mcsi_grid_rows_n(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum,
+                             float *row) {
     MCSI_WIDEST(grid_rows_loop, (rows, cols, light, value, cum, row));
 }
-MCS_FN void mcsi_grid_bounds_n(size_t rows, size_t cols, const float *light, const float *pull, const float *corner, float *value,
-                               float *weight, float *row) {
+MCS_FN void mcsi_grid_bounds_n(size_t rows, size_t cols, const float *light, const float *pull, const float *corner,
+                               float *value, float *weight, float *row) {
     MCSI_WIDEST(grid_bounds_loop, (rows, cols, light, pull, corner, value, weight, row));
 }
 #endif
@@ -5978,120 +6537,127 @@ MCS_FN void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, 
 MCS_FN void mcs_disk_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf) {
     MCSI_WIDEST(disk_loop, (R, n, u1, u2, x, y, pdf));
 }
-MCS_FN void mcs_concentric_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf) {
+MCS_FN void mcs_concentric_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                    float *pdf) {
     MCSI_WIDEST(concentric_loop, (R, n, u1, u2, x, y, pdf));
 }
 MCS_FN void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
     MCSI_WIDEST(sphere_loop, (n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+MCS_FN void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                    float *pdf) {
     MCSI_WIDEST(hemisphere_loop, (n, u1, u2, x, y, z, pdf));
 }
 MCS_FN void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
     MCSI_WIDEST(cosine_loop, (n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+MCS_FN void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                              float *pdf) {
     MCSI_WIDEST(cone_loop, (k, n, u1, u2, x, y, z, pdf));
 }
 #ifndef MCS_NO_LOBES
-MCS_FN void mcs_phong_lobe_sample_n(const mcs_phong *m, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                    float *pdf) {
+MCS_FN void mcs_phong_lobe_sample_n(const mcs_phong *m, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                    float *z, float *pdf) {
     MCSI_WIDEST(phong_lobe_loop, (m, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_phong_sample_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
-                               float *z, float *pdf, float *weight) {
+MCS_FN void mcs_phong_sample_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                               float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(phong_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_phong_pdf_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+MCS_FN void mcs_phong_pdf_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                            float *pdf) {
     MCSI_WIDEST(phong_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
 MCS_FN void mcs_phong_eval_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
                              float *value) {
     MCSI_WIDEST(phong_eval_loop, (m, wo, n, x, y, z, value));
 }
-MCS_FN void mcs_ward_h_sample_n(const mcs_ward *m, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                float *pdf) {
+MCS_FN void mcs_ward_h_sample_n(const mcs_ward *m, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                float *z, float *pdf) {
     MCSI_WIDEST(ward_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_ward_sample_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
-                              float *z, float *pdf, float *weight) {
+MCS_FN void mcs_ward_sample_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                              float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(ward_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_ward_pdf_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+MCS_FN void mcs_ward_pdf_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                           float *pdf) {
     MCSI_WIDEST(ward_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
 MCS_FN void mcs_ward_eval_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
                             float *value) {
     MCSI_WIDEST(ward_eval_loop, (m, wo, n, x, y, z, value));
 }
-MCS_FN void mcs_beckmann_h_sample_n(const mcs_beckmann *m, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                    float *pdf) {
+MCS_FN void mcs_beckmann_h_sample_n(const mcs_beckmann *m, size_t n, const float *u1, const float *u2, float *x,
+                                    float *y, float *z, float *pdf) {
     MCSI_WIDEST(beckmann_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_beckmann_sample_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                                  float *y, float *z, float *pdf, float *weight) {
+MCS_FN void mcs_beckmann_sample_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                  float *x, float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(beckmann_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_beckmann_pdf_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                               float *pdf) {
+MCS_FN void mcs_beckmann_pdf_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                               const float *z, float *pdf) {
     MCSI_WIDEST(beckmann_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_beckmann_eval_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                                float *value) {
+MCS_FN void mcs_beckmann_eval_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                const float *z, float *value) {
     MCSI_WIDEST(beckmann_eval_loop, (m, wo, n, x, y, z, value));
 }
-MCS_FN void mcs_ggx_h_sample_n(const mcs_ggx *m, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                               float *pdf) {
+MCS_FN void mcs_ggx_h_sample_n(const mcs_ggx *m, size_t n, const float *u1, const float *u2, float *x, float *y,
+                               float *z, float *pdf) {
     MCSI_WIDEST(ggx_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_ggx_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
-                             float *z, float *pdf, float *weight) {
+MCS_FN void mcs_ggx_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                             float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(ggx_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_ggx_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+MCS_FN void mcs_ggx_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                          float *pdf) {
     MCSI_WIDEST(ggx_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_ggx_eval_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z, float *value) {
+MCS_FN void mcs_ggx_eval_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                           float *value) {
     MCSI_WIDEST(ggx_eval_loop, (m, wo, n, x, y, z, value));
 }
-MCS_FN void mcs_ggx_vndf_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                    float *z, float *pdf) {
+MCS_FN void mcs_ggx_vndf_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                                    float *y, float *z, float *pdf) {
     MCSI_WIDEST(ggx_vndf_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_ggx_vndf_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                  float *z, float *pdf, float *weight) {
+MCS_FN void mcs_ggx_vndf_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                                  float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(ggx_vndf_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
 MCS_FN void mcs_ggx_vndf_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
                                float *pdf) {
     MCSI_WIDEST(ggx_vndf_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_ggx_bounded_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                                       float *y, float *z, float *pdf) {
+MCS_FN void mcs_ggx_bounded_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                       float *x, float *y, float *z, float *pdf) {
     MCSI_WIDEST(ggx_bounded_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_ggx_bounded_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                     float *z, float *pdf, float *weight) {
+MCS_FN void mcs_ggx_bounded_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                     float *x, float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(ggx_bounded_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_ggx_bounded_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                                  float *pdf) {
+MCS_FN void mcs_ggx_bounded_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                  const float *z, float *pdf) {
     MCSI_WIDEST(ggx_bounded_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_ashikhmin_h_sample_n(const mcs_ashikhmin *m, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                     float *z, float *pdf) {
+MCS_FN void mcs_ashikhmin_h_sample_n(const mcs_ashikhmin *m, size_t n, const float *u1, const float *u2, float *x,
+                                     float *y, float *z, float *pdf) {
     MCSI_WIDEST(ashikhmin_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_ashikhmin_sample_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                                   float *y, float *z, float *pdf, float *weight) {
+MCS_FN void mcs_ashikhmin_sample_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                   float *x, float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(ashikhmin_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_ashikhmin_pdf_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                                float *pdf) {
+MCS_FN void mcs_ashikhmin_pdf_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                const float *z, float *pdf) {
     MCSI_WIDEST(ashikhmin_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                                 float *value) {
+MCS_FN void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                 const float *z, float *value) {
     MCSI_WIDEST(ashikhmin_eval_loop, (m, wo, n, x, y, z, value));
 }
 #endif
