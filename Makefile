@@ -40,6 +40,9 @@ STRESS_TODAY = $(foreach i,$(shell echo '$(DAY) $(words $(STRESS_PARTS))' | awk 
 STRESS_SUM = awk '/^[0-9]+ passed, [0-9]+ failed$$/ { p += $$1; f += $$3 } END { print p + 0 " passed, " f + 0 " failed"; exit f != 0 || p == 0 }'
 STRESS_CUT = $(if $(filter-out $(TESTS) $(WITHOUT),$(wildcard tests/test_*.c)),,$(STRESS_BINS))
 EXAMPLE_BINS = $(EXAMPLES:%.c=$(BUILD)/%)
+# What most of their compile time went into is compiled once: tests/shared.
+SHARED = $(BUILD)/tests/shared
+WIDE = $(SHARED)/wide16.o $(SHARED)/wide8.o $(SHARED)/wide4.o
 RENDER = $(BUILD)/examples/render
 
 # Two at a time unless make was given its own -j. MAKEFLAGS holds -j only while a recipe is expanded, hence no := here.
@@ -131,13 +134,27 @@ $(BUILD)/flags: FORCE
 
 $(BUILD)/%: %.c mcsample.h $(wildcard tests/*.h) examples/hdr.h $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(CC) $(FLAGS) $(CONTRACT) $< -o $@ $(LIBS)
+	$(CC) $(FLAGS) $(CONTRACT) $< $(filter %.o,$^) -o $@ $(LIBS)
+
+$(SHARED)/wide%.o: tests/shared/wide.c mcsample.h $(wildcard tests/*.h) $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CC) $(FLAGS) $(EXACT) $(SHARED_FLAGS) -DLANES=$* -c $< -o $@
+
+$(SHARED)/%.o: tests/shared/%.c mcsample.h $(wildcard tests/*.h) $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CC) $(FLAGS) $(EXACT) $(SHARED_FLAGS) -c $< -o $@
 
 $(RENDER): examples/render.c examples/hdr.h mcsample.h $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(FLAGS) $(OPENMP) $< -o $@ $(LIBS)
 
-$(TEST_BINS) $(STRESS_BINS): CONTRACT = $(EXACT)
+$(TEST_BINS) $(STRESS_BINS): CONTRACT = $(EXACT) -DMCST_LINKED
+# Headers define functions that one object or another does not call.
+SHARED_FLAGS = -DMCST_LINKED -Wno-unused-function -Wno-unused-variable
+$(STRESS_BINS) $(patsubst %,$(BUILD)/tests/test_%,bits chi2_lobes chi2_rest fenv lines mutants values width): $(SHARED)/rows.o
+$(patsubst %,$(BUILD)/tests/test_%,mistakes oracle): $(SHARED)/asserting.o
+$(patsubst %,$(BUILD)/tests/test_%,bits fenv lines width): $(WIDE)
+$(patsubst %,$(BUILD)/tests/test_%,bits fenv): $(SHARED)/functions.o
 $(STRESS_BINS): $(wildcard tests/stress/*.h)
 $(STRESS_BINS): FLAGS += -Itests/stress
 $(STRESS_QUAD:%=$(BUILD)/tests/stress/%): LIBS = $(QUADMATH) -lm

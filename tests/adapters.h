@@ -1,6 +1,7 @@
 /* One uniform shape for every sampler of mcsample.h, at one width.
  *
- * No include guard: registry.h includes this file with MCST_W = 1 (scalar) and, for the width test, once more each for 4, 8 and 16.
+ * No include guard: registry.h includes this file with MCST_W = 1 (scalar) and, under MCST_WIDE, once more each for 4, 8 and 16;
+ * with MCST_LINKED tests/shared does.
  * With W = MCST_W and every array in structure-of-arrays order (entry i of lane l is at i * W + l), a row's functions are
  *
  *     sample(p, u1, u2, out)   p: 6 numbers (3 parameters, then wo); out: x, y, z, pdf, weight
@@ -28,7 +29,7 @@
 #define F_ mcs16_f
 #endif
 
-static inline M_(vec3) A_(load3)(const float *a) {
+MCST_HD static inline M_(vec3) A_(load3)(const float *a) {
     M_(vec3) v;
     v.x = M_(load)(a);
     v.y = M_(load)(a + MCST_W);
@@ -36,7 +37,7 @@ static inline M_(vec3) A_(load3)(const float *a) {
     return v;
 }
 
-static inline void A_(store3)(float *a, M_(vec3) v) {
+MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
     M_(store)(a, v.x);
     M_(store)(a + MCST_W, v.y);
     M_(store)(a + 2 * MCST_W, v.z);
@@ -56,53 +57,53 @@ static inline void A_(store3)(float *a, M_(vec3) v) {
 #define MAKE_ggx const M_(ggx) m = M_(ggx_make)(LD(0), LD(1))
 #define MAKE_ashikhmin const M_(ashikhmin) m = M_(ashikhmin_make)(LD(0), LD(1))
 
-#define MCST_LINE(row, fn, args, unused)                                                                \
-    static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
-        const M_(sample1) s = M_(fn##_sample)(ARGS_##args M_(load)(u1));                                \
-        (void)p, (void)u2;                                                                              \
-        M_(store)(out, s.x);                                                                            \
-        M_(store)(out + 3 * MCST_W, s.pdf);                                                             \
-    }                                                                                                   \
-    static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
-        M_(store)(out, M_(fn##_pdf)(ARGS_##args M_(load)(x)));                                          \
-    }                                                                                                   \
-    static inline void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
-        M_(store)(out, M_(fn##_invert)(ARGS_##args M_(load)(x)));                                       \
+#define MCST_LINE(row, fn, args, unused)                                                          \
+    MCST_FN void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
+        const M_(sample1) s = M_(fn##_sample)(ARGS_##args M_(load)(u1));                          \
+        (void)p, (void)u2;                                                                        \
+        M_(store)(out, s.x);                                                                      \
+        M_(store)(out + 3 * MCST_W, s.pdf);                                                       \
+    }                                                                                             \
+    MCST_FN void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
+        M_(store)(out, M_(fn##_pdf)(ARGS_##args M_(load)(x)));                                    \
+    }                                                                                             \
+    MCST_FN void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
+        M_(store)(out, M_(fn##_invert)(ARGS_##args M_(load)(x)));                                 \
     }
 
-#define MCST_PLANE(row, fn, args, unused)                                                               \
-    static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
-        const M_(sample2) s = M_(fn##_sample)(ARGS_##args M_(load)(u1), M_(load)(u2));                  \
-        M_(store)(out, s.x);                                                                            \
-        M_(store)(out + MCST_W, s.y);                                                                   \
-        M_(store)(out + 3 * MCST_W, s.pdf);                                                             \
-    }                                                                                                   \
-    static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
-        M_(store)(out, M_(fn##_pdf)(ARGS_##args M_(load)(x), M_(load)(x + MCST_W)));                    \
-    }                                                                                                   \
-    static inline void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
-        const M_(vec2) u = M_(fn##_invert)(ARGS_##args M_(load)(x), M_(load)(x + MCST_W));              \
-        M_(store)(out, u.x);                                                                            \
-        M_(store)(out + MCST_W, u.y);                                                                   \
+#define MCST_PLANE(row, fn, args, unused)                                                         \
+    MCST_FN void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
+        const M_(sample2) s = M_(fn##_sample)(ARGS_##args M_(load)(u1), M_(load)(u2));            \
+        M_(store)(out, s.x);                                                                      \
+        M_(store)(out + MCST_W, s.y);                                                             \
+        M_(store)(out + 3 * MCST_W, s.pdf);                                                       \
+    }                                                                                             \
+    MCST_FN void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
+        M_(store)(out, M_(fn##_pdf)(ARGS_##args M_(load)(x), M_(load)(x + MCST_W)));              \
+    }                                                                                             \
+    MCST_FN void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
+        const M_(vec2) u = M_(fn##_invert)(ARGS_##args M_(load)(x), M_(load)(x + MCST_W));        \
+        M_(store)(out, u.x);                                                                      \
+        M_(store)(out + MCST_W, u.y);                                                             \
     }
 
 /* A direction from a sampler whose leading arguments are given by `lead` (with its comma) after the statement `make`. */
-#define MCST_DIRECTION(row, fn, make, lead)                                                             \
-    static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
-        make;                                                                                           \
-        const M_(dir) s = M_(fn##_sample)(lead M_(load)(u1), M_(load)(u2));                             \
-        A_(store3)(out, s.w);                                                                           \
-        M_(store)(out + 3 * MCST_W, s.pdf);                                                             \
-    }                                                                                                   \
-    static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
-        make;                                                                                           \
-        M_(store)(out, M_(fn##_pdf)(lead A_(load3)(x)));                                                \
-    }                                                                                                   \
-    static inline void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
-        make;                                                                                           \
-        const M_(vec2) u = M_(fn##_invert)(lead A_(load3)(x));                                          \
-        M_(store)(out, u.x);                                                                            \
-        M_(store)(out + MCST_W, u.y);                                                                   \
+#define MCST_DIRECTION(row, fn, make, lead)                                                       \
+    MCST_FN void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
+        make;                                                                                     \
+        const M_(dir) s = M_(fn##_sample)(lead M_(load)(u1), M_(load)(u2));                       \
+        A_(store3)(out, s.w);                                                                     \
+        M_(store)(out + 3 * MCST_W, s.pdf);                                                       \
+    }                                                                                             \
+    MCST_FN void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
+        make;                                                                                     \
+        M_(store)(out, M_(fn##_pdf)(lead A_(load3)(x)));                                          \
+    }                                                                                             \
+    MCST_FN void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
+        make;                                                                                     \
+        const M_(vec2) u = M_(fn##_invert)(lead A_(load3)(x));                                    \
+        M_(store)(out, u.x);                                                                      \
+        M_(store)(out + MCST_W, u.y);                                                             \
     }
 #define LEAD_M &m,
 #define LEAD_M_WO &m, WO,
@@ -110,25 +111,25 @@ static inline void A_(store3)(float *a, M_(vec3) v) {
 #define MCST_LOBE(row, fn, mat, unused) MCST_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
 #define MCST_VLOBE(row, fn, mat, unused) MCST_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
 
-#define MCST_BRDF(row, fn, mat, base)                                                                   \
-    static inline void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
-        MAKE_##mat;                                                                                     \
-        const M_(brdf) s = M_(fn##_sample)(&m, WO, M_(load)(u1), M_(load)(u2));                         \
-        A_(store3)(out, s.wi);                                                                          \
-        M_(store)(out + 3 * MCST_W, s.pdf);                                                             \
-        M_(store)(out + 4 * MCST_W, s.weight);                                                          \
-    }                                                                                                   \
-    static inline void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
-        MAKE_##mat;                                                                                     \
-        M_(store)(out, M_(fn##_pdf)(&m, WO, A_(load3)(x)));                                             \
-    }                                                                                                   \
-    static inline void A_(row##_eval)(const float *p, const float *x, float *out) {                     \
-        MAKE_##mat;                                                                                     \
-        M_(store)(out, M_(base##_eval)(&m, WO, A_(load3)(x)));                                          \
-    }                                                                                                   \
-    static inline void A_(row##_weight)(const float *p, const float *x, float *out) {                   \
-        MAKE_##mat;                                                                                     \
-        M_(store)(out, M_(fn##_weight)(&m, WO, A_(load3)(x)));                                          \
+#define MCST_BRDF(row, fn, mat, base)                                                             \
+    MCST_FN void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
+        MAKE_##mat;                                                                               \
+        const M_(brdf) s = M_(fn##_sample)(&m, WO, M_(load)(u1), M_(load)(u2));                   \
+        A_(store3)(out, s.wi);                                                                    \
+        M_(store)(out + 3 * MCST_W, s.pdf);                                                       \
+        M_(store)(out + 4 * MCST_W, s.weight);                                                    \
+    }                                                                                             \
+    MCST_FN void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
+        MAKE_##mat;                                                                               \
+        M_(store)(out, M_(fn##_pdf)(&m, WO, A_(load3)(x)));                                       \
+    }                                                                                             \
+    MCST_FN void A_(row##_eval)(const float *p, const float *x, float *out) {                     \
+        MAKE_##mat;                                                                               \
+        M_(store)(out, M_(base##_eval)(&m, WO, A_(load3)(x)));                                    \
+    }                                                                                             \
+    MCST_FN void A_(row##_weight)(const float *p, const float *x, float *out) {                   \
+        MAKE_##mat;                                                                               \
+        M_(store)(out, M_(fn##_weight)(&m, WO, A_(load3)(x)));                                    \
     }
 
 #define MCST_ADAPT(shape, row, fn, arg, base, coord, grid) MCST_##shape(row, fn, arg, base)
@@ -136,35 +137,35 @@ MCST_ROWS(MCST_ADAPT)
 
 #if MCST_W == 1
 /* The array forms: out[0..4] = x, y, z, pdf, weight. */
-#define MCST_N_LINE(row, fn, args, unused)                                                                            \
-    static inline void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
-        (void)p, (void)u2;                                                                                            \
-        mcs_##fn##_sample_n(ARGS_##args n, u1, out[0], out[3]);                                                       \
+#define MCST_N_LINE(row, fn, args, unused)                                                                           \
+    MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
+        (void)p, (void)u2;                                                                                           \
+        mcs_##fn##_sample_n(ARGS_##args n, u1, out[0], out[3]);                                                      \
     }
-#define MCST_N_PLANE(row, fn, args, unused)                                                                           \
-    static inline void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
-        mcs_##fn##_sample_n(ARGS_##args n, u1, u2, out[0], out[1], out[3]);                                           \
+#define MCST_N_PLANE(row, fn, args, unused)                                                                          \
+    MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
+        mcs_##fn##_sample_n(ARGS_##args n, u1, u2, out[0], out[1], out[3]);                                          \
     }
-#define MCST_N_DIRECTION(row, fn, make, lead)                                                                         \
-    static inline void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
-        make;                                                                                                         \
-        mcs_##fn##_sample_n(lead n, u1, u2, out[0], out[1], out[2], out[3]);                                          \
+#define MCST_N_DIRECTION(row, fn, make, lead)                                                                        \
+    MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
+        make;                                                                                                        \
+        mcs_##fn##_sample_n(lead n, u1, u2, out[0], out[1], out[2], out[3]);                                         \
     }
 #define MCST_N_DIR(row, fn, args, unused) MCST_N_DIRECTION(row, fn, (void)p, ARGS_##args)
 #define MCST_N_LOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
 #define MCST_N_VLOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
-#define MCST_N_BRDF(row, fn, mat, base)                                                                                           \
-    static inline void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) {             \
-        MAKE_##mat;                                                                                                               \
-        mcs_##fn##_sample_n(&m, WO, n, u1, u2, out[0], out[1], out[2], out[3], out[4]);                                           \
-    }                                                                                                                             \
-    static inline void mcstn_##row##_pdf(const float *p, size_t n, const float *x, const float *y, const float *z, float *out) {  \
-        MAKE_##mat;                                                                                                               \
-        mcs_##fn##_pdf_n(&m, WO, n, x, y, z, out);                                                                                \
-    }                                                                                                                             \
-    static inline void mcstn_##row##_eval(const float *p, size_t n, const float *x, const float *y, const float *z, float *out) { \
-        MAKE_##mat;                                                                                                               \
-        mcs_##base##_eval_n(&m, WO, n, x, y, z, out);                                                                             \
+#define MCST_N_BRDF(row, fn, mat, base)                                                                                          \
+    MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) {             \
+        MAKE_##mat;                                                                                                              \
+        mcs_##fn##_sample_n(&m, WO, n, u1, u2, out[0], out[1], out[2], out[3], out[4]);                                          \
+    }                                                                                                                            \
+    MCST_HOST_FN void mcstn_##row##_pdf(const float *p, size_t n, const float *x, const float *y, const float *z, float *out) {  \
+        MAKE_##mat;                                                                                                              \
+        mcs_##fn##_pdf_n(&m, WO, n, x, y, z, out);                                                                               \
+    }                                                                                                                            \
+    MCST_HOST_FN void mcstn_##row##_eval(const float *p, size_t n, const float *x, const float *y, const float *z, float *out) { \
+        MAKE_##mat;                                                                                                              \
+        mcs_##base##_eval_n(&m, WO, n, x, y, z, out);                                                                            \
     }
 #define MCST_ADAPT_N(shape, row, fn, arg, base, coord, grid) MCST_N_##shape(row, fn, arg, base)
 MCST_ROWS(MCST_ADAPT_N)

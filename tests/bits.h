@@ -1,15 +1,16 @@
-/* The functions of mcsample.h that have no row in registry.h, in one uniform shape, for the hashes of test_bits.c.
+/* The functions of mcsample.h that have no row in registry.h, in one uniform shape, for functions.h.
  *
- * No include guard: test_bits.c includes this file once per width, with BITS_W lanes, F_ and U_ the types of floats and words,
- * M_(x) the name x of mcsample.h at that width and B_(x) the name of its adapter. As in adapters.h entry i of lane l is at
- * i * W + l:
+ * No include guard: like adapters.h this file is included once per width, MCST_W = 1, 4, 8 or 16, and without MCST_W for its lists
+ * alone. F_ and U_ are the types of floats and words, M_(x) is the name x of mcsample.h at that width and B_(x) the name of its
+ * adapter. As in adapters.h entry i of lane l is at i * W + l:
  *
  *     B_(x)(in, out)   in: 0..2 parameters, 3..5 a direction, 6, 7 random numbers, 8..10 a point, 11..13 words
  *                      out: BITS_OUT entries, set to 0 before
  *
  * Words travel as the bits of floats. A name needs its function here and its place in one of the lists: floats at every width,
  * words at every width, what there is only once, what takes a map or a product, what needs more memory than a thread of a kernel
- * should have, and array forms: their bits1_x is what the scalar form gives, and bits_array_x computes all cases. */
+ * should have, and array forms with the number of their maps or products: their bits1_x is what the scalar form gives, and
+ * bits_array_x computes n cases of one map or product. */
 /* clang-format off */
 #ifndef BITS_WIDE
 #define BITS_WIDE(X) \
@@ -30,36 +31,61 @@
     X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(product_bytes) X(product_sample) \
     X(product_pdf) X(oneshot_sample) X(oneshot_pdf)
 #define BITS_HOST(X) X(product_build) X(product_build_weights)
-#define BITS_ARRAYS(X) X(env_sample_n) X(env_texel_n) X(env_pdf_n) X(env_window_sample_n) X(product_sample_n)
+#define BITS_ARRAYS(X) \
+    X(env_sample_n, BITS_MAPS) X(env_texel_n, BITS_MAPS) X(env_pdf_n, BITS_MAPS) X(env_window_sample_n, BITS_MAPS) \
+    X(product_sample_n, BITS_MAPS * BITS_SURFACES)
 #endif
 /* clang-format on */
 
-#define FN(name) BITS_HD static void B_(name)(const float *in, float *out)
+#ifdef MCST_W
+#if MCST_W == 1
+#define F_ float
+#define U_ uint32_t
+#define M_(x) mcs_##x
+#define B_(x) bits1_##x
+#elif MCST_W == 4
+#define F_ mcs4_f
+#define U_ mcs4_u
+#define M_(x) mcs4_##x
+#define B_(x) bits4_##x
+#elif MCST_W == 8
+#define F_ mcs8_f
+#define U_ mcs8_u
+#define M_(x) mcs8_##x
+#define B_(x) bits8_##x
+#else
+#define F_ mcs16_f
+#define U_ mcs16_u
+#define M_(x) mcs16_##x
+#define B_(x) bits16_##x
+#endif
 
-BITS_HD static F_ B_(in)(const float *in, int i) {
+#define FN(name) MCST_FN void B_(name)(const float *in, float *out)
+
+MCST_HD static F_ B_(in)(const float *in, int i) {
     F_ v;
-    memcpy(&v, in + i * BITS_W, sizeof v);
+    memcpy(&v, in + i * MCST_W, sizeof v);
     return v;
 }
-BITS_HD static M_(vec3) B_(in3)(const float *in, int i) {
+MCST_HD static M_(vec3) B_(in3)(const float *in, int i) {
     M_(vec3) v;
     v.x = B_(in)(in, i), v.y = B_(in)(in, i + 1), v.z = B_(in)(in, i + 2);
     return v;
 }
-BITS_HD static U_ B_(word)(const float *in, int i) {
+MCST_HD static U_ B_(word)(const float *in, int i) {
     U_ v;
-    memcpy(&v, in + i * BITS_W, sizeof v);
+    memcpy(&v, in + i * MCST_W, sizeof v);
     return v;
 }
-BITS_HD static void B_(put)(float *out, int i, F_ v) { memcpy(out + i * BITS_W, &v, sizeof v); }
-BITS_HD static void B_(put_word)(float *out, int i, U_ v) { memcpy(out + i * BITS_W, &v, sizeof v); }
+MCST_HD static void B_(put)(float *out, int i, F_ v) { memcpy(out + i * MCST_W, &v, sizeof v); }
+MCST_HD static void B_(put_word)(float *out, int i, U_ v) { memcpy(out + i * MCST_W, &v, sizeof v); }
 #define IN(i) B_(in)(in, i)
 #define IN3(i) B_(in3)(in, i)
 #define WORD(i) B_(word)(in, i)
 #define PUT(i, v) B_(put)(out, i, v)
 #define PUT_WORD(i, v) B_(put_word)(out, i, v)
-BITS_HD static void B_(put2)(float *out, int i, M_(vec2) v) { PUT(i, v.x), PUT(i + 1, v.y); }
-BITS_HD static void B_(put3)(float *out, int i, M_(vec3) v) { PUT(i, v.x), PUT(i + 1, v.y), PUT(i + 2, v.z); }
+MCST_HD static void B_(put2)(float *out, int i, M_(vec2) v) { PUT(i, v.x), PUT(i + 1, v.y); }
+MCST_HD static void B_(put3)(float *out, int i, M_(vec3) v) { PUT(i, v.x), PUT(i + 1, v.y), PUT(i + 2, v.z); }
 
 FN(u01) { PUT(0, M_(u01)(WORD(11))); }
 FN(u01_open) { PUT(0, M_(u01_open)(WORD(11))); }
@@ -131,18 +157,18 @@ FN(mis_balance) { PUT(0, M_(mis_balance)(IN(0), IN(1))); }
 FN(mis_power) { PUT(0, M_(mis_power)(IN(0), IN(1))); }
 FN(mix_pdf) { PUT(0, M_(mix_pdf)(IN(6), IN(0), IN(1))); }
 
-#if BITS_W == 1
+#if MCST_W == 1
 #define WORD2(i) ((uint64_t)WORD(i) << 32 | WORD((i) + 1))
-BITS_HD static void bits_put_word2(float *out, int i, uint64_t v) {
+MCST_HD static void bits_put_word2(float *out, int i, uint64_t v) {
     PUT_WORD(i, (uint32_t)v), PUT_WORD(i + 1, (uint32_t)(v >> 32));
 }
-BITS_HD static void bits_put_double(float *out, int i, double v) {
+MCST_HD static void bits_put_double(float *out, int i, double v) {
     uint64_t word;
     memcpy(&word, &v, sizeof word);
     bits_put_word2(out, i, word);
 }
 /* Arrays longer than `out` are seen through their hash. */
-BITS_HD static void bits_put_array(float *out, int i, const void *a, size_t n) {
+MCST_HD static void bits_put_array(float *out, int i, const void *a, size_t n) {
     bits_put_word2(out, i, bits_hash(BITS_START, a, n));
 }
 enum { BITS_LONG = 200, BITS_CELLS = 40 };
@@ -199,19 +225,22 @@ FN(sobol_n) {
 FN(stratified) { B_(put2)(out, 0, mcs_stratified(WORD(11), WORD(12) % 50, WORD(13) % 70, WORD(13))); }
 FN(latin) { PUT(0, mcs_latin(WORD(11), WORD(12) % 5000, WORD(13) % 9, WORD(13))); }
 
-/* Bad entries, unless a test wants none. */
-#ifndef BITS_NEGATIVE
-#define BITS_NEGATIVE -1.0f
-#define BITS_NAN from_bits(0x7fc00000)
+/* A bad entry, unless a test wants none. */
+MCST_HD static float bits_bad(float x) {
+#ifdef __CUDA_ARCH__
+    return x;
+#else
+    return bits_valid ? 0.0f : x;
 #endif
+}
 
 /* Small tables, built anew for every case: of 1 to BITS_CELLS entries, some of them 0 or bad, now and then all 0. */
-BITS_HD static uint32_t bits_entries(const float *in, float *f) {
+MCST_HD static uint32_t bits_entries(const float *in, float *f) {
     const uint32_t n = 1 + WORD(11) % BITS_CELLS;
     uint32_t i;
     for (i = 0; i <= n; i++) {
         const uint32_t h = mcs_hash(WORD(12), i);
-        f[i] = WORD(13) % 16 == 0 || h % 8 == 0 ? 0.0f : h % 128 == 1 ? BITS_NEGATIVE : mcs_u01(h) * (h % 8 == 1 ? 1e6f : 1.0f);
+        f[i] = WORD(13) % 16 == 0 || h % 8 == 0 ? 0.0f : h % 128 == 1 ? bits_bad(-1.0f) : mcs_u01(h) * (h % 8 == 1 ? 1e6f : 1.0f);
     }
     return n;
 }
@@ -228,7 +257,7 @@ FN(pwc_build) {
     TABLE(pwc);
     PUT_WORD(0, (uint32_t)status), PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total);
 }
-BITS_HD static float bits_curve(float x, void *k) { return *(const float *)k * (1.0f + x * x); }
+MCST_HD static float bits_curve(float x, void *k) { return *(const float *)k * (1.0f + x * x); }
 FN(pwc_build_fn) {
     uint64_t room[4 * BITS_CELLS] = {0};
     mcs_pwc *t = (mcs_pwc *)(void *)room;
@@ -306,13 +335,13 @@ FN(alias_pmf) {
 }
 #undef TABLE
 
-BITS_HD static mcs_stat bits_stat(const float *in, int count) {
+MCST_HD static mcs_stat bits_stat(const float *in, int count) {
     mcs_stat s = {0.0, 0.0, 0.0};
     int i;
     for (i = 0; i < count; i++) mcs_stat_add(&s, (double)(int32_t)mcs_hash(WORD(11), (uint32_t)i) * 1e-3);
     return s;
 }
-BITS_HD static void bits_put_stat(float *out, mcs_stat s) {
+MCST_HD static void bits_put_stat(float *out, mcs_stat s) {
     bits_put_double(out, 0, s.n), bits_put_double(out, 2, s.mean), bits_put_double(out, 4, s.m2);
 }
 FN(stat_add) { bits_put_stat(out, bits_stat(in, (int)(WORD(12) % 9))); }
@@ -334,15 +363,15 @@ FN(stat_ci) {
 
 /* --- environment maps ------------------------------------------------------------------------------------------------------- */
 
-#define HOST(name) static void bits1_##name(const float *in, float *out)
+#define HOST(name) MCST_HOST_FN void bits1_##name(const float *in, float *out)
 /* Black, bad and very bright entries among others. */
-BITS_HD static void bits_picture(uint32_t seed, uint32_t n, float *f) {
+MCST_HD static void bits_picture(uint32_t seed, uint32_t n, float *f) {
     uint32_t i;
     for (i = 0; i < n; i++) {
         const uint32_t h = mcs_hash(seed, i);
         f[i] = h % 8 == 0     ? 0.0f
-               : h % 128 == 1 ? BITS_NEGATIVE
-               : h % 128 == 9 ? BITS_NAN
+               : h % 128 == 1 ? bits_bad(-1.0f)
+               : h % 128 == 9 ? bits_bad(from_bits(0x7fc00000))
                               : mcs_u01(h) * (h % 8 == 1 ? 1e4f : 1.0f);
     }
 }
@@ -361,21 +390,9 @@ static void *bits_memory(size_t bytes) {
     }
     return p;
 }
-BITS_HD static void bits_put_texel(float *out, int i, mcs_texel t) {
+MCST_HD static void bits_put_texel(float *out, int i, mcs_texel t) {
     bits1_put3(out, i, t.w), PUT(i + 3, t.pdf), PUT_WORD(i + 4, t.col), PUT_WORD(i + 5, t.row);
 }
-
-/* Built once and kept until the end: maps, for each of them a window across the seam, tiles, and a product for each of some
- * surfaces. Building one per case as for the tables above would take an emulator minutes. */
-enum { BITS_RANDOM, BITS_SUN, BITS_RGB, BITS_BILINEAR, BITS_FLOOR, BITS_CONSTANT, BITS_BLACK, BITS_MAPS, BITS_SURFACES = 4 };
-typedef struct {
-    mcs_env *env;
-    mcs_env_window *window;
-    mcs_tiles *tiles;
-    mcs_product *product[BITS_SURFACES];
-    mcs_status status[3 + BITS_SURFACES];
-    size_t tile_bytes;
-} bits_map;
 
 static void bits_map_build(int kind, bits_map *m) {
     static const uint32_t size[BITS_MAPS][2] = {{40, 12}, {130, 33}, {24, 17}, {40, 12}, {130, 33}, {16, 16}, {7, 5}};
@@ -421,7 +438,7 @@ static void bits_map_build(int kind, bits_map *m) {
 #ifdef __CUDACC__
 static __device__ bits_map bits_gpu_maps[BITS_MAPS]; /* copies of those below */
 #endif
-BITS_HD static const bits_map *bits_map_at(int kind) {
+MCST_FN const bits_map *bits_map_at(int kind) {
 #ifdef __CUDA_ARCH__
     return &bits_gpu_maps[kind];
 #else
@@ -430,12 +447,11 @@ BITS_HD static const bits_map *bits_map_at(int kind) {
     return &maps[kind];
 #endif
 }
-BITS_HD static int bits_map_of(const float *in) { return (int)(WORD(13) % BITS_MAPS); }
-BITS_HD static int bits_product_of(const float *in) { return (int)(WORD(13) % (BITS_MAPS * BITS_SURFACES)); }
-#define MAP const bits_map *const m = bits_map_at(bits_map_of(in))
+#define PRODUCT_OF(in) bits_kind_of(in, BITS_MAPS *BITS_SURFACES)
+#define MAP const bits_map *const m = bits_map_at(bits_kind_of(in, BITS_MAPS))
 #define PRODUCT \
     MAP;        \
-    const mcs_product *const p = m->product[bits_product_of(in) / BITS_MAPS]
+    const mcs_product *const p = m->product[PRODUCT_OF(in) / BITS_MAPS]
 
 FN(image_make) {
     const mcs_image im = mcs_image_make(in, WORD(11), WORD(12), WORD(13));
@@ -456,7 +472,7 @@ typedef struct {
     size_t bytes;
     mcs_image image;
 } bits_case;
-BITS_HD static void bits_case_make(const float *in, bits_case *c) {
+MCST_HD static void bits_case_make(const float *in, bits_case *c) {
     const uint32_t h = WORD(11);
     memset(c, 0, sizeof *c);
     if (WORD(13) % 32) bits_picture(WORD(12), 5 * BITS_SMALL * BITS_SMALL, c->pixels);
@@ -478,7 +494,7 @@ BITS_HD static void bits_case_make(const float *in, bits_case *c) {
     }
 }
 /* All that a map is, but its places in memory. */
-BITS_HD static void bits_put_env(const float *in, float *out, const bits_case *c, mcs_status status) {
+MCST_HD static void bits_put_env(const float *in, float *out, const bits_case *c, mcs_status status) {
     const mcs_env *e = (const mcs_env *)(const void *)c->room;
     const uint32_t words[] = {e->magic, e->version, e->w,    e->h,       e->bad,       e->row0,
                               e->row1,  e->col0,    e->col1, e->uniform, e->incomplete};
@@ -495,7 +511,7 @@ FN(env_build) {
     bits_put_env(in, out, &c, mcs_env_build((mcs_env *)(void *)c.room, c.bytes, &c.image));
 }
 /* The rows in two parts, the later first. */
-BITS_HD static mcs_status bits_rows(const float *in, bits_case *c) {
+MCST_HD static mcs_status bits_rows(const float *in, bits_case *c) {
     const uint32_t cut = WORD(13) % BITS_SMALL, middle = cut < c->image.h ? cut : c->image.h;
     const mcs_status status = mcs_env_build_rows((mcs_env *)(void *)c->room, c->bytes, &c->image, middle, c->image.h);
     return status ? status : mcs_env_build_rows((mcs_env *)(void *)c->room, c->bytes, &c->image, 0, middle);
@@ -599,7 +615,7 @@ FN(env_window_pdf) {
 
 /* --- products --------------------------------------------------------------------------------------------------------------- */
 
-BITS_HD static mcs_reflection bits_reflection(const float *in) {
+MCST_HD static mcs_reflection bits_reflection(const float *in) {
     mcs_reflection r;
     r.frame = mcs_frame_make(IN3(8)), r.wo = IN3(3), r.alpha_x = IN(0), r.alpha_y = IN(1);
     r.matte = WORD(12) % 4 ? mcs_u01(WORD(12)) : IN(6), r.profile = (mcs_profile)(WORD(11) >> 2 & 3);
@@ -654,7 +670,7 @@ HOST(product_build_weights) {
 FN(product_sample) {
     PRODUCT;
     bits_put_texel(out, 0, mcs_product_sample(p, IN(6), IN(7)));
-    PUT_WORD(6, (uint32_t)m->status[3 + bits_product_of(in) / BITS_MAPS]);
+    PUT_WORD(6, (uint32_t)m->status[3 + PRODUCT_OF(in) / BITS_MAPS]);
 }
 FN(product_pdf) {
     PRODUCT;
@@ -672,69 +688,50 @@ FN(oneshot_pdf) {
     PUT(1, mcs_oneshot_pdf(m->tiles, m->env, &r, mcs_oneshot_sample(m->tiles, m->env, &r, IN(6), IN(7)).w));
 }
 
-/* --- array forms: all cases of one map, or of one product, in one call ------------------------------------------------------- */
+/* --- array forms ------------------------------------------------------------------------------------------------------------ */
 
-/* in: random numbers 0, 1, points 2, 3, 4. */
-typedef void (*bits_array_call)(int kind, size_t n, float (*in)[CASES], float (*out)[CASES]);
-static void bits_arrays(int kinds, int (*kind)(const float *in), bits_array_call call) {
-    static float in[5][CASES], out[6][CASES];
-    static int from[CASES];
-    int i, j, k, n;
-    for (k = 0; k < kinds; k++) {
-        for (i = n = 0; i < CASES; i++) {
-            if (kind(given[i]) != k) continue;
-            for (j = 0; j < 5; j++) in[j][n] = given[i][U + j];
-            from[n++] = i;
-        }
-        memset(out, 0, sizeof out);
-        call(k, (size_t)n, in, out);
-        for (i = 0; i < n; i++)
-            for (j = 0; j < 6; j++) result[from[i]][j] = out[j][i];
-    }
-}
-#define ARRAY(name, kinds, kind, ...)                                                                                 \
-    static void bits_call_##name(int k, size_t n, float(*in)[CASES], float(*out)[CASES]) { mcs_##name(__VA_ARGS__); } \
-    static void bits_array_##name(void) { bits_arrays(kinds, kind, bits_call_##name); }
-#define DRAW(name, kinds, kind, ...)                                                        \
-    static void bits_call_##name(int k, size_t n, float(*in)[CASES], float(*out)[CASES]) {  \
+#define ARRAY(name) MCST_HOST_FN void bits_array_##name(int k, size_t n, float(*in)[CASES], float(*out)[CASES])
+#define DRAW(name, ...)                                                                     \
+    ARRAY(name) {                                                                           \
         static uint32_t col[CASES], row[CASES];                                             \
         mcs_##name(__VA_ARGS__, n, in[0], in[1], out[0], out[1], out[2], out[3], col, row); \
-        memcpy(out[4], col, n * sizeof *col), memcpy(out[5], row, n * sizeof *row);         \
-    }                                                                                       \
-    static void bits_array_##name(void) { bits_arrays(kinds, kind, bits_call_##name); }
+        memcpy(out[4], col, n * sizeof *col);                                               \
+        memcpy(out[5], row, n * sizeof *row);                                               \
+    }
 HOST(env_sample_n) {
     MAP;
     bits_put_texel(out, 0, mcs_env_sample(m->env, IN(6), IN(7)));
 }
-DRAW(env_sample_n, BITS_MAPS, bits_map_of, bits_map_at(k)->env)
+DRAW(env_sample_n, bits_map_at(k)->env)
 HOST(env_texel_n) {
     MAP;
     const mcs_texel t = mcs_env_texel(m->env, IN3(8));
     PUT_WORD(0, t.col), PUT_WORD(1, t.row), PUT(2, t.pdf);
 }
-static void bits_call_env_texel_n(int k, size_t n, float (*in)[CASES], float (*out)[CASES]) {
+ARRAY(env_texel_n) {
     static uint32_t col[CASES], row[CASES];
     mcs_env_texel_n(bits_map_at(k)->env, n, in[2], in[3], in[4], col, row, out[2]);
-    memcpy(out[0], col, n * sizeof *col), memcpy(out[1], row, n * sizeof *row);
+    memcpy(out[0], col, n * sizeof *col);
+    memcpy(out[1], row, n * sizeof *row);
 }
-static void bits_array_env_texel_n(void) { bits_arrays(BITS_MAPS, bits_map_of, bits_call_env_texel_n); }
 HOST(env_pdf_n) { bits1_env_pdf(in, out); }
-ARRAY(env_pdf_n, BITS_MAPS, bits_map_of, bits_map_at(k)->env, n, in[2], in[3], in[4], out[0])
+ARRAY(env_pdf_n) { mcs_env_pdf_n(bits_map_at(k)->env, n, in[2], in[3], in[4], out[0]); }
 HOST(env_window_sample_n) {
     MAP;
     bits_put_texel(out, 0, mcs_env_window_sample(m->window, m->env, IN(6), IN(7)));
 }
-DRAW(env_window_sample_n, BITS_MAPS, bits_map_of, bits_map_at(k)->window, bits_map_at(k)->env)
+DRAW(env_window_sample_n, bits_map_at(k)->window, bits_map_at(k)->env)
 HOST(product_sample_n) {
     PRODUCT;
     bits_put_texel(out, 0, mcs_product_sample(p, IN(6), IN(7)));
 }
-DRAW(product_sample_n, BITS_MAPS *BITS_SURFACES, bits_product_of, bits_map_at(k % BITS_MAPS)->product[k / BITS_MAPS])
+DRAW(product_sample_n, bits_map_at(k % BITS_MAPS)->product[k / BITS_MAPS])
 #undef ARRAY
 #undef DRAW
 #undef HOST
 #undef MAP
 #undef PRODUCT
+#undef PRODUCT_OF
 #undef WORD2
 #endif
 
@@ -744,8 +741,9 @@ DRAW(product_sample_n, BITS_MAPS *BITS_SURFACES, bits_product_of, bits_map_at(k 
 #undef WORD
 #undef PUT
 #undef PUT_WORD
-#undef BITS_W
+#undef MCST_W
 #undef F_
 #undef U_
 #undef M_
 #undef B_
+#endif

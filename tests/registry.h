@@ -1,6 +1,8 @@
 /* The registry: one row per continuous sampler of mcsample.h, and everything the generic checks need to know about it.
  *
- * Define MCST_WIDE before including to get the 4, 8 and 16 wide forms too (they cost compile time).
+ * Define MCST_WIDE before including to get the 4, 8 and 16 wide forms too (they cost compile time); a compiler without vectors and
+ * -DMCST_ARRAYS leave them out. With -DMCST_LINKED the functions of the rows are only declared: make compiles them once, in
+ * tests/shared, for all programs. Without it a program holds them itself, so that it can be compiled alone.
  * The other samplers (tables, alias, discrete, environment, product) have tests of their own: see mcst_exempt. */
 #ifndef MCST_REGISTRY_H
 #define MCST_REGISTRY_H
@@ -74,22 +76,28 @@ enum mcst_coord {
     MCST_SLOPES
 };
 
+/* In adapters.h: the forms of one width, and the array forms. */
+typedef void mcst_sample_fn(const float *p, const float *u1, const float *u2, float *out);
+typedef void mcst_value_fn(const float *p, const float *x, float *out);
+typedef void mcst_sample_n_fn(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]);
+typedef void mcst_value_n_fn(const float *p, size_t n, const float *x, const float *y, const float *z, float *out);
+/* In truth.h: the truth for the same float inputs. */
+typedef void mcst_map_fn(const float *p, ld u1, ld u2, ld *x);
+typedef ld mcst_exact_fn(const float *p, const float *x);
+typedef ld mcst_exact_u_fn(const float *p, ld u1, ld u2);
+typedef void mcst_exact_invert_fn(const float *p, const float *x, ld *u);
+
 typedef struct {
-    void (*sample)(const float *p, const float *u1, const float *u2, float *out);
-    void (*pdf)(const float *p, const float *x, float *out);
-    void (*invert)(const float *p, const float *x, float *out);
-    void (*eval)(const float *p, const float *x, float *out);
-    void (*weight)(const float *p, const float *x, float *out);
+    mcst_sample_fn *sample;
+    mcst_value_fn *pdf, *invert, *eval, *weight;
 } mcst_fns;
 
-/* The truth, for the same float inputs. */
 typedef struct {
-    void (*map)(const float *p, ld u1, ld u2, ld *x);
-    ld (*pdf)(const float *p, const float *x);
-    ld (*pdf_u)(const float *p, ld u1, ld u2);
-    void (*invert)(const float *p, const float *x, ld *u);
-    ld (*eval)(const float *p, const float *x);
-    ld (*weight)(const float *p, const float *x);
+    mcst_map_fn *map;
+    mcst_exact_fn *pdf;
+    mcst_exact_u_fn *pdf_u;
+    mcst_exact_invert_fn *invert;
+    mcst_exact_fn *eval, *weight;
 } mcst_truth;
 
 /* Two parameters, the incidence (cosine, azimuth in radians) and the samples that the chi-square test draws, in millions. */
@@ -110,9 +118,8 @@ typedef struct {
     const mcst_set *chi;
     size_t chi_size;
     mcst_fns fn[4]; /* widths 1, 4, 8, 16; the wide ones only under MCST_WIDE */
-    void (*sample_n)(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]);
-    void (*pdf_n)(const float *p, size_t n, const float *x, const float *y, const float *z, float *out);
-    void (*eval_n)(const float *p, size_t n, const float *x, const float *y, const float *z, float *out);
+    mcst_sample_n_fn *sample_n;
+    mcst_value_n_fn *pdf_n, *eval_n;
     mcst_truth truth;
 } mcst_row;
 
@@ -164,8 +171,54 @@ static const mcst_set mcst_chi_alpha[] = {{0.5f, 0.2f, 0.5f, 0.7f, 10}, {0.1f, 0
 static const mcst_set mcst_chi_exponents[] = {{10, 100, 0.5f, 0.7f, 10}, {0, 0, 0.7f, 2, 2},     {1e3f, 1e3f, 0.0871557f, -2, 2},
                                               {1e5f, 10, 0.7f, 1, 2},    {1, 1, 1e-3f, 1.1f, 2}, {1e6f, 1e6f, 1, 0, 2}};
 
-/* --- adapters ------------------------------------------------------------------------------------------------------------ */
+static inline o_vec3 mcst_o3(const float *x) { return o_v3(x[0], x[1], x[2]); }
 
+static inline o_vec2 mcst_o2(const float *x) {
+    o_vec2 v;
+    v.x = x[0];
+    v.y = x[1];
+    return v;
+}
+
+/* --- the functions of the rows ------------------------------------------------------------------------------------------- */
+
+#if defined(MCS_NO_WIDE) || defined(MCST_ARRAYS)
+#undef MCST_WIDE
+#endif
+#ifdef __CUDACC__ /* for kernels too */
+#define MCST_HD __host__ __device__
+#else
+#define MCST_HD
+#endif
+
+#ifdef MCST_LINKED
+#define MCST_FN
+#define MCST_HOST_FN
+#define MCST_DECLARE_UV(row)                                                                               \
+    mcst_value_fn mcst1_##row##_invert, mcst4_##row##_invert, mcst8_##row##_invert, mcst16_##row##_invert; \
+    mcst_exact_invert_fn mcsto_##row##_invert;
+#define MCST_DECLARE_LINE MCST_DECLARE_UV
+#define MCST_DECLARE_PLANE MCST_DECLARE_UV
+#define MCST_DECLARE_DIR MCST_DECLARE_UV
+#define MCST_DECLARE_LOBE MCST_DECLARE_UV
+#define MCST_DECLARE_VLOBE MCST_DECLARE_UV
+#define MCST_DECLARE_BRDF(row)                                                                             \
+    mcst_value_fn mcst1_##row##_eval, mcst4_##row##_eval, mcst8_##row##_eval, mcst16_##row##_eval;         \
+    mcst_value_fn mcst1_##row##_weight, mcst4_##row##_weight, mcst8_##row##_weight, mcst16_##row##_weight; \
+    mcst_value_n_fn mcstn_##row##_pdf, mcstn_##row##_eval;                                                 \
+    mcst_exact_fn mcsto_##row##_eval, mcsto_##row##_weight;
+#define MCST_DECLARE(shape, row, fn, arg, base, coord, grid)                                                \
+    mcst_sample_fn mcst1_##row##_sample, mcst4_##row##_sample, mcst8_##row##_sample, mcst16_##row##_sample; \
+    mcst_value_fn mcst1_##row##_pdf, mcst4_##row##_pdf, mcst8_##row##_pdf, mcst16_##row##_pdf;              \
+    mcst_sample_n_fn mcstn_##row;                                                                           \
+    mcst_map_fn mcsto_##row##_map;                                                                          \
+    mcst_exact_fn mcsto_##row##_pdf;                                                                        \
+    mcst_exact_u_fn mcsto_##row##_pdf_u;                                                                    \
+    MCST_DECLARE_##shape(row)
+MCST_ROWS(MCST_DECLARE)
+#else
+#define MCST_FN MCST_HD static inline
+#define MCST_HOST_FN static inline
 #define MCST_W 1
 #include "adapters.h"
 #ifdef MCST_WIDE
@@ -176,81 +229,8 @@ static const mcst_set mcst_chi_exponents[] = {{10, 100, 0.5f, 0.7f, 10}, {0, 0, 
 #define MCST_W 16
 #include "adapters.h"
 #endif
-
-static inline o_vec3 mcst_o3(const float *x) { return o_v3(x[0], x[1], x[2]); }
-
-static inline o_vec2 mcst_o2(const float *x) {
-    o_vec2 v;
-    v.x = x[0];
-    v.y = x[1];
-    return v;
-}
-
-#define OA_0
-#define OA_1 (ld) p[0],
-#define OA_2 (ld) p[0], (ld)p[1],
-#define OA_phong OA_1
-#define OA_ward OA_2
-#define OA_ward_gmd OA_2 0,
-#define OA_ward_duer OA_2 1,
-#define OA_ward_1992 OA_2 2,
-#define OA_beckmann OA_2
-#define OA_ggx OA_2
-#define OA_ashikhmin OA_2
-#define OWO mcst_o3(p + 3)
-
-#define MCST_O_LINE(row, fn, args)                                                                                  \
-    static inline void mcsto_##row##_map(const float *p, ld u1, ld u2, ld *x) {                                     \
-        (void)p, (void)u2;                                                                                          \
-        x[0] = o_##fn##_map(OA_##args u1);                                                                          \
-    }                                                                                                               \
-    static inline ld mcsto_##row##_pdf(const float *p, const float *x) { return o_##fn##_pdf(OA_##args(ld) x[0]); } \
-    static inline ld mcsto_##row##_pdf_u(const float *p, ld u1, ld u2) {                                            \
-        (void)u2;                                                                                                   \
-        return o_##fn##_pdf_u(OA_##args u1);                                                                        \
-    }                                                                                                               \
-    static inline void mcsto_##row##_invert(const float *p, const float *x, ld *u) { u[0] = o_##fn##_invert(OA_##args(ld) x[0]); }
-
-/* `point` takes the floats of a point to the oracle's type; `put` stores a mapped point; `lead` may end in wo. */
-#define MCST_O_UV(row, fn, lead, type, point, put)                              \
-    static inline void mcsto_##row##_map(const float *p, ld u1, ld u2, ld *x) { \
-        const type v = o_##fn##_map(lead u1, u2);                               \
-        (void)p;                                                                \
-        put;                                                                    \
-    }                                                                           \
-    static inline ld mcsto_##row##_pdf(const float *p, const float *x) {        \
-        (void)p;                                                                \
-        return o_##fn##_pdf(lead point(x));                                     \
-    }                                                                           \
-    static inline ld mcsto_##row##_pdf_u(const float *p, ld u1, ld u2) {        \
-        (void)p;                                                                \
-        return o_##fn##_pdf_u(lead u1, u2);                                     \
-    }
-#define MCST_O_INVERT(row, fn, lead, point)                                          \
-    static inline void mcsto_##row##_invert(const float *p, const float *x, ld *u) { \
-        const o_vec2 v = o_##fn##_invert(lead point(x));                             \
-        (void)p;                                                                     \
-        u[0] = v.x, u[1] = v.y;                                                      \
-    }
-#define MCST_PUT2 x[0] = v.x, x[1] = v.y
-#define MCST_PUT3 x[0] = v.x, x[1] = v.y, x[2] = v.z
-#define MCST_LEAD_WO(args) OA_##args OWO,
-#define MCST_O_PLANE(row, fn, args)                           \
-    MCST_O_UV(row, fn, OA_##args, o_vec2, mcst_o2, MCST_PUT2) \
-    MCST_O_INVERT(row, fn, OA_##args, mcst_o2)
-#define MCST_O_DIR(row, fn, args)                             \
-    MCST_O_UV(row, fn, OA_##args, o_vec3, mcst_o3, MCST_PUT3) \
-    MCST_O_INVERT(row, fn, OA_##args, mcst_o3)
-#define MCST_O_LOBE(row, fn, args) MCST_O_DIR(row, fn, args)
-#define MCST_O_VLOBE(row, fn, args)                                    \
-    MCST_O_UV(row, fn, MCST_LEAD_WO(args), o_vec3, mcst_o3, MCST_PUT3) \
-    MCST_O_INVERT(row, fn, MCST_LEAD_WO(args), mcst_o3)
-#define MCST_O_BRDF(row, fn, args)                                                                                               \
-    MCST_O_UV(row, fn, MCST_LEAD_WO(args), o_vec3, mcst_o3, MCST_PUT3)                                                           \
-    static inline ld mcsto_##row##_eval(const float *p, const float *x) { return o_##fn##_eval(MCST_LEAD_WO(args) mcst_o3(x)); } \
-    static inline ld mcsto_##row##_weight(const float *p, const float *x) { return o_##fn##_weight(MCST_LEAD_WO(args) mcst_o3(x)); }
-#define MCST_O(shape, row, fn, arg, base, coord, grid) MCST_O_##shape(row, fn, arg)
-MCST_ROWS(MCST_O)
+#include "truth.h"
+#endif
 
 /* --- the table ----------------------------------------------------------------------------------------------------------- */
 

@@ -6,58 +6,15 @@
  *
  * As CUDA (nvcc -x cu --fmad=false) the same file evaluates every scalar function in kernels too, where a GPU is present.
  * The terms of the promise are no contraction of a*b + c and floats evaluated as floats; any other build skips, and says so. */
-#include "mcsample.h"
-#ifndef MCS_NO_WIDE
-#define MCST_WIDE
-#endif
-#ifdef __CUDACC__ /* the adapters of registry.h for kernels too, and of what it includes nothing */
-#include "mcs_test.h"
-#include "oracle.h"
-#include "stats.h"
-#define inline __host__ __device__ inline
-#include "registry.h"
-#undef inline
-#else
-#include "registry.h"
-#endif
+#include "functions.h"
 
-#ifndef MCS_HEADER
-#define MCS_HEADER "mcsample.h" /* their paths from where the test is run */
-#endif
 #ifndef MCST_BITS
-#define MCST_BITS "tests/bits.txt"
-#endif
-#ifdef __CUDACC__
-#define BITS_HD __host__ __device__
-#else
-#define BITS_HD
+#define MCST_BITS "tests/bits.txt" /* its path from where the test is run */
 #endif
 
-/* --- the hash: FNV-1a, 64 bits, over the bit patterns, low byte first ------------------------------------------------------- */
-
-#define BITS_START 0xcbf29ce484222325u
-BITS_HD static uint64_t bits_hash(uint64_t hash, const void *words, size_t n) {
-    const char *a = (const char *)words;
-    size_t i;
-    int k;
-    for (i = 0; i < n; i++) {
-        uint32_t word;
-        memcpy(&word, a + i * sizeof word, sizeof word);
-        for (k = 0; k < 32; k += 8) hash = (hash ^ (word >> k & 255)) * 0x100000001B3u;
-    }
-    return hash;
-}
-
-/* --- inputs: BLOCKS parameter sets with BLOCK cases each, so that an array form has two vectors of 8 and a rest ------------- */
-
-enum { BLOCK = 19, BLOCKS = 128, CASES = BLOCK * BLOCKS, BITS_IN = 14, BITS_OUT = 10, P = 0, WO = 3, U = 6, X = 8, WORDS = 11 };
 static float given[CASES][BITS_IN], result[CASES][BITS_OUT];
 
-BITS_HD static float from_bits(uint32_t bits) {
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
+/* --- inputs ----------------------------------------------------------------------------------------------------------------- */
 
 /* Mostly in 2^-7 ... 2, a quarter in 2^-24 ... 2^31, some over all floats, some special. */
 static float any_parameter(uint64_t *state) {
@@ -127,80 +84,7 @@ static void make_inputs(const mcst_row *row) {
     }
 }
 
-#ifdef __CUDACC__
-namespace gpu {
-static int present() {
-    int count = 0;
-    return cudaGetDeviceCount(&count) == cudaSuccess && count > 0;
-}
-} // namespace gpu
-#endif
-
 /* --- evaluation ------------------------------------------------------------------------------------------------------------- */
-
-#define BITS_W 1
-#define F_ float
-#define U_ uint32_t
-#define M_(x) mcs_##x
-#define B_(x) bits1_##x
-#include "bits.h"
-#ifdef MCST_WIDE
-#define BITS_W 4
-#define F_ mcs4_f
-#define U_ mcs4_u
-#define M_(x) mcs4_##x
-#define B_(x) bits4_##x
-#include "bits.h"
-#define BITS_W 8
-#define F_ mcs8_f
-#define U_ mcs8_u
-#define M_(x) mcs8_##x
-#define B_(x) bits8_##x
-#include "bits.h"
-#define BITS_W 16
-#define F_ mcs16_f
-#define U_ mcs16_u
-#define M_(x) mcs16_##x
-#define B_(x) bits16_##x
-#include "bits.h"
-#define FOUR(x) \
-    { bits1_##x, bits4_##x, bits8_##x, bits16_##x }
-#else
-#define FOUR(x) \
-    { bits1_##x, NULL, NULL, NULL }
-#endif
-
-/* A function of the index: a row and which of its functions, or one of bits.h. */
-enum { SAMPLE, PDF, INVERT, EVAL, WEIGHT, SAMPLE_N, PDF_N, EVAL_N, FORMS, OTHER = FORMS };
-static const char *const suffix[FORMS] = {"sample", "pdf", "invert", "eval", "weight", "sample_n", "pdf_n", "eval_n"};
-static const struct {
-    const char *name;
-    void (*fn[4])(const float *in, float *out);
-    int floats;          /* all results are floats, and finite ones */
-    void (*array)(void); /* fills `result` from `given` by the array form */
-} others[] = {
-#define LISTED(x) {"mcs_" #x, FOUR(x), 1, NULL},
-#define LISTED_WORD(x) {"mcs_" #x, FOUR(x), 0, NULL},
-#define LISTED_ONCE(x) {"mcs_" #x, {bits1_##x, NULL, NULL, NULL}, 0, NULL},
-#define LISTED_ARRAY(x) {"mcs_" #x, {bits1_##x, NULL, NULL, NULL}, 1, bits_array_##x},
-    BITS_WIDE(LISTED) BITS_WORDS(LISTED_WORD) BITS_SCALAR(LISTED_ONCE) BITS_MAPPED(LISTED_ONCE) BITS_HOST(LISTED_ONCE)
-        BITS_ARRAYS(LISTED_ARRAY)};
-
-typedef struct {
-    int form, at; /* at: in mcst_rows, or in others */
-} target;
-
-static void call(target t, int w, int lanes, const float *in, float *out) {
-    const mcst_fns *f = &mcst_rows[t.form == OTHER ? 0 : t.at].fn[w];
-    switch (t.form) {
-    case SAMPLE: f->sample(in, in + U * lanes, in + (U + 1) * lanes, out); break;
-    case PDF: f->pdf(in, in + X * lanes, out); break;
-    case INVERT: f->invert(in, in + X * lanes, out); break;
-    case EVAL: f->eval(in, in + X * lanes, out); break;
-    case WEIGHT: f->weight(in, in + X * lanes, out); break;
-    default: others[t.at].fn[w](in, out);
-    }
-}
 
 /* Fills `result` at width w; neighbouring lanes get cases of different parameter sets. */
 static void evaluate(target t, int w) {
@@ -216,14 +100,10 @@ static void evaluate(target t, int w) {
     }
 }
 
-static void evaluate_arrays(target t) {
-    const mcst_row *row = &mcst_rows[t.form == OTHER ? 0 : t.at];
+/* By the array form of a row: the cases of a block, which share their parameters. */
+static void evaluate_blocks(target t) {
+    const mcst_row *row = &mcst_rows[t.at];
     int b, i, k;
-    memset(result, 0, sizeof result);
-    if (t.form == OTHER) {
-        others[t.at].array();
-        return;
-    }
     for (b = 0; b < BLOCKS; b++) {
         float in[BITS_IN][BLOCK], out[5][BLOCK] = {{0}};
         float *const to[5] = {out[0], out[1], out[2], out[3], out[4]};
@@ -235,6 +115,30 @@ static void evaluate_arrays(target t) {
         for (i = 0; i < BLOCK; i++)
             for (k = 0; k < 5; k++) result[b * BLOCK + i][k] = out[k][i];
     }
+}
+
+/* By an array form of maps or products: all cases of one of them in one call. */
+static void evaluate_kinds(target t) {
+    static float in[5][CASES], out[6][CASES];
+    static int from[CASES];
+    int i, j, k, n;
+    for (k = 0; k < others[t.at].kinds; k++) {
+        for (i = n = 0; i < CASES; i++) {
+            if (bits_kind_of(given[i], others[t.at].kinds) != k) continue;
+            for (j = 0; j < 5; j++) in[j][n] = given[i][U + j];
+            from[n++] = i;
+        }
+        memset(out, 0, sizeof out);
+        others[t.at].array(k, (size_t)n, in, out);
+        for (i = 0; i < n; i++)
+            for (j = 0; j < 6; j++) result[from[i]][j] = out[j][i];
+    }
+}
+
+static void evaluate_arrays(target t) {
+    memset(result, 0, sizeof result);
+    if (t.form == OTHER) evaluate_kinds(t);
+    else evaluate_blocks(t);
 }
 
 /* --- the same on a GPU ------------------------------------------------------------------------------------------------------ */
@@ -264,7 +168,7 @@ template <void (*F)(const float *, float *)> __global__ void other(const float *
 #define GPU_ROW(shape, row, fn, arg, base, coord, grid) GPU_##shape(row)
 static const kernel rows[][SAMPLE_N] = {MCST_ROWS(GPU_ROW)};
 #define GPU_OTHER(x) other<bits1_##x>,
-#define GPU_NONE(x) NULL,
+#define GPU_NONE(...) NULL,
 static const kernel rest[] = {BITS_WIDE(GPU_OTHER) BITS_WORDS(GPU_OTHER) BITS_SCALAR(GPU_OTHER) BITS_MAPPED(GPU_OTHER)
                                   BITS_HOST(GPU_NONE) BITS_ARRAYS(GPU_NONE)};
 static int has(target t) { return t.form == OTHER ? rest[t.at] != NULL : t.form < SAMPLE_N; }
@@ -287,100 +191,30 @@ static const char *evaluate(target t) {
 } // namespace gpu
 #endif
 
-/* --- names ------------------------------------------------------------------------------------------------------------------ */
+/* --- stored hashes ---------------------------------------------------------------------------------------------------------- */
 
-enum { NAMES = 512 };
-static char header[1 << 20];
-static char names[NAMES][48], stored_name[NAMES][48];
-static uint64_t stored[NAMES];
-static int name_count, stored_count;
-
-static int is_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
-
-static int is_type(const char *name) {
-    char text[64];
-    snprintf(text, sizeof text, "} %s;", name);
-    if (strstr(header, text)) return 1;
-    snprintf(text, sizeof text, "} MCS_(%s);", name + 4);
-    return strstr(header, text) != NULL;
-}
-
-/* The functions of the index; its first block, up to a tag, is types. */
-static void read_index(void) {
-    FILE *f = fopen(MCS_HEADER, "rb");
-    const char *at, *end;
-    if (f) {
-        header[fread(header, 1, sizeof header - 1, f)] = 0;
-        fclose(f);
-    }
-    at = strstr(header, "/* INDEX"), end = strstr(header, "END OF INDEX");
-    for (at = at ? strstr(at, "[rng]") : NULL; at && end && (at = strstr(at, "mcs_")) != NULL && at < end;) {
-        size_t length = 0;
-        while (is_word(at[length])) length++;
-        if (!is_word(at[-1]) && length < sizeof names[0] && name_count < NAMES) {
-            memcpy(names[name_count], at, length);
-            names[name_count][length] = 0;
-            if (!is_type(names[name_count])) name_count++;
-        }
-        at += length;
-    }
-}
+static char stored_name[MCST_NAMES][MCST_NAME];
+static uint64_t stored[MCST_NAMES];
+static int stored_count;
 
 static void read_stored(void) {
     FILE *f = fopen(MCST_BITS, "rb");
     unsigned hi, lo;
     if (!f) return;
-    while (stored_count < NAMES && fscanf(f, "%47s %8x%8x", stored_name[stored_count], &hi, &lo) == 3)
+    while (stored_count < MCST_NAMES && fscanf(f, "%47s %8x%8x", stored_name[stored_count], &hi, &lo) == 3)
         stored[stored_count++] = (uint64_t)hi << 32 | lo;
     fclose(f);
 }
 
-static int find(const char *name, char (*list)[48], int count) {
-    int i;
-    for (i = 0; i < count && strcmp(list[i], name) != 0; i++) continue;
-    return i < count ? i : -1;
-}
+/* One more way than those of functions.h. */
+enum { GPU = WAYS };
+static const char *name_of(int way) { return way == GPU ? "GPU" : way_name[way]; }
 
-/* The first target of a name; at = -1: none. */
-static target find_target(const char *name) {
-    target t = {OTHER, -1};
-    size_t i;
-    for (i = 0; i < MCST_COUNT(others); i++)
-        if (!strcmp(name, others[i].name)) {
-            t.at = (int)i;
-            return t;
-        }
-    for (i = 0; i < MCST_NROWS; i++)
-        for (t.form = 0; t.form < FORMS; t.form++) {
-            char text[64];
-            snprintf(text, sizeof text, "mcs_%s_%s", mcst_rows[i].function, suffix[t.form]);
-            if (strcmp(name, text) != 0) continue;
-            t.at = (int)i;
-            return t;
-        }
-    return t;
-}
-
-/* The next row of the same function: Ward's three models. */
-static int next_row(target *t) {
-    const char *function = t->form == OTHER ? NULL : mcst_rows[t->at].function;
-    while (function && ++t->at < MCST_NROWS)
-        if (!strcmp(mcst_rows[t->at].function, function)) return 1;
-    return 0;
-}
-
-/* The ways to evaluate: width indices 0..3, then */
-enum { ARRAYS = 4, GPU, WAYS };
-static const char *const way_name[WAYS] = {"scalar", "4 wide", "8 wide", "16 wide", "arrays", "GPU"};
-
-static int has_way(target t, int way) {
-    const int arrays = t.form >= SAMPLE_N && t.form < FORMS;
-    if (way == ARRAYS) return t.form == OTHER ? others[t.at].array != NULL : arrays;
+static int can(target t, int way) {
 #ifdef __CUDACC__
     if (way == GPU) return gpu::has(t) && gpu::present();
 #endif
-    if (arrays || way > ARRAYS) return 0;
-    return t.form == OTHER ? others[t.at].fn[way] != NULL : mcst_rows[t.at].fn[way].sample != NULL;
+    return way < WAYS && has_way(t, way);
 }
 
 static uint64_t hash_of(target t, int way) {
@@ -399,7 +233,7 @@ static uint64_t hash_of(target t, int way) {
 #endif
         if (t.form != OTHER || others[t.at].floats)
             for (i = 0; i < CASES * BITS_OUT; i++)
-                CHECK(r[i] - r[i] == 0, "%s: result %d of case %d is %g", way_name[way], i % BITS_OUT, i / BITS_OUT, (double)r[i]);
+                CHECK(r[i] - r[i] == 0, "%s: result %d of case %d is %g", name_of(way), i % BITS_OUT, i / BITS_OUT, (double)r[i]);
         hash = bits_hash(hash, r, CASES * BITS_OUT);
     } while (next_row(&t));
     return hash;
@@ -407,35 +241,35 @@ static uint64_t hash_of(target t, int way) {
 
 static void check(const char *name, int promised) {
     const target t = find_target(name);
-    const int line = find(name, stored_name, stored_count);
+    const int line = mcst_name_at(name, stored_name, stored_count);
     int way;
     CHECK(t.at >= 0, "%s has no row in registry.h and no adapter in bits.h", name);
     CHECK(line >= 0, "%s has no hash in %s", name, MCST_BITS);
-    for (way = 0; promised && t.at >= 0 && line >= 0 && way < WAYS; way++)
-        if (has_way(t, way)) {
+    for (way = 0; promised && t.at >= 0 && line >= 0 && way <= GPU; way++)
+        if (can(t, way)) {
             const uint64_t got = hash_of(t, way);
-            CHECK(got == stored[line], "%s: %08x%08x, stored %08x%08x", way_name[way], (unsigned)(got >> 32), (unsigned)got,
+            CHECK(got == stored[line], "%s: %08x%08x, stored %08x%08x", name_of(way), (unsigned)(got >> 32), (unsigned)got,
                   (unsigned)(stored[line] >> 32), (unsigned)stored[line]);
         }
 }
 
 static void print(void) {
     int i;
-    for (i = 0; i < name_count; i++) {
-        const target t = find_target(names[i]);
+    for (i = 0; i < mcst_name_count; i++) {
+        const target t = find_target(mcst_name[i]);
         if (t.at >= 0) {
             const uint64_t hash = hash_of(t, t.form >= SAMPLE_N && t.form < FORMS ? ARRAYS : 0);
-            printf("%s %08x%08x\n", names[i], (unsigned)(hash >> 32), (unsigned)hash);
+            printf("%s %08x%08x\n", mcst_name[i], (unsigned)(hash >> 32), (unsigned)hash);
         }
     }
 }
 
 int main(int argc, char **argv) {
-    const char *reason = MCSI_FLT_EVAL > 0      ? "floats are not evaluated as floats"
+    const char *reason = MCSI_FLT_EVAL > 0        ? "floats are not evaluated as floats"
                          : mcst_arrays_contract() ? "a*b + c is contracted"
                                                   : NULL;
     int i;
-    read_index();
+    mcst_read_names();
     read_stored();
     if (argc == 2 && !strcmp(argv[1], "--print")) {
         print();
@@ -453,15 +287,17 @@ int main(int argc, char **argv) {
     }
     mcst_group("bits");
     if (mcst_case("the index, the adapters and %s agree", MCST_BITS)) {
-        CHECK(name_count > 100, "%d functions in the index of %s; run the test where it is, or compile with -DMCS_HEADER",
-              name_count, MCS_HEADER);
-        CHECK(stored_count == name_count, "%d hashes for %d functions", stored_count, name_count);
+        CHECK(mcst_name_count > 100, "%d functions in the index of %s; run the test where it is, or compile with -DMCS_HEADER",
+              mcst_name_count, MCS_HEADER);
+        CHECK(stored_count == mcst_name_count, "%d hashes for %d functions", stored_count, mcst_name_count);
         for (i = 0; i < stored_count; i++)
-            CHECK(find(stored_name[i], names, name_count) >= 0, "%s is stored, but not in the index", stored_name[i]);
+            CHECK(mcst_name_at(stored_name[i], mcst_name, mcst_name_count) >= 0, "%s is stored, but not in the index",
+                  stored_name[i]);
         for (i = 0; i < (int)MCST_COUNT(others); i++)
-            CHECK(find(others[i].name, names, name_count) >= 0, "%s has an adapter, but is not in the index", others[i].name);
+            CHECK(mcst_name_at(others[i].name, mcst_name, mcst_name_count) >= 0, "%s has an adapter, but is not in the index",
+                  others[i].name);
     }
-    for (i = 0; i < name_count; i++)
-        if (mcst_case("%s", names[i])) check(names[i], reason == NULL);
+    for (i = 0; i < mcst_name_count; i++)
+        if (mcst_case("%s", mcst_name[i])) check(mcst_name[i], reason == NULL);
     return mcst_finish();
 }

@@ -2,13 +2,14 @@
  * trap them must survive every function, so operands of branches and lanes that are not taken count too. And flush-to-zero with
  * denormals-are-zero, which renderers set, changes nothing but what is subnormal.
  *
- * The functions are those of the header's index, by the adapters of test_bits.c, so that a new one is covered at once. */
+ * The functions are those of the header's index, by the adapters of functions.h, so that a new one is covered at once. */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE /* feenableexcept */
 #endif
 #include <fenv.h>
 #if defined(__clang__)
-#pragma clang fp exceptions(maytrap) /* else lanes of its own making divide 0 by 0 */
+#pragma clang fp exceptions(maytrap) /* else lanes of its own making divide 0 by 0: in functions that are compiled here */
+#undef MCST_LINKED
 #endif
 #if !defined(FE_INVALID) || !defined(FE_DIVBYZERO) || !defined(FE_OVERFLOW) || defined(__FAST_MATH__)
 #define FENV_NONE /* a machine without these flags, or a build that does as it likes with them */
@@ -19,11 +20,7 @@
 #undef FE_OVERFLOW
 enum { FE_INVALID, FE_DIVBYZERO, FE_OVERFLOW };
 #endif
-#define BITS_NEGATIVE 0.0f /* valid entries only, in tables and maps */
-#define BITS_NAN 0.0f
-#define main bits_main
-#include "test_bits.c"
-#undef main
+#include "functions.h"
 #if defined(__unix__) || defined(__APPLE__)
 #include <sys/types.h>
 #include <sys/wait.h>
@@ -31,6 +28,7 @@ enum { FE_INVALID, FE_DIVBYZERO, FE_OVERFLOW };
 #define FENV_FORK
 #endif
 
+static float given[CASES][BITS_IN];
 enum { TRAPS = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW, NS = 68 };
 
 /* --- valid inputs ----------------------------------------------------------------------------------------------------------- */
@@ -150,19 +148,10 @@ static void raise_by_lanes(target t, int w) {
 
 /* Array forms with every n up to 67. */
 static void raise_by_arrays(target t) {
-    static const struct {
-        const char *name;
-        int kinds;
-        bits_array_call call;
-    } maps[] = {{"mcs_env_sample_n", BITS_MAPS, bits_call_env_sample_n},
-                {"mcs_env_texel_n", BITS_MAPS, bits_call_env_texel_n},
-                {"mcs_env_pdf_n", BITS_MAPS, bits_call_env_pdf_n},
-                {"mcs_env_window_sample_n", BITS_MAPS, bits_call_env_window_sample_n},
-                {"mcs_product_sample_n", BITS_MAPS * BITS_SURFACES, bits_call_product_sample_n}};
     static float in[5][CASES], out[6][CASES];
     float *const to[5] = {out[0], out[1], out[2], out[3], out[4]};
-    size_t n, m;
-    int b, i, k, found = 0;
+    size_t n;
+    int b, i, k;
     for (b = 0; b + NS < CASES; b += 97)
         for (n = 0; n < NS; n += t.form == OTHER ? 1 : 1 + (size_t)b % 5) {
             for (i = 0; i < NS; i++)
@@ -175,15 +164,12 @@ static void raise_by_arrays(target t) {
                 judge("array", given[b], n);
                 continue;
             }
-            for (m = 0; m < MCST_COUNT(maps); m++)
-                for (k = 0; !strcmp(maps[m].name, others[t.at].name) && k < maps[m].kinds; k++) {
-                    feclearexcept(FE_ALL_EXCEPT);
-                    maps[m].call(k, n, in, out);
-                    judge("array", given[b], n);
-                    found = 1;
-                }
+            for (k = 0; k < others[t.at].kinds; k++) {
+                feclearexcept(FE_ALL_EXCEPT);
+                others[t.at].array(k, n, in, out);
+                judge("array", given[b], n);
+            }
         }
-    CHECK(t.form != OTHER || found, "an array form without a call here");
 }
 
 static void raise_all(target t) {
@@ -211,8 +197,8 @@ static void test_traps(void) {
     if (child == 0) {
         int i;
         if (feenableexcept(TRAPS) == -1) _exit(77);
-        for (i = 0; i < name_count; i++) {
-            const target t = find_target(names[i]);
+        for (i = 0; i < mcst_name_count; i++) {
+            const target t = find_target(mcst_name[i]);
             if (t.at >= 0) raise_all(t);
         }
         _exit(0);
@@ -336,7 +322,8 @@ int main(int argc, char **argv) {
     if (mcst_case("none in this build")) puts("SKIPPED: exceptions and modes, which this machine or build does not have");
     return mcst_finish();
 #endif
-    read_index();
+    bits_valid = 1;
+    mcst_read_names();
     mcst_group("exceptions");
     if (mcst_case("the exceptions can be seen")) { /* or the rest would pass unseen */
         volatile float zero = 0, huge = FLT_MAX, r;
@@ -348,7 +335,7 @@ int main(int argc, char **argv) {
         r = huge * huge;
         CHECK(fetestexcept(FE_OVERFLOW), "overflow");
         (void)r;
-        CHECK(name_count > 100, "%d functions in the index of %s", name_count, MCS_HEADER);
+        CHECK(mcst_name_count > 100, "%d functions in the index of %s", mcst_name_count, MCS_HEADER);
     }
     for (i = 0; i < BITS_MAPS; i++)
         if (mcst_case("building map %d, its window, tiles and products", i)) {
@@ -356,9 +343,9 @@ int main(int argc, char **argv) {
             bits_map_at(i);
             CHECK(!fetestexcept(TRAPS), "%s", flags_of(fetestexcept(TRAPS)));
         }
-    for (i = 0; i < name_count; i++) {
-        const target t = find_target(names[i]);
-        if (t.at >= 0 && mcst_case("%s", names[i])) raise_all(t);
+    for (i = 0; i < mcst_name_count; i++) {
+        const target t = find_target(mcst_name[i]);
+        if (t.at >= 0 && mcst_case("%s", mcst_name[i])) raise_all(t);
     }
 #if defined(__GLIBC__) && defined(FENV_FORK)
     if (mcst_case("every function with traps on")) test_traps();

@@ -1,7 +1,6 @@
 /* The commonest mistakes of users, as MCS_ASSERT tells them: directions that are not unit vectors, random numbers outside [0,1).
  * What a careful caller gives, normalised in float and turned by many float frames, must pass. */
-static int asserted; /* how often a condition of the header did not hold */
-#define MCS_ASSERT(condition) ((void)((condition) ? 0 : asserted++))
+#include "asserting.h"
 #include "registry.h"
 
 static const float wrong_length[] = {0, 0.3f, 0.5f, 0.7f, 0.9f, 0.99f, 0.999f, 1.001f, 1.01f, 1.1f, 1.9f, 2.5f, 1e20f, NAN};

@@ -3,9 +3,8 @@
  *
  * Same bits need a build without contraction (the header's terms). Where the compiler contracts a*b + c, values differ by roundings
  * and by what a sharp lobe makes of them: there only gross errors (0.1 %) are looked for. */
-#ifndef MCST_ARRAYS /* -DMCST_ARRAYS: array forms alone, in a third of the time */
-#define MCST_WIDE
-#endif
+#define MCST_WIDE /* -DMCST_ARRAYS: array forms alone, in a third of the time */
+#include "index.h"
 #include "registry.h"
 
 static int lanes_contract, arrays_contract; /* the wide forms; the array forms, which choose their instructions at run time */
@@ -14,10 +13,6 @@ static void find_contraction(void) {
     lanes_contract = mcst_contracts(), arrays_contract = mcst_arrays_contract();
     printf("a*b + c is contracted in: %s\n", lanes_contract ? "everything" : arrays_contract ? "the array forms" : "nothing");
 }
-
-#ifndef MCS_HEADER
-#define MCS_HEADER "mcsample.h" /* its path from where the test is run */
-#endif
 
 enum { N = 67, LANES = 16 };
 
@@ -182,10 +177,7 @@ static void check_arrays(const mcst_row *row, const float *p, uint64_t *state) {
     }
 }
 
-/* --- is the registry complete? -------------------------------------------------------------------------------------------------
- * */
-
-static int is_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
+/* --- is the registry complete? ------------------------------------------------------------------------------------------------ */
 
 static int is_known(const char *name) {
     size_t i;
@@ -196,37 +188,22 @@ static int is_known(const char *name) {
     return 0;
 }
 
-/* Public samplers are written MCS_(name_sample) in the body of all widths, mcs_name_sample( where there is only a scalar form. */
+/* Every mcs_NAME_sample has a row or is exempt, and every row's sampler is there. */
 static void check_registry(void) {
-    static char text[1 << 20];
-    FILE *f = fopen(MCS_HEADER, "rb");
-    const char *at;
-    size_t length, found = 0, i;
-    CHECK(f != NULL, "cannot read %s; run the test where it is, or compile with -DMCS_HEADER", MCS_HEADER);
-    if (!f) return;
-    length = fread(text, 1, sizeof text - 1, f);
-    fclose(f);
-    CHECK(length > 1000 && length < sizeof text - 1, "%zu bytes of %s", length, MCS_HEADER);
-    text[length] = 0;
-    for (at = text; (at = strstr(at, "_sample")) != NULL; at += 7) {
-        const char *start = at;
-        char name[64];
-        while (start > text && is_word(start[-1])) start--;
-        if (!(start - text >= 5 && !strncmp(start - 5, "MCS_(", 5) && at[7] == ')')) {
-            if (strncmp(start, "mcs_", 4) != 0 || at[7] != '(') continue;
-            start += 4;
-        }
-        if (at <= start || (size_t)(at - start) >= sizeof name) continue;
-        memcpy(name, start, (size_t)(at - start));
-        name[at - start] = 0;
-        found++;
-        CHECK(is_known(name), "mcs_%s_sample has no row in registry.h", name);
+    char name[MCST_NAME];
+    size_t i;
+    int k;
+    CHECK(mcst_read_names() && mcst_name_count > 100, "%d functions in %s; run the test where it is, or compile with -DMCS_HEADER",
+          mcst_name_count, MCS_HEADER);
+    for (k = 0; k < mcst_name_count; k++) {
+        const size_t length = strlen(mcst_name[k]), tail = strlen("_sample");
+        if (length < 4 + tail || strcmp(mcst_name[k] + length - tail, "_sample") != 0) continue;
+        snprintf(name, sizeof name, "%.*s", (int)(length - tail - 4), mcst_name[k] + 4);
+        CHECK(is_known(name), "%s has no row in registry.h", mcst_name[k]);
     }
-    CHECK(found >= MCST_NROWS, "only %zu mentions of samplers in %s", found, MCS_HEADER);
     for (i = 0; i < MCST_NROWS; i++) {
-        char name[64];
-        snprintf(name, sizeof name, "%s_sample", mcst_rows[i].function);
-        CHECK(strstr(text, name) != NULL, "row %s: %s is not in %s", mcst_rows[i].name, name, MCS_HEADER);
+        snprintf(name, sizeof name, "mcs_%s_sample", mcst_rows[i].function);
+        CHECK(mcst_name_at(name, mcst_name, mcst_name_count) >= 0, "row %s: %s is not in %s", mcst_rows[i].name, name, MCS_HEADER);
     }
 }
 

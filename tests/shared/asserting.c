@@ -1,0 +1,4 @@
+/* What rows.c is, where MCS_ASSERT counts: for test_mistakes and test_oracle. */
+#include "asserting.h"
+int asserted;
+#include "rows.c"
