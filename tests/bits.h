@@ -16,8 +16,8 @@
 #define BITS_WIDE(X) \
     X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(to_world) X(to_local) X(reflect) X(reflect_pdf) X(half) \
     X(cos_d) X(schlick) X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) X(ashikhmin_make) X(is_mirror) X(ggx_d) \
-    X(ggx_g1) X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf)
-#define BITS_WORDS(X) X(hash) X(sobol_bits)
+    X(ggx_g1) X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
+#define BITS_WORDS(X) X(hash) X(sobol_bits) X(load) X(store)
 #define BITS_SCALAR(X) \
     X(pcg32_for) X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n) \
     X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) \
@@ -87,6 +87,12 @@ MCST_HD static void B_(put_word)(float *out, int i, U_ v) { memcpy(out + i * MCS
 MCST_HD static void B_(put2)(float *out, int i, M_(vec2) v) { PUT(i, v.x), PUT(i + 1, v.y); }
 MCST_HD static void B_(put3)(float *out, int i, M_(vec3) v) { PUT(i, v.x), PUT(i + 1, v.y), PUT(i + 2, v.z); }
 
+FN(set) {
+    (void)in;
+    PUT(0, M_(set)(0.7f));
+}
+FN(load) { PUT(0, M_(load)(in + 6 * MCST_W)); }
+FN(store) { M_(store)(out, IN(6)); }
 FN(u01) { PUT(0, M_(u01)(WORD(11))); }
 FN(u01_open) { PUT(0, M_(u01_open)(WORD(11))); }
 FN(hash) { PUT_WORD(0, M_(hash)(WORD(11), WORD(12))); }
@@ -94,7 +100,9 @@ FN(sobol_bits) { /* dimension and seed are the same for all lanes */
     PUT_WORD(0, M_(sobol_bits)(WORD(11), 0, 0)), PUT_WORD(1, M_(sobol_bits)(WORD(11), 1, 7));
     PUT_WORD(2, M_(sobol_bits)(WORD(11), 6, 0x9e3779b9u)), PUT_WORD(3, M_(sobol_bits)(WORD(11), 0xffffffffu, 1));
 }
-FN(sobol) { PUT(0, M_(sobol)(WORD(11), 0, 0)), PUT(1, M_(sobol)(WORD(11), 3, 7)), PUT(2, M_(sobol)(WORD(11), 1000, 1)); }
+FN(sobol) {
+    PUT(0, M_(sobol)(WORD(11), 0, 0)), PUT(1, M_(sobol)(WORD(11), 3, 7)), PUT(2, M_(sobol)(WORD(11), 1000, 1));
+}
 FN(r2) { B_(put2)(out, 0, M_(r2)(WORD(11), 0)), B_(put2)(out, 2, M_(r2)(WORD(11), 0x9e3779b9u)); }
 FN(cone_from_sin2) { PUT(0, M_(cone_from_sin2)(IN(6))); }
 
@@ -240,7 +248,9 @@ MCST_HD static uint32_t bits_entries(const float *in, float *f) {
     uint32_t i;
     for (i = 0; i <= n; i++) {
         const uint32_t h = mcs_hash(WORD(12), i);
-        f[i] = WORD(13) % 16 == 0 || h % 8 == 0 ? 0.0f : h % 128 == 1 ? bits_bad(-1.0f) : mcs_u01(h) * (h % 8 == 1 ? 1e6f : 1.0f);
+        f[i] = WORD(13) % 16 == 0 || h % 8 == 0 ? 0.0f
+               : h % 128 == 1                   ? bits_bad(-1.0f)
+                                                : mcs_u01(h) * (h % 8 == 1 ? 1e6f : 1.0f);
     }
     return n;
 }
@@ -345,7 +355,9 @@ MCST_HD static void bits_put_stat(float *out, mcs_stat s) {
     bits_put_double(out, 0, s.n), bits_put_double(out, 2, s.mean), bits_put_double(out, 4, s.m2);
 }
 FN(stat_add) { bits_put_stat(out, bits_stat(in, (int)(WORD(12) % 9))); }
-FN(stat_merge) { bits_put_stat(out, mcs_stat_merge(bits_stat(in, (int)(WORD(12) % 9)), bits_stat(in + 1, (int)(WORD(13) % 9)))); }
+FN(stat_merge) {
+    bits_put_stat(out, mcs_stat_merge(bits_stat(in, (int)(WORD(12) % 9)), bits_stat(in + 1, (int)(WORD(13) % 9))));
+}
 #define STAT const mcs_stat s = bits_stat(in, (int)(WORD(12) % 9))
 FN(stat_variance) {
     STAT;
@@ -522,7 +534,8 @@ FN(env_build_rows) {
     bits_case_make(in, &c);
     status = bits_rows(in, &c);
     bits_put_env(in, out, &c, status ? status : mcs_env_finish((mcs_env *)(void *)c.room, c.bytes, &c.image));
-    PUT_WORD(9, (uint32_t)mcs_env_build_rows((mcs_env *)(void *)c.room, c.bytes, &c.image, WORD(12) % 16, WORD(13) % 16));
+    PUT_WORD(9,
+             (uint32_t)mcs_env_build_rows((mcs_env *)(void *)c.room, c.bytes, &c.image, WORD(12) % 16, WORD(13) % 16));
 }
 FN(env_finish) { /* of a map whose rows are built, whatever its own answer */
     bits_case c;
@@ -609,7 +622,8 @@ FN(env_window_sample) {
 }
 FN(env_window_pdf) {
     WINDOW;
-    PUT(0, mcs_env_window_pdf(status < 0 ? m->window : v, m->env, t.w)), PUT(1, mcs_env_window_pdf(m->window, m->env, IN3(8)));
+    PUT(0, mcs_env_window_pdf(status < 0 ? m->window : v, m->env, t.w)),
+        PUT(1, mcs_env_window_pdf(m->window, m->env, IN3(8)));
 }
 #undef WINDOW
 
@@ -623,13 +637,15 @@ MCST_HD static mcs_reflection bits_reflection(const float *in) {
 }
 FN(tiles_bytes) {
     MAP;
-    PUT_WORD(0, (uint32_t)mcs_tiles_bytes(m->env, 16u << (WORD(11) & 3))), PUT_WORD(1, (uint32_t)mcs_tiles_bytes(m->env, WORD(12)));
+    PUT_WORD(0, (uint32_t)mcs_tiles_bytes(m->env, 16u << (WORD(11) & 3))),
+        PUT_WORD(1, (uint32_t)mcs_tiles_bytes(m->env, WORD(12)));
     PUT_WORD(2, (uint32_t)mcs_tiles_bytes(NULL, 16));
 }
 FN(tiles_build) {
     MAP;
     PUT_WORD(0, (uint32_t)m->status[2]), bits_put_array(out, 1, m->tiles, 3);
-    PUT_WORD(3, (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes - 1 - WORD(11) % m->tile_bytes, m->env, m->tiles->rows));
+    PUT_WORD(3,
+             (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes - 1 - WORD(11) % m->tile_bytes, m->env, m->tiles->rows));
     PUT_WORD(4, (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes, m->env, WORD(11) % 16));
     PUT_WORD(5, (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes, NULL, 16));
     bits1_put3(out, 6, mcs_tiles_direction(m->tiles, m->env, WORD(12) % 512));
@@ -641,7 +657,8 @@ FN(tiles_direction) {
 }
 FN(product_bytes) { /* beyond the header, which holds pointers */
     const size_t bytes = mcs_product_bytes(16u << (WORD(11) & 3));
-    PUT_WORD(0, (uint32_t)(bytes ? bytes - sizeof(mcs_product) : 0)), PUT_WORD(1, (uint32_t)mcs_product_bytes(WORD(12)));
+    PUT_WORD(0, (uint32_t)(bytes ? bytes - sizeof(mcs_product) : 0)),
+        PUT_WORD(1, (uint32_t)mcs_product_bytes(WORD(12)));
 }
 static uint64_t bits_room[MCS_PRODUCT_BYTES(32) / 8 + 1];
 /* Its share of the lobe and a sample with its density show a product. */
@@ -665,7 +682,8 @@ HOST(product_build_weights) {
     float weight[2048];
     mcs_product *const p = (mcs_product *)(void *)bits_room;
     bits_picture(WORD(12), m->tiles->rows * m->tiles->cols, weight);
-    bits_put_product(in, out, mcs_product_build_weights(p, sizeof bits_room, m->tiles, m->env, WORD(11) % 32 == 1 ? NULL : weight));
+    bits_put_product(
+        in, out, mcs_product_build_weights(p, sizeof bits_room, m->tiles, m->env, WORD(11) % 32 == 1 ? NULL : weight));
 }
 FN(product_sample) {
     PRODUCT;

@@ -44,6 +44,7 @@ static inline void mcst_read_prototypes(const char *from, const char *end) {
             if (length > 4 && !strncmp(at, "mcs_", 4) && at[length] == '(') break;
             at += length ? length : 1;
         }
+        if (!strncmp(at, "mcs_lanes(", strlen("mcs_lanes("))) continue; /* it tells of the processor; hygiene asks it */
         if (*at && *at != ';' && *at != '{') mcst_add_name(at, length);
     }
 }
