@@ -131,6 +131,8 @@
 #else
 #define MCS_FN static inline
 #endif
+/* MCS_API stands before public functions that a project may compile once: array functions, tables, maps, products. */
+#define MCS_API MCS_FN
 #ifndef MCSI_INLINE
 #define MCSI_INLINE MCS_FN
 #define MCSI_APART MCS_FN
@@ -198,7 +200,7 @@ MCS_FN float mcs_set(float x);
 MCS_FN float mcs_load(const float *p);
 MCS_FN void mcs_store(float *p, float x);
 #ifndef MCS_NO_BATCH
-MCS_FN int mcs_lanes(void);
+MCS_API int mcs_lanes(void);
 #endif
 
 /* ==== [rng] uniform random numbers =============================================================================================
@@ -229,10 +231,10 @@ MCS_FN mcs_pcg32 mcs_pcg32_make(uint64_t seed, uint64_t stream);
 MCS_FN uint32_t mcs_pcg32_next(mcs_pcg32 *r);
 MCS_FN float mcs_pcg32_float(mcs_pcg32 *r);
 MCS_FN void mcs_pcg32_advance(mcs_pcg32 *r, uint64_t delta);
-MCS_FN void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out);
+MCS_API void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out);
 MCS_FN mcs_philox4 mcs_philox(uint64_t key, uint64_t counter_lo, uint64_t counter_hi);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *out);
+MCS_API void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *out);
 #endif
 
 /* ==== [points] well-spread points instead of independent ones ==================================================================
@@ -258,7 +260,7 @@ MCS_FN uint32_t mcs_hash(uint32_t a, uint32_t b);
 MCS_FN mcs_vec2 mcs_stratified(uint32_t index, uint32_t nx, uint32_t ny, uint32_t seed);
 MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out);
+MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out);
 #endif
 
 /* ==== [1d] densities on a line =================================================================================================
@@ -307,14 +309,14 @@ MCS_FN mcs_sample1 mcs_evenpower_sample(float n, float u);
 MCS_FN float mcs_evenpower_pdf(float n, float x);
 MCS_FN float mcs_evenpower_invert(float n, float x);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf);
-MCS_FN void mcs_tent_sample_n(float r, size_t n, const float *u, float *x, float *pdf);
-MCS_FN void mcs_exponential_sample_n(float rate, size_t n, const float *u, float *x, float *pdf);
-MCS_FN void mcs_truncexp_sample_n(float rate, float m, size_t n, const float *u, float *x, float *pdf);
-MCS_FN void mcs_normal_sample_n(float mean, float sd, size_t n, const float *u, float *x, float *pdf);
-MCS_FN void mcs_logistic_sample_n(float mean, float scale, size_t n, const float *u, float *x, float *pdf);
-MCS_FN void mcs_power_sample_n(float e, size_t n, const float *u, float *x, float *pdf);
-MCS_FN void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_tent_sample_n(float r, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_exponential_sample_n(float rate, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_truncexp_sample_n(float rate, float m, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_normal_sample_n(float mean, float sd, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_logistic_sample_n(float mean, float scale, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_power_sample_n(float e, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, float *pdf);
 #endif
 #endif
 
@@ -331,9 +333,9 @@ MCS_FN mcs_sample2 mcs_concentric_sample(float R, float u1, float u2);
 MCS_FN float mcs_concentric_pdf(float R, float x, float y);
 MCS_FN mcs_vec2 mcs_concentric_invert(float R, float x, float y);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_disk_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf);
-MCS_FN void mcs_concentric_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                    float *pdf);
+MCS_API void mcs_disk_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf);
+MCS_API void mcs_concentric_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                     float *pdf);
 #endif
 
 /* ==== [sphere] [hemisphere] [cosine] [cone] directions about +z ================================================================
@@ -360,12 +362,12 @@ MCS_FN float mcs_cone_pdf(float k, mcs_vec3 w);
 MCS_FN mcs_vec2 mcs_cone_invert(float k, mcs_vec3 w);
 MCS_FN float mcs_cone_from_sin2(float sin2);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf);
-MCS_FN void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                    float *pdf);
-MCS_FN void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf);
-MCS_FN void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                              float *pdf);
+MCS_API void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf);
+MCS_API void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                     float *pdf);
+MCS_API void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf);
+MCS_API void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                               float *pdf);
 #endif
 
 /* ==== [frame] an orthonormal frame from a normal ===============================================================================
@@ -422,14 +424,14 @@ MCS_FN float mcs_phong_pdf(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi);
 MCS_FN float mcs_phong_eval(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi);
 MCS_FN float mcs_phong_weight(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_phong_lobe_sample_n(const mcs_phong *m, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                    float *z, float *pdf);
-MCS_FN void mcs_phong_sample_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                               float *y, float *z, float *pdf, float *weight);
-MCS_FN void mcs_phong_pdf_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                            float *pdf);
-MCS_FN void mcs_phong_eval_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                             float *value);
+MCS_API void mcs_phong_lobe_sample_n(const mcs_phong *m, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                     float *z, float *pdf);
+MCS_API void mcs_phong_sample_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                                float *y, float *z, float *pdf, float *weight);
+MCS_API void mcs_phong_pdf_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                             float *pdf);
+MCS_API void mcs_phong_eval_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                              float *value);
 #endif
 #endif
 
@@ -467,14 +469,14 @@ MCS_FN float mcs_ward_pdf(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi);
 MCS_FN float mcs_ward_eval(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi);
 MCS_FN float mcs_ward_weight(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_ward_h_sample_n(const mcs_ward *m, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                float *z, float *pdf);
-MCS_FN void mcs_ward_sample_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                              float *y, float *z, float *pdf, float *weight);
-MCS_FN void mcs_ward_pdf_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                           float *pdf);
-MCS_FN void mcs_ward_eval_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                            float *value);
+MCS_API void mcs_ward_h_sample_n(const mcs_ward *m, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                 float *z, float *pdf);
+MCS_API void mcs_ward_sample_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                               float *y, float *z, float *pdf, float *weight);
+MCS_API void mcs_ward_pdf_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                            float *pdf);
+MCS_API void mcs_ward_eval_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                             float *value);
 #endif
 #endif
 
@@ -496,14 +498,14 @@ MCS_FN float mcs_beckmann_pdf(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi);
 MCS_FN float mcs_beckmann_eval(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi);
 MCS_FN float mcs_beckmann_weight(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_beckmann_h_sample_n(const mcs_beckmann *m, size_t n, const float *u1, const float *u2, float *x,
-                                    float *y, float *z, float *pdf);
-MCS_FN void mcs_beckmann_sample_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                  float *x, float *y, float *z, float *pdf, float *weight);
-MCS_FN void mcs_beckmann_pdf_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                               const float *z, float *pdf);
-MCS_FN void mcs_beckmann_eval_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                const float *z, float *value);
+MCS_API void mcs_beckmann_h_sample_n(const mcs_beckmann *m, size_t n, const float *u1, const float *u2, float *x,
+                                     float *y, float *z, float *pdf);
+MCS_API void mcs_beckmann_sample_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                   float *x, float *y, float *z, float *pdf, float *weight);
+MCS_API void mcs_beckmann_pdf_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                const float *z, float *pdf);
+MCS_API void mcs_beckmann_eval_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                 const float *z, float *value);
 #endif
 #endif
 
@@ -558,26 +560,26 @@ MCS_FN mcs_brdf mcs_ggx_bounded_sample(const mcs_ggx *m, mcs_vec3 wo, float u1, 
 MCS_FN float mcs_ggx_bounded_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi);
 MCS_FN float mcs_ggx_bounded_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_ggx_h_sample_n(const mcs_ggx *m, size_t n, const float *u1, const float *u2, float *x, float *y,
-                               float *z, float *pdf);
-MCS_FN void mcs_ggx_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                             float *y, float *z, float *pdf, float *weight);
-MCS_FN void mcs_ggx_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                          float *pdf);
-MCS_FN void mcs_ggx_eval_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                           float *value);
-MCS_FN void mcs_ggx_vndf_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                                    float *y, float *z, float *pdf);
-MCS_FN void mcs_ggx_vndf_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                                  float *y, float *z, float *pdf, float *weight);
-MCS_FN void mcs_ggx_vndf_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                               float *pdf);
-MCS_FN void mcs_ggx_bounded_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                       float *x, float *y, float *z, float *pdf);
-MCS_FN void mcs_ggx_bounded_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                     float *x, float *y, float *z, float *pdf, float *weight);
-MCS_FN void mcs_ggx_bounded_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                  const float *z, float *pdf);
+MCS_API void mcs_ggx_h_sample_n(const mcs_ggx *m, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                float *z, float *pdf);
+MCS_API void mcs_ggx_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                              float *y, float *z, float *pdf, float *weight);
+MCS_API void mcs_ggx_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                           float *pdf);
+MCS_API void mcs_ggx_eval_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                            float *value);
+MCS_API void mcs_ggx_vndf_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                     float *x, float *y, float *z, float *pdf);
+MCS_API void mcs_ggx_vndf_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                                   float *y, float *z, float *pdf, float *weight);
+MCS_API void mcs_ggx_vndf_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                                float *pdf);
+MCS_API void mcs_ggx_bounded_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                        float *x, float *y, float *z, float *pdf);
+MCS_API void mcs_ggx_bounded_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                      float *x, float *y, float *z, float *pdf, float *weight);
+MCS_API void mcs_ggx_bounded_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                   const float *z, float *pdf);
 #endif
 #endif
 
@@ -605,14 +607,14 @@ MCS_FN float mcs_ashikhmin_pdf(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 wi)
 MCS_FN float mcs_ashikhmin_eval(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 wi);
 MCS_FN float mcs_ashikhmin_weight(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 wi);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_ashikhmin_h_sample_n(const mcs_ashikhmin *m, size_t n, const float *u1, const float *u2, float *x,
-                                     float *y, float *z, float *pdf);
-MCS_FN void mcs_ashikhmin_sample_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                   float *x, float *y, float *z, float *pdf, float *weight);
-MCS_FN void mcs_ashikhmin_pdf_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                const float *z, float *pdf);
-MCS_FN void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                 const float *z, float *value);
+MCS_API void mcs_ashikhmin_h_sample_n(const mcs_ashikhmin *m, size_t n, const float *u1, const float *u2, float *x,
+                                      float *y, float *z, float *pdf);
+MCS_API void mcs_ashikhmin_sample_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                    float *x, float *y, float *z, float *pdf, float *weight);
+MCS_API void mcs_ashikhmin_pdf_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                 const float *z, float *pdf);
+MCS_API void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                  const float *z, float *value);
 #endif
 #endif
 
@@ -670,31 +672,31 @@ typedef struct {
     double total;
     uint32_t n, bad;
 } mcs_alias; /* then column[n] */
-MCS_FN size_t mcs_pwc_bytes(uint32_t n);
-MCS_FN mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n);
-MCS_FN mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context,
-                                   uint32_t n);
-MCS_FN mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u);
-MCS_FN mcs_cell mcs_pwc_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2);
-MCS_FN float mcs_pwc_pdf(const mcs_pwc *t, float x);
-MCS_FN float mcs_pwc_invert(const mcs_pwc *t, float x);
-MCS_FN mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u);
-MCS_FN mcs_pick mcs_discrete_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2);
-MCS_FN float mcs_discrete_pmf(const mcs_pwc *t, uint32_t i);
-MCS_FN size_t mcs_pwl_bytes(uint32_t n);
-MCS_FN mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n);
-MCS_FN mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u);
-MCS_FN mcs_cell mcs_pwl_sample_bits(const mcs_pwl *t, uint32_t b1, uint32_t b2);
-MCS_FN float mcs_pwl_pdf(const mcs_pwl *t, float x);
-MCS_FN float mcs_pwl_invert(const mcs_pwl *t, float x);
-MCS_FN size_t mcs_alias_bytes(uint32_t n);
-MCS_FN mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n);
-MCS_FN mcs_pick mcs_alias_sample(const mcs_alias *t, float u);
-MCS_FN mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t b2);
-MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i);
+MCS_API size_t mcs_pwc_bytes(uint32_t n);
+MCS_API mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n);
+MCS_API mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context,
+                                    uint32_t n);
+MCS_API mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u);
+MCS_API mcs_cell mcs_pwc_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2);
+MCS_API float mcs_pwc_pdf(const mcs_pwc *t, float x);
+MCS_API float mcs_pwc_invert(const mcs_pwc *t, float x);
+MCS_API mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u);
+MCS_API mcs_pick mcs_discrete_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2);
+MCS_API float mcs_discrete_pmf(const mcs_pwc *t, uint32_t i);
+MCS_API size_t mcs_pwl_bytes(uint32_t n);
+MCS_API mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n);
+MCS_API mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u);
+MCS_API mcs_cell mcs_pwl_sample_bits(const mcs_pwl *t, uint32_t b1, uint32_t b2);
+MCS_API float mcs_pwl_pdf(const mcs_pwl *t, float x);
+MCS_API float mcs_pwl_invert(const mcs_pwl *t, float x);
+MCS_API size_t mcs_alias_bytes(uint32_t n);
+MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n);
+MCS_API mcs_pick mcs_alias_sample(const mcs_alias *t, float u);
+MCS_API mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t b2);
+MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf);
-MCS_FN void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float *x, float *pdf);
 #endif
 #endif
 
@@ -779,33 +781,33 @@ typedef struct {
 typedef struct {
     uint32_t row, rows, col, cols, shift, uniform;
 } mcs_env_window; /* then span[rows], cdf[rows + 1], guide[] */
-MCS_FN mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels);
-MCS_FN size_t mcs_env_bytes(uint32_t w, uint32_t h);
-MCS_FN mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im);
-MCS_FN mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1);
-MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im);
-MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes);
-MCS_FN float mcs_env_mean(const mcs_image *im);
-MCS_FN mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2);
-MCS_FN mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2);
-MCS_FN float mcs_env_pdf(const mcs_env *e, mcs_vec3 w);
-MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w);
-MCS_FN mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w);
-MCS_FN float mcs_env_weight(const mcs_env *e, float pdf);
-MCS_FN size_t mcs_env_window_bytes(uint32_t rows);
-MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
-                                       uint32_t col, uint32_t cols);
-MCS_FN mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2);
-MCS_FN float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_vec3 w);
+MCS_API mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels);
+MCS_API size_t mcs_env_bytes(uint32_t w, uint32_t h);
+MCS_API mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im);
+MCS_API mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1);
+MCS_API mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im);
+MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes);
+MCS_API float mcs_env_mean(const mcs_image *im);
+MCS_API mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2);
+MCS_API mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2);
+MCS_API float mcs_env_pdf(const mcs_env *e, mcs_vec3 w);
+MCS_API mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w);
+MCS_API mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w);
+MCS_API float mcs_env_weight(const mcs_env *e, float pdf);
+MCS_API size_t mcs_env_window_bytes(uint32_t rows);
+MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
+                                        uint32_t col, uint32_t cols);
+MCS_API mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2);
+MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                             float *pdf, uint32_t *col, uint32_t *row);
-MCS_FN void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
-                            uint32_t *row, float *pdf);
-MCS_FN void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf);
-MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1,
-                                    const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
-                                    uint32_t *row);
+MCS_API void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y,
+                              float *z, float *pdf, uint32_t *col, uint32_t *row);
+MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
+                             uint32_t *row, float *pdf);
+MCS_API void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf);
+MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1,
+                                     const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
+                                     uint32_t *row);
 #endif
 #endif
 
@@ -890,21 +892,21 @@ typedef struct {
     float brdf_share;
     uint32_t warped;
 } mcs_product; /* the rest: mcsi_product_units and below */
-MCS_FN size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows);
-MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows);
-MCS_FN mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k);
-MCS_FN size_t mcs_product_bytes(uint32_t rows);
-MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                    const mcs_reflection *r);
-MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                            const float *weight);
-MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2);
-MCS_FN float mcs_product_pdf(const mcs_product *p, mcs_vec3 w);
-MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2);
-MCS_FN float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w);
+MCS_API size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows);
+MCS_API mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows);
+MCS_API mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k);
+MCS_API size_t mcs_product_bytes(uint32_t rows);
+MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+                                     const mcs_reflection *r);
+MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+                                             const float *weight);
+MCS_API mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2);
+MCS_API float mcs_product_pdf(const mcs_product *p, mcs_vec3 w);
+MCS_API mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2);
+MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                 float *z, float *pdf, uint32_t *col, uint32_t *row);
+MCS_API void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                  float *z, float *pdf, uint32_t *col, uint32_t *row);
 #endif
 #endif
 
@@ -1114,7 +1116,7 @@ MCSI_LOUD
 #endif
 #ifndef MCS_NO_BATCH
 /* How many lanes the `_n` forms compute at once on this processor: 4, 8 or 16; 1 where there are no vector types. */
-MCS_FN int mcs_lanes(void) {
+MCS_API int mcs_lanes(void) {
 #if defined(MCSI_PICK_AVX512)
     if (MCSI_CPU_HAS_AVX512) return 16;
 #endif
@@ -1680,7 +1682,7 @@ MCS_FN void mcs_pcg32_advance(mcs_pcg32 *r, uint64_t delta) {
     }
     r->state = all_mul * r->state + all_add;
 }
-MCS_FN void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
+MCS_API void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
     for (size_t i = 0; i < n; i++) {
         const float u = mcs_pcg32_float(r);
         if (out) out[i] = u;
@@ -3570,7 +3572,7 @@ MCSI_CORE void mcsi_words_end(uint32_t *words, size_t n) {
 }
 MCS_FN size_t mcsi_pwc_words(uint32_t n) { return (size_t)n + 2 + (MCSI_ONE >> mcsi_guide_shift(n, 1)); }
 
-MCS_FN size_t mcs_pwc_bytes(uint32_t n) {
+MCS_API size_t mcs_pwc_bytes(uint32_t n) {
     return n && n <= MCSI_CELLS_MAX ? (sizeof(mcs_pwc) + mcsi_pwc_words(n) * sizeof(uint32_t) + 7) / 8 * 8 : 0;
 }
 /* The words hold the weights. */
@@ -3585,7 +3587,7 @@ MCS_FN mcs_status mcsi_pwc_fill(mcs_pwc *t, uint32_t n, uint32_t bad) {
     MCSI_GUIDE_BUILD(guide, uint32_t, t->shift, cdf, n);
     return t->total > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
-MCS_FN mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n) {
+MCS_API mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n) {
     const mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwc_bytes(n));
     if (e) return e;
     uint32_t *words = (uint32_t *)(void *)(t + 1);
@@ -3593,8 +3595,8 @@ MCS_FN mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32
     mcsi_words_end(words, mcsi_pwc_words(n));
     return mcsi_pwc_fill(t, n, bad);
 }
-MCS_FN mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context,
-                                   uint32_t n) {
+MCS_API mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context,
+                                    uint32_t n) {
     const mcs_status e = mcsi_table_check(t, bytes, f ? (const void *)t : NULL, mcs_pwc_bytes(n));
     uint32_t bad = 0;
     if (e) return e;
@@ -3656,21 +3658,21 @@ MCSI_CORE mcs_cell mcsi_pwc_cell_at(const mcs_pwc *t, mcsi_pwc_place p, int ok) 
     c.pdf = ok ? (float)((double)p.mass / MCSI_ONE * t->n) : 0.0f;
     return c;
 }
-MCS_FN mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u) {
+MCS_API mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u) {
     int32_t ok = 1;
     u = mcsi_sane_u(u, &ok);
     return mcsi_pwc_cell_at(t, mcsi_pwc_draw(t, u), ok);
 }
-MCS_FN mcs_cell mcs_pwc_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
+MCS_API mcs_cell mcs_pwc_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
     return mcsi_pwc_cell_at(t, mcsi_pwc_draw_bits(t, b1, b2), 1);
 }
-MCS_FN float mcs_pwc_pdf(const mcs_pwc *t, float x) {
+MCS_API float mcs_pwc_pdf(const mcs_pwc *t, float x) {
     double place;
     int ok;
     const uint32_t i = mcsi_pwc_cell(t, x, &place, &ok);
     return ok ? (float)((double)(mcsi_cdf(t)[i + 1] - mcsi_cdf(t)[i]) / MCSI_ONE * t->n) : 0.0f;
 }
-MCS_FN float mcs_pwc_invert(const mcs_pwc *t, float x) {
+MCS_API float mcs_pwc_invert(const mcs_pwc *t, float x) {
     double place;
     int ok;
     const uint32_t i = mcsi_pwc_cell(t, x > 1.0f ? 1.0f : x, &place, &ok);
@@ -3678,7 +3680,7 @@ MCS_FN float mcs_pwc_invert(const mcs_pwc *t, float x) {
     return mcsi_below_one((a + place * (mcsi_cdf(t)[i + 1] - a)) / MCSI_ONE);
 }
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf) {
+MCS_API void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf) {
     for (size_t k = 0; k < n; k++) {
         const mcs_cell c = mcs_pwc_sample(t, u[k]);
         if (x) x[k] = c.x;
@@ -3693,23 +3695,23 @@ MCSI_CORE mcs_pick mcsi_discrete_pick(mcsi_pwc_place p, int ok) {
     c.pmf = ok ? (float)((double)p.mass / MCSI_ONE) : 0.0f;
     return c;
 }
-MCS_FN mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u) {
+MCS_API mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u) {
     int32_t ok = 1;
     u = mcsi_sane_u(u, &ok);
     return mcsi_discrete_pick(mcsi_pwc_draw(t, u), ok);
 }
-MCS_FN mcs_pick mcs_discrete_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
+MCS_API mcs_pick mcs_discrete_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
     return mcsi_discrete_pick(mcsi_pwc_draw_bits(t, b1, b2), 1);
 }
-MCS_FN float mcs_discrete_pmf(const mcs_pwc *t, uint32_t i) {
+MCS_API float mcs_discrete_pmf(const mcs_pwc *t, uint32_t i) {
     return i < t->n ? (float)((double)(mcsi_cdf(t)[i + 1] - mcsi_cdf(t)[i]) / MCSI_ONE) : 0.0f;
 }
 
-MCS_FN size_t mcs_pwl_bytes(uint32_t n) {
+MCS_API size_t mcs_pwl_bytes(uint32_t n) {
     return n && n <= MCSI_CELLS_MAX ? (sizeof(mcs_pwl) + (mcsi_pwc_words(n) + n + 1) * sizeof(uint32_t) + 7) / 8 * 8
                                     : 0;
 }
-MCS_FN mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n) {
+MCS_API mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n) {
     mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwl_bytes(n));
     float top = 0.0f;
     double total = 0.0;
@@ -3749,15 +3751,15 @@ MCSI_CORE mcs_cell mcsi_pwl_cell_at(const mcs_pwl *t, mcsi_pwc_place p, int ok) 
     c.pdf = ok ? (float)((double)p.mass / MCSI_ONE * t->cells.n * 2.0 * r) : 0.0f;
     return c;
 }
-MCS_FN mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u) {
+MCS_API mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u) {
     int32_t ok = 1;
     u = mcsi_sane_u(u, &ok);
     return mcsi_pwl_cell_at(t, mcsi_pwc_draw(&t->cells, u), ok);
 }
-MCS_FN mcs_cell mcs_pwl_sample_bits(const mcs_pwl *t, uint32_t b1, uint32_t b2) {
+MCS_API mcs_cell mcs_pwl_sample_bits(const mcs_pwl *t, uint32_t b1, uint32_t b2) {
     return mcsi_pwl_cell_at(t, mcsi_pwc_draw_bits(&t->cells, b1, b2), 1);
 }
-MCS_FN float mcs_pwl_pdf(const mcs_pwl *t, float x) {
+MCS_API float mcs_pwl_pdf(const mcs_pwl *t, float x) {
     const float *v = mcsi_pwl_vertices(t);
     double place;
     int ok;
@@ -3768,7 +3770,7 @@ MCS_FN float mcs_pwl_pdf(const mcs_pwl *t, float x) {
                                      ((1.0 - place) * (double)v[i] + place * (double)v[i + 1]) / sum)
                            : 0.0f;
 }
-MCS_FN float mcs_pwl_invert(const mcs_pwl *t, float x) {
+MCS_API float mcs_pwl_invert(const mcs_pwl *t, float x) {
     const float *v = mcsi_pwl_vertices(t);
     double place;
     int ok;
@@ -3780,7 +3782,7 @@ MCS_FN float mcs_pwl_invert(const mcs_pwl *t, float x) {
     return mcsi_below_one((a + place * mass) / MCSI_ONE);
 }
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float *x, float *pdf) {
+MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float *x, float *pdf) {
     for (size_t k = 0; k < n; k++) {
         const mcs_cell c = mcs_pwl_sample(t, u[k]);
         if (x) x[k] = c.x;
@@ -3798,7 +3800,7 @@ typedef struct {
 MCS_FN mcsi_column *mcsi_columns(const mcs_alias *t) {
     return (mcsi_column *)(void *)((char *)(uintptr_t)t + sizeof(mcs_alias));
 }
-MCS_FN size_t mcs_alias_bytes(uint32_t n) { /* the largest do not fit the size_t of a 32-bit machine */
+MCS_API size_t mcs_alias_bytes(uint32_t n) { /* the largest do not fit the size_t of a 32-bit machine */
     const uint64_t bytes = sizeof(mcs_alias) + (uint64_t)n * sizeof(mcsi_column);
     return n && n <= MCSI_CELLS_MAX && (size_t)bytes == bytes ? (size_t)bytes : 0;
 }
@@ -3807,7 +3809,7 @@ MCS_FN void mcsi_column_leave(mcsi_column *c, uint64_t left) {
     c->cut = (uint32_t)left;
     c->alias = (uint32_t)(left >> 32);
 }
-MCS_FN mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n) {
+MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n) {
     const mcs_status e = mcsi_table_check(t, bytes, w, mcs_alias_bytes(n));
     double sum = 0.0;
     const uint64_t all = (uint64_t)n << 31;
@@ -3864,16 +3866,16 @@ MCSI_CORE mcs_pick mcsi_alias_pick(const mcs_alias *t, uint32_t i, double place,
     c.pmf = ok ? (float)((double)mcsi_columns(t)[c.i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
     return c;
 }
-MCS_FN mcs_pick mcs_alias_sample(const mcs_alias *t, float u) {
+MCS_API mcs_pick mcs_alias_sample(const mcs_alias *t, float u) {
     int32_t ok = 1;
     const double U = (double)mcsi_sane_u(u, &ok) * t->n;
     return mcsi_alias_pick(t, (uint32_t)U, (U - (uint32_t)U) * MCSI_ONE, ok);
 }
-MCS_FN mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t b2) {
+MCS_API mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t b2) {
     const uint64_t U = (uint64_t)b1 * t->n + ((uint64_t)b2 * t->n >> 32); /* 2^32 times that of sample */
     return mcsi_alias_pick(t, (uint32_t)(U >> 32), 0.5 * (uint32_t)U, 1);
 }
-MCS_FN float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
+MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
     return i < t->n ? (float)((double)mcsi_columns(t)[i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
 }
 
@@ -3976,7 +3978,7 @@ MCS_FN void mcsi_env_locate_n(const mcs_frame *f, size_t n, const float *x, cons
 #endif
 
 #if MCSI_W == 1
-MCS_FN mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels) {
+MCS_API mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels) {
     mcs_image im;
     MCSI_FILL(&im, 0, sizeof im);
     im.pixels = pixels;
@@ -4136,7 +4138,7 @@ MCSI_CORE void mcsi_env_set_turn(mcs_env *e) {
 
 /* ---- building ---- */
 
-MCS_FN size_t mcs_env_bytes(uint32_t w, uint32_t h) {
+MCS_API size_t mcs_env_bytes(uint32_t w, uint32_t h) {
     if (w == 0 || h == 0 || w > MCSI_ENV_MAX || h > MCSI_ENV_MAX || (size_t)-1 / w / h < 80) return 0;
     return (size_t)mcsi_env_layout(w, h).bytes;
 }
@@ -4198,7 +4200,7 @@ MCS_FN void mcsi_image_weights(const mcs_image *im, uint32_t y, uint32_t x, uint
     if (im->floor > 0.0f)
         for (uint32_t k = 0; k < n; k++) v[k] = mcsi_max(v[k] - im->floor, 0.0f);
 }
-MCS_FN float mcs_env_mean(const mcs_image *im) {
+MCS_API float mcs_env_mean(const mcs_image *im) {
     double sum = 0.0;
     uint32_t bad = 0;
     if (!im || !im->pixels || im->channels == 0 || im->channels == 2 || !mcs_env_bytes(im->w, im->h) ||
@@ -4260,7 +4262,7 @@ MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, u
     MCSI_GUIDE_BUILD(guide, uint16_t, shift, cdf, im->w);
     info->sum = mcsi_env_row_sum(cdf, im->w, guide, guides);
 }
-MCS_FN mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1) {
+MCS_API mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1) {
     const mcs_status status = mcsi_env_refuse(e, bytes, im);
     char *p = (char *)e;
     if (status) return status;
@@ -4272,7 +4274,7 @@ MCS_FN mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *
                            (mcsi_env_info *)(void *)(p + at.info) + y0);
     return MCS_OK;
 }
-MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) {
+MCS_API mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) {
     const mcs_status status = mcsi_env_refuse(e, bytes, im);
     double top = 0.0;
     if (status) return status;
@@ -4317,7 +4319,7 @@ MCS_FN mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) 
     e->sum = mcsi_env_sum(e);
     return top > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
-MCS_FN mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im) {
+MCS_API mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im) {
     const mcs_status status = mcs_env_build_rows(e, bytes, im, 0, im ? im->h : 0);
     return status ? status : mcs_env_finish(e, bytes, im);
 }
@@ -4351,7 +4353,7 @@ MCS_FN int mcsi_frame_ok(const mcs_frame *f) {
 MCS_FN int mcsi_env_holds(const mcs_env *e, uint32_t row0, uint32_t row1, uint32_t col0, uint32_t col1) {
     return e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1;
 }
-MCS_FN mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
+MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
     mcsi_env_parts at;
     uint32_t row1 = 0;
     uint32_t col1 = 0;
@@ -4666,13 +4668,13 @@ MCS_FN void mcsi_env_draw_n(const mcs_env *e, const mcsi_env_view *v, size_t n, 
                             col ? col + i : NULL, row ? row + i : NULL);
     }
 }
-MCS_FN void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                             float *pdf, uint32_t *col, uint32_t *row) {
+MCS_API void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y,
+                              float *z, float *pdf, uint32_t *col, uint32_t *row) {
     const mcsi_env_view v = mcsi_env_whole(e);
     mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf, col, row);
 }
-MCS_FN void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
-                            uint32_t *row, float *pdf) {
+MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
+                             uint32_t *row, float *pdf) {
     const mcsi_env_view v = mcsi_env_whole(e);
     uint32_t at_row[MCSI_ENV_BLOCK], at_col[MCSI_ENV_BLOCK];
     size_t m;
@@ -4691,24 +4693,24 @@ MCS_FN void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const fl
         for (size_t k = 0; pdf && k < m; k++) pdf[i + k] = mcsi_env_density(e, &v, at_row[k], at_col[k]);
     }
 }
-MCS_FN void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+MCS_API void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
     mcs_env_texel_n(e, n, x, y, z, NULL, NULL, pdf);
 }
 #endif
-MCS_FN mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2) {
+MCS_API mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2) {
     const mcsi_env_view v = mcsi_env_whole(e);
     return mcsi_env_draw_u(e, &v, u1, u2);
 }
-MCS_FN mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2) {
+MCS_API mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2) {
     const mcsi_env_view v = mcsi_env_whole(e);
     return mcsi_env_draw(e, &v, 0.5 * b1, 0.5 * b2, 1.0, 1);
 }
-MCS_FN mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w) {
+MCS_API mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w) {
     const mcsi_env_view v = mcsi_env_whole(e);
     return mcsi_env_look_up(e, &v, w);
 }
-MCS_FN float mcs_env_pdf(const mcs_env *e, mcs_vec3 w) { return mcs_env_texel(e, w).pdf; }
-MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
+MCS_API float mcs_env_pdf(const mcs_env *e, mcs_vec3 w) { return mcs_env_texel(e, w).pdf; }
+MCS_API mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
     const mcsi_env_view v = mcsi_env_whole(e);
     mcsi_env_place_of at;
     if (!mcsi_env_find(e, w, &at)) return mcsi_vec2(0.0f, 0.0f);
@@ -4724,7 +4726,7 @@ MCS_FN mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
     }
     return mcsi_vec2(mcsi_below_one(u1), mcsi_below_one(u2));
 }
-MCS_FN float mcs_env_weight(const mcs_env *e, float pdf) {
+MCS_API float mcs_env_weight(const mcs_env *e, float pdf) {
     MCS_ASSERT(!e->incomplete);
     return mcsi_sane_result(!e->incomplete & (pdf > 0.0f), mcsi_quotient(1.0f, pdf));
 }
@@ -4745,13 +4747,13 @@ MCSI_CORE mcsi_env_view mcsi_env_part(const mcs_env *e, const mcs_env_window *m)
     v.uniform = m->uniform;
     return v;
 }
-MCS_FN size_t mcs_env_window_bytes(uint32_t rows) {
+MCS_API size_t mcs_env_window_bytes(uint32_t rows) {
     if (rows == 0 || rows > MCSI_ENV_MAX) return 0;
     return (size_t)mcsi_up8(sizeof(mcs_env_window) + rows * (sizeof(mcsi_env_span) + sizeof(uint32_t)) +
                             sizeof(uint32_t) + ((MCSI_ONE >> mcsi_guide_shift(rows, 1)) + 1) * sizeof(uint16_t));
 }
-MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
-                                       uint32_t col, uint32_t cols) {
+MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
+                                        uint32_t col, uint32_t cols) {
     if (!m || !e || ((uintptr_t)m & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (rows == 0 || cols == 0 || rows > e->h || row > e->h - rows || cols > e->w || col >= e->w) return MCS_ERR_SIZE;
     if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
@@ -4780,18 +4782,18 @@ MCS_FN mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mc
     MCSI_GUIDE_BUILD(guide, uint16_t, m->shift, cdf, rows);
     return m->uniform && !(e->uniform && e->total > 0.0) ? MCS_UNIFORM : MCS_OK;
 }
-MCS_FN mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2) {
+MCS_API mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2) {
     const mcsi_env_view v = mcsi_env_part(e, m);
     return mcsi_env_draw_u(e, &v, u1, u2);
 }
-MCS_FN float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_vec3 w) {
+MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_vec3 w) {
     const mcsi_env_view v = mcsi_env_part(e, m);
     return mcsi_env_look_up(e, &v, w).pdf;
 }
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1,
-                                    const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
-                                    uint32_t *row) {
+MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1,
+                                     const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
+                                     uint32_t *row) {
     const mcsi_env_view v = mcsi_env_part(e, m);
     mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf, col, row);
 }
@@ -5086,7 +5088,7 @@ MCSI_CORE const mcs_env_window *mcsi_tiles_window(const mcs_tiles *t, uint32_t r
     return (const mcs_env_window *)(const void *)(p + ((size_t)col * t->rows + row) * t->window_bytes);
 }
 MCS_FN int mcsi_tiles_ok(uint32_t rows) { return rows == 16 || rows == 32 || rows == MCSI_TILES_MAX; }
-MCS_FN size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows) {
+MCS_API size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows) {
     const size_t n = 2 * (size_t)rows * rows;
     if (!e || !mcsi_tiles_ok(rows)) return 0;
     return sizeof(mcs_tiles) +
@@ -5261,7 +5263,7 @@ MCS_FN void mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, uint
         p->within += part.within;
     }
 }
-MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows) {
+MCS_API mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows) {
     if (!t || !e || ((uintptr_t)t & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (!mcsi_tiles_ok(rows)) return MCS_ERR_SIZE;
     if (bytes < mcs_tiles_bytes(e, rows)) return MCS_ERR_MEMORY;
@@ -5288,7 +5290,7 @@ MCS_FN mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, 
     return e->total > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 /* World direction in which the light of tile k (column by column) lies. */
-MCS_FN mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k) {
+MCS_API mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k) {
     const size_t n = (size_t)t->rows * t->cols;
     const float *f = mcsi_tiles_fields(t) + (k < n ? k : n - 1);
     const float unit = f[MCSI_TILE_UNIT * n];
@@ -5340,7 +5342,7 @@ MCS_FN int mcsi_facing_make(const mcs_env *e, const mcs_reflection *r, mcsi_faci
 #define MCS_PRODUCT_BYTES(rows)                                                                                  \
     (sizeof(mcs_product) + (rows) * sizeof(double) + (2 * (rows) * (rows) + 2 * (rows) + 2) * sizeof(uint32_t) + \
      (4 * (rows) * (rows) + 3 * (rows) + MCSI_FINE * (MCSI_GRID + MCSI_NODES)) * sizeof(float) + 2 * (rows) * (rows))
-MCS_FN size_t mcs_product_bytes(uint32_t rows) { return mcsi_tiles_ok(rows) ? MCS_PRODUCT_BYTES((size_t)rows) : 0; }
+MCS_API size_t mcs_product_bytes(uint32_t rows) { return mcsi_tiles_ok(rows) ? MCS_PRODUCT_BYTES((size_t)rows) : 0; }
 /* Where a product keeps its parts: of each row the density of a unit of its shares; shares of rows; of the columns of each row; the
  * reflection of tiles, and towards their corners; sums of rows; grids of fine tiles, each followed by what its rows of nodes weigh;
  * which of them a tile has, from 1 on, 0: none. */
@@ -5502,8 +5504,8 @@ MCSI_LOUD
 MCSI_CORE float mcsi_own_mix(const mcsi_own_lobe *l, float share, mcs_vec3 w, float tiled) {
     return share > 0.0f ? mcs_mix_pdf(share, mcsi_own_pdf(l, w), tiled) : tiled;
 }
-MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                    const mcs_reflection *r) {
+MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+                                     const mcs_reflection *r) {
     const mcs_status status = mcsi_product_start(p, bytes, t, e);
     uint32_t fine = 0;
     if (status) return status;
@@ -5523,8 +5525,8 @@ MCS_FN mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tile
     mcsi_product_end_grids(p, fine);
     return mcsi_product_finish(p);
 }
-MCS_FN mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                            const float *weight) {
+MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+                                             const float *weight) {
     const mcs_status status = mcsi_product_start(p, bytes, t, e);
     float top = 0.0f;
     uint32_t bad = 0;
@@ -5691,7 +5693,7 @@ MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
     r.pdf = mcsi_own_mix(&p->own, p->brdf_share, w, p->lit > 0.0 ? mcsi_product_density(p, &at) : 0.0f);
     return r;
 }
-MCS_FN float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
+MCS_API float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
 /* What a draw reads of a tile's rows near the place U2 of its light. */
 MCSI_CORE void mcsi_tile_prefetch(const mcs_env *e, const mcs_env_window *m, double U2) {
     const mcsi_env_view v = mcsi_env_part(e, m);
@@ -5724,7 +5726,7 @@ MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, d
     const mcsi_env_view v = mcsi_env_part(e, m);
     return mcsi_env_draw(e, &v, U1, U2, part, ok);
 }
-MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
+MCS_API mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
     int32_t ok = 1;
     double part = 1.0;
     u1 = mcsi_sane_u(u1, &ok);
@@ -5755,8 +5757,8 @@ MCS_FN mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
     return r;
 }
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                 float *z, float *pdf, uint32_t *col, uint32_t *row) {
+MCS_API void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                  float *z, float *pdf, uint32_t *col, uint32_t *row) {
     if (p->brdf_share > 0.0f || !(p->lit > 0.0)) {
         for (size_t i = 0; i < n; i++) {
             const mcs_texel r = mcs_product_sample(p, u1[i], u2[i]);
@@ -5937,7 +5939,8 @@ MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mc
                ? mcsi_tiled_density(t, e, part, NULL, &warp, i, j, at)
                : 0.0f;
 }
-MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2) {
+MCS_API mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1,
+                                     float u2) {
     int32_t ok = 1;
     double part = 1.0;
     uint32_t i = 0;
@@ -5969,7 +5972,7 @@ MCS_FN mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const 
     x.pdf = ok ? mcsi_own_mix(&own, share, x.w, x.pdf) : 0.0f;
     return x;
 }
-MCS_FN float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w) {
+MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w) {
     mcsi_env_place_of at;
     mcsi_facing s;
     if (!mcsi_env_find(e, w, &at) || !mcsi_facing_make(e, r, &s)) return 0.0f;
@@ -6847,162 +6850,162 @@ MCS_FN void mcsi_grid_bounds_n(size_t rows, size_t cols, const float *light, con
 #endif
 #endif
 #ifndef MCS_NO_BATCH
-MCS_FN void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *out) {
+MCS_API void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *out) {
     MCSI_WIDEST(philox_fill_loop, (key, counter, n, out));
 }
-MCS_FN void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
+MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
     MCSI_WIDEST(sobol_loop, (first, dim, seed, n, out));
 }
 #ifndef MCS_NO_1D
-MCS_FN void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf) {
+MCS_API void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf) {
     MCSI_WIDEST(linear_loop, (a, b, n, u, x, pdf));
 }
-MCS_FN void mcs_tent_sample_n(float r, size_t n, const float *u, float *x, float *pdf) {
+MCS_API void mcs_tent_sample_n(float r, size_t n, const float *u, float *x, float *pdf) {
     MCSI_WIDEST(tent_loop, (r, n, u, x, pdf));
 }
-MCS_FN void mcs_exponential_sample_n(float rate, size_t n, const float *u, float *x, float *pdf) {
+MCS_API void mcs_exponential_sample_n(float rate, size_t n, const float *u, float *x, float *pdf) {
     MCSI_WIDEST(exponential_loop, (rate, n, u, x, pdf));
 }
-MCS_FN void mcs_truncexp_sample_n(float rate, float m, size_t n, const float *u, float *x, float *pdf) {
+MCS_API void mcs_truncexp_sample_n(float rate, float m, size_t n, const float *u, float *x, float *pdf) {
     MCSI_WIDEST(truncexp_loop, (rate, m, n, u, x, pdf));
 }
-MCS_FN void mcs_normal_sample_n(float mean, float sd, size_t n, const float *u, float *x, float *pdf) {
+MCS_API void mcs_normal_sample_n(float mean, float sd, size_t n, const float *u, float *x, float *pdf) {
     MCSI_WIDEST(normal_loop, (mean, sd, n, u, x, pdf));
 }
-MCS_FN void mcs_logistic_sample_n(float mean, float scale, size_t n, const float *u, float *x, float *pdf) {
+MCS_API void mcs_logistic_sample_n(float mean, float scale, size_t n, const float *u, float *x, float *pdf) {
     MCSI_WIDEST(logistic_loop, (mean, scale, n, u, x, pdf));
 }
-MCS_FN void mcs_power_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
+MCS_API void mcs_power_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
     MCSI_WIDEST(power_loop, (e, n, u, x, pdf));
 }
-MCS_FN void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
+MCS_API void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
     MCSI_WIDEST(evenpower_loop, (e, n, u, x, pdf));
 }
 #endif
-MCS_FN void mcs_disk_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf) {
+MCS_API void mcs_disk_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf) {
     MCSI_WIDEST(disk_loop, (R, n, u1, u2, x, y, pdf));
 }
-MCS_FN void mcs_concentric_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                    float *pdf) {
+MCS_API void mcs_concentric_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                     float *pdf) {
     MCSI_WIDEST(concentric_loop, (R, n, u1, u2, x, y, pdf));
 }
-MCS_FN void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+MCS_API void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
     MCSI_WIDEST(sphere_loop, (n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                    float *pdf) {
+MCS_API void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                     float *pdf) {
     MCSI_WIDEST(hemisphere_loop, (n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+MCS_API void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
     MCSI_WIDEST(cosine_loop, (n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                              float *pdf) {
+MCS_API void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                               float *pdf) {
     MCSI_WIDEST(cone_loop, (k, n, u1, u2, x, y, z, pdf));
 }
 #ifndef MCS_NO_LOBES
-MCS_FN void mcs_phong_lobe_sample_n(const mcs_phong *m, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                    float *z, float *pdf) {
+MCS_API void mcs_phong_lobe_sample_n(const mcs_phong *m, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                     float *z, float *pdf) {
     MCSI_WIDEST(phong_lobe_loop, (m, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_phong_sample_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                               float *y, float *z, float *pdf, float *weight) {
+MCS_API void mcs_phong_sample_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                                float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(phong_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_phong_pdf_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                            float *pdf) {
+MCS_API void mcs_phong_pdf_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                             float *pdf) {
     MCSI_WIDEST(phong_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_phong_eval_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                             float *value) {
+MCS_API void mcs_phong_eval_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                              float *value) {
     MCSI_WIDEST(phong_eval_loop, (m, wo, n, x, y, z, value));
 }
-MCS_FN void mcs_ward_h_sample_n(const mcs_ward *m, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                float *z, float *pdf) {
+MCS_API void mcs_ward_h_sample_n(const mcs_ward *m, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                 float *z, float *pdf) {
     MCSI_WIDEST(ward_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_ward_sample_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                              float *y, float *z, float *pdf, float *weight) {
+MCS_API void mcs_ward_sample_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                               float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(ward_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_ward_pdf_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                           float *pdf) {
+MCS_API void mcs_ward_pdf_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                            float *pdf) {
     MCSI_WIDEST(ward_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_ward_eval_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                            float *value) {
+MCS_API void mcs_ward_eval_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                             float *value) {
     MCSI_WIDEST(ward_eval_loop, (m, wo, n, x, y, z, value));
 }
-MCS_FN void mcs_beckmann_h_sample_n(const mcs_beckmann *m, size_t n, const float *u1, const float *u2, float *x,
-                                    float *y, float *z, float *pdf) {
+MCS_API void mcs_beckmann_h_sample_n(const mcs_beckmann *m, size_t n, const float *u1, const float *u2, float *x,
+                                     float *y, float *z, float *pdf) {
     MCSI_WIDEST(beckmann_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_beckmann_sample_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                  float *x, float *y, float *z, float *pdf, float *weight) {
+MCS_API void mcs_beckmann_sample_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                   float *x, float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(beckmann_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_beckmann_pdf_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                               const float *z, float *pdf) {
+MCS_API void mcs_beckmann_pdf_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                const float *z, float *pdf) {
     MCSI_WIDEST(beckmann_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_beckmann_eval_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                const float *z, float *value) {
+MCS_API void mcs_beckmann_eval_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                 const float *z, float *value) {
     MCSI_WIDEST(beckmann_eval_loop, (m, wo, n, x, y, z, value));
 }
-MCS_FN void mcs_ggx_h_sample_n(const mcs_ggx *m, size_t n, const float *u1, const float *u2, float *x, float *y,
-                               float *z, float *pdf) {
+MCS_API void mcs_ggx_h_sample_n(const mcs_ggx *m, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                float *z, float *pdf) {
     MCSI_WIDEST(ggx_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_ggx_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                             float *y, float *z, float *pdf, float *weight) {
+MCS_API void mcs_ggx_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                              float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(ggx_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_ggx_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                          float *pdf) {
+MCS_API void mcs_ggx_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                           float *pdf) {
     MCSI_WIDEST(ggx_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_ggx_eval_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                           float *value) {
+MCS_API void mcs_ggx_eval_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                            float *value) {
     MCSI_WIDEST(ggx_eval_loop, (m, wo, n, x, y, z, value));
 }
-MCS_FN void mcs_ggx_vndf_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                                    float *y, float *z, float *pdf) {
+MCS_API void mcs_ggx_vndf_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                     float *x, float *y, float *z, float *pdf) {
     MCSI_WIDEST(ggx_vndf_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_ggx_vndf_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                                  float *y, float *z, float *pdf, float *weight) {
+MCS_API void mcs_ggx_vndf_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
+                                   float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(ggx_vndf_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_ggx_vndf_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                               float *pdf) {
+MCS_API void mcs_ggx_vndf_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
+                                float *pdf) {
     MCSI_WIDEST(ggx_vndf_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_ggx_bounded_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                       float *x, float *y, float *z, float *pdf) {
+MCS_API void mcs_ggx_bounded_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                        float *x, float *y, float *z, float *pdf) {
     MCSI_WIDEST(ggx_bounded_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_ggx_bounded_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                     float *x, float *y, float *z, float *pdf, float *weight) {
+MCS_API void mcs_ggx_bounded_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                      float *x, float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(ggx_bounded_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_ggx_bounded_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                  const float *z, float *pdf) {
+MCS_API void mcs_ggx_bounded_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                   const float *z, float *pdf) {
     MCSI_WIDEST(ggx_bounded_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_ashikhmin_h_sample_n(const mcs_ashikhmin *m, size_t n, const float *u1, const float *u2, float *x,
-                                     float *y, float *z, float *pdf) {
+MCS_API void mcs_ashikhmin_h_sample_n(const mcs_ashikhmin *m, size_t n, const float *u1, const float *u2, float *x,
+                                      float *y, float *z, float *pdf) {
     MCSI_WIDEST(ashikhmin_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
-MCS_FN void mcs_ashikhmin_sample_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                   float *x, float *y, float *z, float *pdf, float *weight) {
+MCS_API void mcs_ashikhmin_sample_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
+                                    float *x, float *y, float *z, float *pdf, float *weight) {
     MCSI_WIDEST(ashikhmin_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
-MCS_FN void mcs_ashikhmin_pdf_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                const float *z, float *pdf) {
+MCS_API void mcs_ashikhmin_pdf_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                 const float *z, float *pdf) {
     MCSI_WIDEST(ashikhmin_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
-MCS_FN void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                 const float *z, float *value) {
+MCS_API void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
+                                  const float *z, float *value) {
     MCSI_WIDEST(ashikhmin_eval_loop, (m, wo, n, x, y, z, value));
 }
 #endif

@@ -33,12 +33,13 @@ static inline void mcst_add_name(const char *at, size_t length) {
     mcst_name_count++;
 }
 
-/* A prototype starts a line with MCS_FN; its name is the first word that starts with mcs_ and has a parenthesis after it. */
+/* A prototype starts a line with MCS_FN or MCS_API; its name is the first word that starts with mcs_ and has a parenthesis after it. */
 static inline void mcst_read_prototypes(const char *from, const char *end) {
     const char *at = from;
-    while ((at = strstr(at, "\nMCS_FN ")) != NULL && at < end) {
+    while ((at = strstr(at, "\nMCS_")) != NULL && at < end) {
         size_t length = 0;
-        at += strlen("\nMCS_FN ");
+        at += strlen("\n");
+        if (strncmp(at, "MCS_FN ", 7) != 0 && strncmp(at, "MCS_API ", 8) != 0) continue;
         while (*at && *at != ';' && *at != '{') {
             for (length = 0; mcst_is_word(at[length]);) length++;
             if (length > 4 && !strncmp(at, "mcs_", 4) && at[length] == '(') break;
