@@ -28,9 +28,8 @@ static inline int mcst_chi2_main(int argc, char **argv, int (*mine)(const mcst_r
             CHECK(fit.chi2_u >= level, "p = %g", fit.chi2_u);
             CHECK(fit.ks_u1 >= level, "p = %g", fit.ks_u1);
             CHECK(fit.ks_u2 >= level, "p = %g", fit.ks_u2);
-            if (getenv("MCS_TEST_VERBOSE"))
-                printf("  %-14s %-60s mass %.7f  p: %.3f %.3f %.3f %.3f  u-space %.3f %.3f %.3f\n", row->name, mcst.name, fit.mass,
-                       fit.chi2, fit.stray, fit.ks_s, fit.ks_t, fit.chi2_u, fit.ks_u1, fit.ks_u2);
+            mcst_note("  %-14s %-60s mass %.7f  p: %.3f %.3f %.3f %.3f  u-space %.3f %.3f %.3f\n", row->name, mcst.name, fit.mass,
+                      fit.chi2, fit.stray, fit.ks_s, fit.ks_t, fit.chi2_u, fit.ks_u1, fit.ks_u2);
         }
     }
     return mcst_finish();

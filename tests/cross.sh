@@ -63,7 +63,7 @@ EOF
         tail -n 1 "$dir/run.log" | grep -q ' passed, 0 failed' || status=1
         [ $status = 0 ] || grep -v '^ok' "$dir/run.log" | head -n 12 | sed 's/^/    /'
         grep '^SKIPPED' "$dir/run.log" | sort -u
-        result $status "$target test_$t: $(tail -n 1 "$dir/run.log" | tr -d '\r')"
+        result $status "$target test_$t: $(tail -n 1 "$dir/run.log" | tr -d '\r' | sed 's/^[^ ]*: //')"
     done
 }
 

@@ -9,7 +9,9 @@
  *
  * Command line of every test binary: --list (names only), --filter TEXT (cases whose "group/name" holds TEXT; ^TEXT: the others),
  * --seed N.
- * One line per group, then "N passed, N failed" (cases, not checks); the exit status is 1 when a case failed or none ran.
+ * When all is well a program prints one line, "NAME: N passed, N failed, N s": cases, not checks, and seconds of processor time.
+ * Before it stand the checks that failed, and lines that begin with SKIPPED. With MCS_TEST_VERBOSE=1 there is also a line for every
+ * group and what mcst_note() is given. The exit status is 1 when a case failed or none ran.
  * A comparison must be written so that NaN fails it: CHECK(err <= tol), never CHECK(!(err > tol)). */
 #ifndef MCS_TEST_H
 #define MCS_TEST_H
@@ -23,15 +25,15 @@
 enum { MCST_SHOWN = 5 }; /* messages printed per case before the rest is only counted */
 
 static struct {
-    const char *filter;
-    int list;
+    const char *program, *filter;
+    int list, verbose;
     uint64_t seed;
     char group[64], name[160];
     int open, group_open, bad, group_cases, group_failed;
     long long checks;
     int passed, failed;
     clock_t began;
-} mcst = {NULL, 0, 20261122, "", "", 0, 0, 0, 0, 0, 0, 0, 0, 0};
+} mcst = {"", NULL, 0, 0, 20261122, "", "", 0, 0, 0, 0, 0, 0, 0, 0, 0};
 
 static void mcst_close_case(void) {
     if (!mcst.open) return;
@@ -48,7 +50,7 @@ static void mcst_close_case(void) {
 
 static void mcst_close_group(void) {
     mcst_close_case();
-    if (mcst.group_open && mcst.group_cases)
+    if (mcst.group_open && mcst.group_cases && (mcst.verbose || mcst.group_failed))
         printf("%-4s %-28s %4d cases %12lld checks %7.2f s\n", mcst.group_failed ? "FAIL" : "ok", mcst.group, mcst.group_cases,
                mcst.checks, (double)(clock() - mcst.began) / CLOCKS_PER_SEC);
     fflush(stdout);
@@ -56,7 +58,10 @@ static void mcst_close_group(void) {
 }
 
 static void mcst_start(int argc, char **argv) {
+    const char *folder = strrchr(argv[0], '/'), *verbose = getenv("MCS_TEST_VERBOSE");
     int i;
+    mcst.program = folder ? folder + 1 : argv[0];
+    mcst.verbose = verbose && *verbose && strcmp(verbose, "0") != 0;
     for (i = 1; i < argc; i++) {
         if (!strcmp(argv[i], "--list")) mcst.list = 1;
         else if (!strcmp(argv[i], "--filter") && i + 1 < argc) mcst.filter = argv[++i];
@@ -109,6 +114,15 @@ static void mcst_fail(const char *file, int line, const char *what, const char *
     putchar('\n');
 }
 
+/* Detail, for MCS_TEST_VERBOSE=1 alone. */
+static inline void mcst_note(const char *fmt, ...) {
+    va_list a;
+    if (!mcst.verbose || mcst.list) return;
+    va_start(a, fmt);
+    vprintf(fmt, a);
+    va_end(a);
+}
+
 /* 1 where this build contracts a*b + c: with c the rounded product, only a fused operation finds what the rounding took away. */
 #define MCST_CONTRACTS(function)                               \
     static inline int function(void) {                         \
@@ -121,8 +135,7 @@ static void mcst_fail(const char *file, int line, const char *what, const char *
 MCST_CONTRACTS(mcst_contracts)
 /* The same for array forms, which may contract where nothing else does, by the units they pick at run time. */
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__CUDACC__)
-__attribute__((target("avx2,fma"))) MCST_CONTRACTS(mcst_contracts_fma)
-static inline int mcst_arrays_contract(void) {
+__attribute__((target("avx2,fma"))) MCST_CONTRACTS(mcst_contracts_fma) static inline int mcst_arrays_contract(void) {
     return mcst_contracts() || (__builtin_cpu_supports("fma") && mcst_contracts_fma());
 }
 #else
@@ -134,7 +147,7 @@ static inline int mcst_arrays_contract(void) { return mcst_contracts(); }
 static int mcst_finish(void) {
     mcst_close_group();
     if (mcst.list) return 0;
-    printf("%d passed, %d failed\n", mcst.passed, mcst.failed);
+    printf("%s: %d passed, %d failed, %.1f s\n", mcst.program, mcst.passed, mcst.failed, (double)clock() / CLOCKS_PER_SEC);
     return mcst.failed != 0 || mcst.passed == 0;
 }
 #endif

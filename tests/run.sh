@@ -1,7 +1,9 @@
 #!/bin/sh
-# run.sh JOBS PROGRAM...: runs the test programs JOBS at a time, prints each one's output in one piece when it ends, and at the
-# very end the sum of their cases as "N passed, N failed". Non-zero when a case failed, and when a program crashed, ended without
-# its summary line or ran no case (with FILTER set, single programs may run none, but not all of them).
+# run.sh JOBS PROGRAM...: runs the test programs JOBS at a time and prints the sum of their cases at the very end as "N passed,
+# N failed". Of a program in which all is well it prints the summary line, and before it what was SKIPPED; of any other one, and
+# with MCS_TEST_VERBOSE=1 of each, it prints the whole output in one piece. The exit status is not 0 when a case failed, and when a
+# program crashed, ended without its summary line or ran no case (with FILTER set, single programs may run none, but not all of
+# them).
 # FILTER and SEED are handed to every program as --filter and --seed. Programs in a folder stress run at MCS_STRESS_SCALE, 0.002.
 set -u
 jobs=$1
@@ -31,26 +33,38 @@ fail() {
     failed=$((failed + 1))
 }
 
+verbose() { case ${MCS_TEST_VERBOSE:-0} in 0) return 1 ;; *) return 0 ;; esac; }
+
+# What is wrong with a program, one line each, but for its failed cases.
+complaints() { # PROGRAM STATUS SUMMARY PASSED FAILED
+    if [ -z "$3" ]; then
+        echo "$1: no summary line, exit status $2"
+    elif [ "$4" = 0 ] && [ "$5" = 0 ]; then
+        if [ -z "${FILTER:-}" ]; then echo "$1: ran no case"; elif [ "$2" -gt 1 ]; then echo "$1: exit status $2"; fi
+    elif [ "$5" = 0 ] && [ "$2" != 0 ]; then
+        echo "$1: every case passed, yet exit status $2"
+    fi
+}
+
 # Reads the indices and adds the programs up.
 report() {
     passed=0 failed=0 ended=0
     while read -r i program; do
         ended=$((ended + 1))
-        echo "== $program"
-        cat "$tmp/$i/output"
+        output=$tmp/$i/output
         status=$(cat "$tmp/$i/status")
-        summary=$(sed -n 's/^\([0-9][0-9]*\) passed, \([0-9][0-9]*\) failed$/\1 \2/p' "$tmp/$i/output" | tail -n 1)
-        if [ -z "$summary" ]; then
-            fail "$program: no summary line, exit status $status"
-            continue
-        fi
+        summary=$(sed -n 's/^.*: \([0-9][0-9]*\) passed, \([0-9][0-9]*\) failed, [0-9.]* s$/\1 \2/p' "$output" | tail -n 1)
         p=${summary% *} f=${summary#* }
-        passed=$((passed + p)) failed=$((failed + f))
-        if [ "$p" = 0 ] && [ "$f" = 0 ]; then
-            if [ -z "${FILTER:-}" ]; then fail "$program: ran no case"; elif [ "$status" -gt 1 ]; then fail "$program: exit status $status"; fi
-        elif [ "$f" = 0 ] && [ "$status" != 0 ]; then
-            fail "$program: every case passed, yet exit status $status"
+        wrong=$(complaints "$program" "$status" "$summary" "$p" "$f")
+        if verbose || [ -n "$wrong" ] || [ "$f" != 0 ]; then
+            echo "== $program"
+            cat "$output"
+        else
+            grep '^SKIPPED' "$output"
+            [ "$p" = 0 ] || tail -n 1 "$output"
         fi
+        passed=$((passed + ${p:-0})) failed=$((failed + ${f:-0}))
+        [ -z "$wrong" ] || fail "$wrong"
     done
     [ "$ended" = "$1" ] || fail "$ended of $1 programs ended"
     if [ "$passed" = 0 ] && [ "$failed" = 0 ]; then fail "no case ran"; fi

@@ -886,7 +886,7 @@ static void test_size(void) {
     int i;
     for (i = 0; i < 2; i++) {
         const double each = (double)mcs_env_bytes(w[i], w[i] / 2) / ((double)w[i] * w[i] / 2);
-        printf("     %u x %u: %.3f bytes a texel\n", w[i], w[i] / 2, each);
+        mcst_note("     %u x %u: %.3f bytes a texel\n", w[i], w[i] / 2, each);
         CHECK(each >= 4 && each <= 16, "%u x %u: %g bytes a texel", w[i], w[i] / 2, each); /* at most what the largest peer takes */
     }
 }

@@ -342,8 +342,8 @@ static void report_weights(const picture *from, const mcs_image *plain) {
     image.bilinear = 1;
     a = build_image(p.name, &image, MCS_OK);
     m = check_draws(&p, env_in(&a), scaled(1000000));
-    printf("     %s: weights up to %.4f of the total, mean %.6f, rms deviation %.4f\n", p.name, m.worst, m.mean,
-           sqrt(variance_of(&m)));
+    mcst_note("     %s: weights up to %.4f of the total, mean %.6f, rms deviation %.4f\n", p.name, m.worst, m.mean,
+              sqrt(variance_of(&m)));
     arena_free(&a), discard(&p);
 }
 
@@ -470,7 +470,8 @@ static void test_mis(void) {
               m[k].mean, error_of(&m[k]), truth);
         arena_free(&a);
     }
-    printf("     variance of light and uniform together: %.4g, with compensation %.4g\n", variance_of(&m[0]), variance_of(&m[1]));
+    mcst_note("     variance of light and uniform together: %.4g, with compensation %.4g\n", variance_of(&m[0]),
+              variance_of(&m[1]));
     CHECK(variance_of(&m[1]) < variance_of(&m[0]), "compensation: variance %g, without %g", variance_of(&m[1]), variance_of(&m[0]));
     discard(&p);
 }
@@ -695,7 +696,7 @@ static void test_spread(void) {
             squares += pow(sum / POINTS - 1.2 * pi, 2);
         }
         rms[k] = sqrt(squares / rounds);
-        printf("     %s points: rms error %.3g, %.1f times less\n", name[k], rms[k], rms[0] / rms[k]);
+        mcst_note("     %s points: rms error %.3g, %.1f times less\n", name[k], rms[k], rms[0] / rms[k]);
         CHECK(k == 0 || rms[k] <= rms[0] / 5, "%s points: rms error %g, independent %g", name[k], rms[k], rms[0]);
     }
     arena_free(&a), discard(&p);

@@ -133,9 +133,8 @@ static void test_bias(void) {
         CHECK(fabs(off) <= 5 * sigma, "mean error %g steps, sigma %g", off, sigma);
         CHECK(fabs(read / light - 1) <= 5 * sigma * 3.0 * n / light, "light %g %%", 100 * (read / light - 1));
         CHECK(fabs(dark_read / dark - 1) <= 5 * sqrt(dark_n / 12) / dark, "dark channels %g %%", 100 * (dark_read / dark - 1));
-        if (getenv("MCS_TEST_VERBOSE"))
-            printf("    2^%d: mean error %+.5f steps, light %+.5f %%, dark channels %+.4f %%\n", exponent, off,
-                   100 * (read / light - 1), 100 * (dark_read / dark - 1));
+        mcst_note("    2^%d: mean error %+.5f steps, light %+.5f %%, dark channels %+.4f %%\n", exponent, off,
+                  100 * (read / light - 1), 100 * (dark_read / dark - 1));
     }
 }
 

@@ -95,7 +95,7 @@ static void sweep(const kernel *k) {
                   (double)x);
         before = y;
     }
-    if (getenv("MCS_TEST_VERBOSE")) printf("     %-14s max %.3f ulp at %.9g\n", k->name, worst, at);
+    mcst_note("     %-14s max %.3f ulp at %.9g\n", k->name, worst, at);
     CHECK(worst <= k->bound, "%s: %.3f ulp at %.9g, bound %g", k->name, worst, at, k->bound);
 }
 
@@ -134,7 +134,7 @@ static void quantile(void) {
         CHECK(x >= before || (double)(before - x) <= 0x1p-20 * fabs(X), "quantile(%.9g) turns back", (double)p);
         before = x;
     }
-    if (getenv("MCS_TEST_VERBOSE")) printf("     %-14s max %.3f ulp at %.9g\n", "quantile", worst, at);
+    mcst_note("     %-14s max %.3f ulp at %.9g\n", "quantile", worst, at);
     CHECK(worst <= 6, "quantile: %.3f ulp at %.9g", worst, at);
 }
 

@@ -277,8 +277,8 @@ int main(int argc, char **argv) {
         if (t->pdf) row.fn[0].pdf = t->pdf;
         v = judge(&row, p, mcst_seed_for(t->name, "mutant", 0));
         CHECK(is_caught(&v, level), "survived: p = %g, mass %.3g tolerances off", v.p, v.gap);
-        printf("  %-50s %s%s%s p = %.3g, mass %.3g tolerances off\n", t->name, is_caught(&v, level) ? "caught by" : "SURVIVED",
-               !(v.p >= level) ? " chi-square" : "", !(v.gap <= 1) ? " mass" : "", v.p, v.gap);
+        mcst_note("  %-50s %s%s%s p = %.3g, mass %.3g tolerances off\n", t->name, is_caught(&v, level) ? "caught by" : "SURVIVED",
+                  !(v.p >= level) ? " chi-square" : "", !(v.gap <= 1) ? " mass" : "", v.p, v.gap);
     }
     if (mcst_case("Beckmann visible normals with a rational Lambda")) {
         mcst_row row = *mcst_find("ggx_vndf_h");
@@ -288,12 +288,13 @@ int main(int argc, char **argv) {
         row.fn[0].pdf = beckmann_rational;
         m = mcst_mass_of(&row, p);
         CHECK(!(fabs(m.integral - 1) <= m.tolerance), "survived: mass %.8f", m.integral);
-        printf("  %-50s %s mass %.6f\n", "Beckmann visible normals with a rational Lambda",
-               fabs(m.integral - 1) <= m.tolerance ? "SURVIVED" : "caught by", m.integral);
+        mcst_note("  %-50s %s mass %.6f\n", "Beckmann visible normals with a rational Lambda",
+                  fabs(m.integral - 1) <= m.tolerance ? "SURVIVED" : "caught by", m.integral);
     }
     if (mcst_case("u = bits * 2^-32")) {
         CHECK(leaves_unit_interval(u_by_rounding), "survived");
-        printf("  %-50s %s\n", "u = bits * 2^-32", leaves_unit_interval(u_by_rounding) ? "caught by range: gives 1" : "SURVIVED");
+        mcst_note("  %-50s %s\n", "u = bits * 2^-32",
+                  leaves_unit_interval(u_by_rounding) ? "caught by range: gives 1" : "SURVIVED");
     }
     mcst_group("controls");
     for (i = 0; i < MCST_COUNT(mutants); i++) {

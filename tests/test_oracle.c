@@ -40,8 +40,8 @@ static int make_u(const mcst_row *row, uint64_t seed, float u[MAX_U][2]) {
 
 static void check_mass(const mcst_row *row, const float *p) {
     const mcst_mass m = mcst_mass_of(row, p);
-    CHECK(fabs(m.integral - m.lit) <= m.tolerance, "integral %.8f, not lost %.8f (%g, tolerance %g)", m.integral,
-          m.lit, m.integral - m.lit, m.tolerance);
+    CHECK(fabs(m.integral - m.lit) <= m.tolerance, "integral %.8f, not lost %.8f (%g, tolerance %g)", m.integral, m.lit,
+          m.integral - m.lit, m.tolerance);
 }
 
 /* --- check 4: accuracy ---------------------------------------------------------------------------------------------------------
@@ -104,8 +104,7 @@ static double stretched_length(const float *p, o_vec3 h) {
  * wider alpha times |n| against the length of that vector. */
 static double magnification(const float *p, const mcst_row *row, const ld *x) {
     const o_vec3 v = o_vec(x[0], x[1], x[2]);
-    return fmax((double)p[0], (double)p[1]) *
-           stretched_length(p, row->shape == MCST_IS_BRDF ? o_half(mcst_o3(p + 3), v) : v);
+    return fmax((double)p[0], (double)p[1]) * stretched_length(p, row->shape == MCST_IS_BRDF ? o_half(mcst_o3(p + 3), v) : v);
 }
 
 static void describe(const mcst_row *row, const float *p) {
@@ -193,8 +192,8 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
             CHECK(near(WEIGHT, out[4], w, wtol, 1), "u %a %a: weight %.9g, exact %.9Lg", (double)u[0], (double)u[1], (double)out[4],
                   w);
         tol = mcst_claim_of(row, CLAIM_WEIGHT, p) * 1e-6;
-        CHECK(near(WEIGHT_X, weight, w, tol, 1), "u %a %a: weight(x) %.9g, exact %.9Lg", (double)u[0], (double)u[1],
-              (double)weight, w);
+        CHECK(near(WEIGHT_X, weight, w, tol, 1), "u %a %a: weight(x) %.9g, exact %.9Lg", (double)u[0], (double)u[1], (double)weight,
+              w);
         tol = mcst_claim_of(row, CLAIM_EVAL, p) * direction_tol(row, p, x, pdf_x, peak);
         CHECK(near(EVAL, value, f, tol, peak), "u %a %a: eval(x) %.9g, exact %.9Lg (%.3g)", (double)u[0], (double)u[1],
               (double)value, f, (double)((ld)value / f - 1));
@@ -249,8 +248,8 @@ static void check_far(const mcst_row *row, const float *p, uint64_t seed, ld pea
         want = row->truth.pdf(p, x);
         row->fn[0].pdf(p, x, &pdf);
         tol = mcst_claim_of(row, CLAIM_PDF_W, p) * direction_tol(row, p, x, want, peak);
-        CHECK(near(PDF_FAR, pdf, want, tol, peak), "pdf at %.9g %.9g %.9g: %.9g, exact %.9Lg (%.3g)", (double)x[0],
-              (double)x[1], (double)x[2], (double)pdf, want, (double)((ld)pdf / want - 1));
+        CHECK(near(PDF_FAR, pdf, want, tol, peak), "pdf at %.9g %.9g %.9g: %.9g, exact %.9Lg (%.3g)", (double)x[0], (double)x[1],
+              (double)x[2], (double)pdf, want, (double)((ld)pdf / want - 1));
         if (row->fn[0].eval) { /* also 0 where the density is */
             const ld w = row->truth.weight(p, x);
             float weight;
@@ -476,7 +475,6 @@ static void check_bad_input(const mcst_row *row) {
 }
 
 int main(int argc, char **argv) {
-    const int verbose = getenv("MCS_TEST_VERBOSE") != NULL;
     size_t i, j;
     int k;
     mcst_start(argc, argv);
@@ -495,11 +493,9 @@ int main(int argc, char **argv) {
             describe(row, p);
             if (mcst.open) check_accuracy(row, p, mcst_seed_for(row->name, "accuracy", j));
         }
-        if (verbose && !mcst.list) {
-            printf("  %-14s", row->name);
-            for (k = 0; k < ERRORS; k++) printf(" %s %.2f", error_name[k], worst[k]);
-            putchar('\n');
-        }
+        mcst_note("  %-14s", row->name);
+        for (k = 0; k < ERRORS; k++) mcst_note(" %s %.2f", error_name[k], worst[k]);
+        mcst_note("\n");
         snprintf(group, sizeof group, "%s mass", row->name);
         mcst_group(group);
         for (j = 0; j < row->chi_size + row->grid_size; j++) {
@@ -521,6 +517,6 @@ int main(int argc, char **argv) {
         check_bad_input(row);
     }
     mcst_group("");
-    if (mcst_masses_skipped) printf("SKIPPED: %d masses, named above\n", mcst_masses_skipped);
+    if (mcst_masses_skipped && !mcst.list) printf("SKIPPED: %d masses, named above\n", mcst_masses_skipped);
     return mcst_finish();
 }

@@ -988,9 +988,8 @@ static void test_mean(void) {
             CHECK(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth, "mean %.7g with error %.2g, not %.7g", e.mean, e.error,
                   truth);
             CHECK(lobes[cases[i].lobe].ax >= 0.03f || d.share > 0, "no share for the lobe");
-            if (getenv("MCS_TEST_VERBOSE"))
-                printf("    %-28s mean %.7g, off by %5.2f standard errors of %.1e\n", mcst.name, e.mean, (e.mean - truth) / e.error,
-                       e.error / truth);
+            mcst_note("    %-28s mean %.7g, off by %5.2f standard errors of %.1e\n", mcst.name, e.mean, (e.mean - truth) / e.error,
+                      e.error / truth);
             sampler_free(&d);
             scene_free(&m);
         }
@@ -1705,8 +1704,7 @@ static void test_mutants(void) {
          * 0.023 % here: 8 of it. The fewer samples of a small MCS_TEST_SCALE cannot tell. */
         if (count >= 2000000)
             CHECK(!(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth), "mean %g with error %g, truth %g", e.mean, e.error, truth);
-        if (getenv("MCS_TEST_VERBOSE"))
-            printf("    %-48s %4d texels, mean off by %.1f standard errors\n", names[k], bad, (e.mean - truth) / e.error);
+        mcst_note("    %-48s %4d texels, mean off by %.1f standard errors\n", names[k], bad, (e.mean - truth) / e.error);
         sampler_free(&d);
         scene_free(&m);
     }
@@ -1793,8 +1791,8 @@ static void test_spread(void) {
             }
             slope = (steps * sxy - sx * sy) / (steps * sxx - sx * sx);
             alone = sqrt((sum2 / seeds / most / truth / truth - 1) / most), error = sqrt(square[steps - 1] / seeds);
-            printf("    %-32s error %.2e at 64, %.2e at %u, 1/%.1f of independent: N^%.2f%s\n", mcst.name, sqrt(square[0] / seeds),
-                   error, most, alone / error, slope, slope <= -0.9 ? "" : ", -0.9 not met");
+            mcst_note("    %-32s error %.2e at 64, %.2e at %u, 1/%.1f of independent: N^%.2f%s\n", mcst.name,
+                      sqrt(square[0] / seeds), error, most, alone / error, slope, slope <= -0.9 ? "" : ", -0.9 not met");
             CHECK(error <= alone, "error %.2e at %u, of independent points %.2e", error, most, alone);
             gain += log(alone / error), rate += slope, cases++;
             sampler_free(&d);
@@ -1964,16 +1962,16 @@ static void add_map(const scene *m, mcs_profile profile, ratios *sum, int *n) {
 static void finish(const char *what, mcs_profile profile, ratios *sum, const int *n) {
     const int most = profile == MCS_PROFILE_GGX ? VARIED : SHAPED;
     int k;
-    printf("    %s: variance per sample, geometric means over %d\n", what, n[0]);
-    printf("    %-8s %10s %10s %10s %10s | %10s %10s %10s\n", "alpha", "env/prod", "BRDF/prod", "MIS/prod", "worst", "env/one",
-           "MIS/one", "worst");
+    mcst_note("    %s: variance per sample, geometric means over %d\n", what, n[0]);
+    mcst_note("    %-8s %10s %10s %10s %10s | %10s %10s %10s\n", "alpha", "env/prod", "BRDF/prod", "MIS/prod", "worst", "env/one",
+              "MIS/one", "worst");
     for (k = 0; k < most; k++) {
         const float alpha = (profile == MCS_PROFILE_GGX ? varied : shaped_alpha)[k];
         ratios *q = sum + k;
         q->env = exp(q->env / n[k]), q->brdf = exp(q->brdf / n[k]), q->mis = exp(q->mis / n[k]);
         q->env_one = exp(q->env_one / n[k]), q->mis_one = exp(q->mis_one / n[k]);
-        printf("    %-8.3g %10.4g %10.4g %10.4g %10.3g | %10.4g %10.4g %10.3g\n", alpha > 0 ? (double)alpha : INFINITY, q->env,
-               q->brdf, q->mis, q->worst, q->env_one, q->mis_one, q->worst_one);
+        mcst_note("    %-8.3g %10.4g %10.4g %10.4g %10.3g | %10.4g %10.4g %10.3g\n", alpha > 0 ? (double)alpha : INFINITY, q->env,
+                  q->brdf, q->mis, q->worst, q->env_one, q->mis_one, q->worst_one);
     }
 }
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Shows that `make test` notices failure: runs it on the faulty programs of this directory and asks for a non-zero exit status and
-# the expected last line. Takes MAKE and BUILD from the environment.
+# Shows that `make test` notices failure, and that it is calm otherwise: runs it on the programs of this directory, most of which
+# are faulty, and asks for the exit status, the last line and what else is printed. Takes MAKE and BUILD from the environment.
 set -u
 passed=0 failed=0
 
@@ -23,6 +23,19 @@ expect() {
     fi
 }
 
+# says WHAT LINES PATTERN [make argument]: so many lines of `make test` on passing and failing programs match.
+says() {
+    count=$(MAKEFLAGS='' "${MAKE:-make}" --no-print-directory test TESTS='tests/selftest/passes.c tests/selftest/fails.c' \
+        BUILD="${BUILD:-build/selftest}" "${4:-MCS_TEST_VERBOSE=}" 2>/dev/null | grep -c -e "$3")
+    if [ "$count" = "$2" ]; then
+        passed=$((passed + 1))
+        echo "ok   $1: $count lines"
+    else
+        failed=$((failed + 1))
+        echo "FAIL $1: $count lines that match \"$3\"; wanted $2"
+    fi
+}
+
 expect 'no failure' ZERO '2 passed, 0 failed' passes
 expect 'a failing case' NONZERO '1 passed, 1 failed' fails
 expect 'a failing case among passing programs' NONZERO '3 passed, 1 failed' 'fails passes'
@@ -33,5 +46,10 @@ expect 'a test that does not compile' NONZERO - 'broken passes'
 expect 'no test program' NONZERO '0 passed, 1 failed' ''
 expect 'a filter' ZERO '1 passed, 0 failed' 'empty passes' FILTER=/two
 expect 'a filter that matches nothing' NONZERO '0 passed, 1 failed' 'empty passes' FILTER=nothing
+says 'one line of a program in which all is well' 1 'passes: 2 passed, 0 failed, [0-9.]* s$'
+says 'no detail, and of groups only those that failed' 1 '^ok \|a detail\|^FAIL selftest'
+says 'what was skipped' 1 '^SKIPPED: something'
+says 'the check that failed' 1 'fails.c:[0-9]*: selftest/nan: zero / zero <= 1: error = -\{0,1\}nan'
+says 'detail and groups on request' 3 '^ok \|a detail\|^FAIL selftest' MCS_TEST_VERBOSE=1
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

@@ -8,7 +8,7 @@
 #include "claims.h"
 #include "exact.h"
 
-#define EPS 0x1p-24 /* half an ulp of 1 */
+#define EPS 0x1p-24   /* half an ulp of 1 */
 enum { CLIMBS = 60 }; /* for each figure, at full size */
 
 /* --- points ----------------------------------------------------------------------------------------------------------------- */
@@ -261,7 +261,6 @@ int main(int argc, char **argv) {
     exact_start();
     if (scale >= 1) mcst.seed = (uint64_t)time(NULL) / 86400;
     mcst_start(argc, argv);
-    if (!mcst.list) printf("seed %llu\n", (unsigned long long)mcst.seed);
     for (i = 0; i < MCST_COUNT(mcst_claims); i++) {
         const mcst_row *row = mcst_rows;
         char group[64];
@@ -287,9 +286,10 @@ int main(int argc, char **argv) {
                 }
             }
             CHECK(worst <= claim->claim[k], "%.3f at %s", worst, where);
-            printf("  %-26s %-18s %6.3f of %4.2f%s%s\n", group, mcst_claim_name[k], worst, claim->claim[k],
-                   getenv("MCS_TEST_VERBOSE") ? " at " : "", getenv("MCS_TEST_VERBOSE") ? where : "");
+            mcst_note("  %-26s %-18s %6.3f of %4.2f at %s\n", group, mcst_claim_name[k], worst, claim->claim[k], where);
         }
     }
+    mcst_close_group();
+    if (mcst.failed || mcst.verbose) printf("seed %llu\n", (unsigned long long)mcst.seed);
     return mcst_finish();
 }

@@ -114,12 +114,12 @@ static void check_value(tally *t, const arguments *a, int bad, float v) {
 }
 
 static void print_head(void) {
-    printf("%-22s %12s %5s %5s %9s %9s %14s %9s\n", "", "evaluations", "NaN", "inf", "negative", "not unit", "not discarded",
-           "range");
+    mcst_note("%-22s %12s %5s %5s %9s %9s %14s %9s\n", "", "evaluations", "NaN", "inf", "negative", "not unit", "not discarded",
+              "range");
 }
 static void print_tally(const char *name, const tally *t) {
-    printf("%-22s %12.0f %5.0f %5.0f %9.0f %9.0f %14.0f %9.0f\n", name, t->evaluations, t->nans, t->infinities, t->negative,
-           t->not_unit, t->not_discarded, t->outside);
+    mcst_note("%-22s %12.0f %5.0f %5.0f %9.0f %9.0f %14.0f %9.0f\n", name, t->evaluations, t->nans, t->infinities, t->negative,
+              t->not_unit, t->not_discarded, t->outside);
     all_evaluations += t->evaluations;
 }
 
@@ -881,7 +881,7 @@ int main(int argc, char **argv) {
     long k;
     int kind;
     mcst_start(argc, argv);
-    if (!mcst.list) print_head();
+    print_head();
     for (i = 0; i < MCST_NROWS; i++) {
         const mcst_row *row = &mcst_rows[i];
         memset(&t, 0, sizeof t);
@@ -924,6 +924,6 @@ int main(int argc, char **argv) {
         mcst_close_case();
         print_tally(kind ? "env, product" : "env", &t);
     }
-    if (!mcst.list) printf("%.3g evaluations\n", all_evaluations);
+    mcst_note("%.3g evaluations\n", all_evaluations);
     return mcst_finish();
 }

@@ -553,13 +553,13 @@ static void check_image(const struct subject *subject, enum mode mode) {
     check_windows(&map, &t, n / 4, &to);
     if (w >= 32 && h >= 16) check_products(&map, &t, n / 4, &to);
     CHECK(arena_intact(&a), "%s: written outside while drawing", p.name);
-    printf("  %-20s %5u %5u %-8s %8.0f %6.2f %6.2f", p.name, (unsigned)w, (unsigned)h, mode_name[mode], to.draws, to.mass[MAP],
-           to.mass[WINDOW]);
-    if (w >= 32 && h >= 16) printf(" %7.1f", to.mass[PRODUCT]);
-    else printf(" %7s", "-");
-    if (p.sharp) printf(" %6.3f %6.3f", to.row, to.col);
-    else printf(" %6s %6s", "-", "-");
-    printf(" %6.2f\n", to.length), fflush(stdout);
+    mcst_note("  %-20s %5u %5u %-8s %8.0f %6.2f %6.2f", p.name, (unsigned)w, (unsigned)h, mode_name[mode], to.draws, to.mass[MAP],
+              to.mass[WINDOW]);
+    if (w >= 32 && h >= 16) mcst_note(" %7.1f", to.mass[PRODUCT]);
+    else mcst_note(" %7s", "-");
+    if (p.sharp) mcst_note(" %6.3f %6.3f", to.row, to.col);
+    else mcst_note(" %6s %6s", "-", "-");
+    mcst_note(" %6.2f\n", to.length);
     arena_free(&a), discard(&p), free(t.x);
 }
 
@@ -567,10 +567,9 @@ int main(int argc, char **argv) {
     size_t i;
     int mode;
     mcst_start(argc, argv);
-    if (!mcst.list)
-        printf("  mass, length: largest error in 2^-24; shares: of rows, of texels in their row, largest error over its bound\n"
-               "  %-20s %5s %5s %-8s %8s %6s %6s %7s %6s %6s %6s\n",
-               "", "width", "rows", "mode", "draws", "map", "window", "product", "rows", "texels", "length");
+    mcst_note("  mass, length: largest error in 2^-24; shares: of rows, of texels in their row, largest error over its bound\n"
+              "  %-20s %5s %5s %-8s %8s %6s %6s %7s %6s %6s %6s\n",
+              "", "width", "rows", "mode", "draws", "map", "window", "product", "rows", "texels", "length");
     mcst_group("images");
     for (i = 0; i < MCST_COUNT(subjects); i++)
         for (mode = 0; mode < MODES; mode++)
