@@ -27,104 +27,127 @@ static double reflect_at(const sampler *d, box b, double t1, double t2, span *s,
 }
 /* The place that a node stands for: its own, but the outer ones for those a hundredth off the border. */
 static double place_of_node(int k) { return k == 0 ? 0.01 : k == FINE ? 0.99 : (double)k / FINE; }
-/* The nodes of a grid, less the hundredth of their mean that each has got, go with the reflection towards the places they stand
- * for, by one factor in all tiles, which is narrowed down to `least` to `most`. Left out: nodes that may lie in another texel. */
-static void check_nodes(const sampler *d, uint32_t tile, const fit *f, double mean, double *least, double *most) {
+/* A node, less the hundredth of the mean that it has got, and the reflection that it stands for; what either may be wrong by. */
+typedef struct {
+    double v, blur, wanted, off;
+} known_node;
+/* 0: there is no light, or the node may lie in another texel. */
+static int know_node(const sampler *d, box b, double row_slack, const fit *f, double mean, int k1, int k2, known_node *n) {
     static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    const double t1 = place_of_node(k1), t2 = place_of_node(k2);
+    double sharp, beside;
+    uint32_t r;
+    span s, s1;
+    n->wanted = reflect_at(d, b, t1, t2, &s, &r, &sharp);
+    if (!(n->wanted > 0)) return 0;
+    const places off = places_off(d->m, &s, r, row_slack);
+    const double in1 = t1 - s.t1, in2 = t2 - s.t2;
+    if (!(fmin(in1, s.part1 - in1) > off.t1)) return 0;
+    if (!(fmin(in2, s.part2 - in2) > off.t2)) return 0;
+    n->off = sharp * n->wanted;
+    for (int k = 0; k < 4; k++) {
+        const double v = reflect_at(d, b, t1 + step[k][0] * off.t1, t2 + step[k][1] * off.t2, &s1, &r, &beside);
+        n->off = fmax(n->off, fabs(v - n->wanted) + sharp * n->wanted);
+    }
+    n->v = fit_node(f, k1, k2)->v - 0.01 / 1.01 * mean;
+    n->blur = fit_node(f, k1, k2)->blur;
+    return 1;
+}
+/* The nodes of a grid go with the reflection towards the places they stand for, by one factor in all tiles, which is narrowed down
+ * to `least` to `most`. */
+static void check_nodes(const sampler *d, uint32_t tile, const fit *f, double mean, double *least, double *most) {
     const box b = tile_box(d->m, tile);
     const double row_slack = slack_of_tile(d->m, b);
-    struct {
-        double v, blur, wanted, off;
-    } known[(FINE + 1) * (FINE + 1)], best = {0, 0, 0, 0};
-    double light = 0, factor, wrong, sharp, beside;
-    int n = 0, k1, k2, k;
-    uint32_t r;
-    for (k1 = 0; k1 <= FINE; k1++)
-        for (k2 = 0; k2 <= FINE; k2++) {
-            const double t1 = place_of_node(k1), t2 = place_of_node(k2);
-            places off, in;
-            span s, s1;
-            known[n].wanted = reflect_at(d, b, t1, t2, &s, &r, &sharp), known[n].off = sharp * known[n].wanted;
-            if (!(known[n].wanted > 0)) continue;
-            off = places_off(d->m, &s, r, row_slack), in.t1 = t1 - s.t1, in.t2 = t2 - s.t2;
-            if (!(fmin(in.t1, s.part1 - in.t1) > off.t1)) continue;
-            if (!(fmin(in.t2, s.part2 - in.t2) > off.t2)) continue;
-            for (k = 0; k < 4; k++) {
-                const double v = reflect_at(d, b, t1 + step[k][0] * off.t1, t2 + step[k][1] * off.t2, &s1, &r, &beside);
-                known[n].off = fmax(known[n].off, fabs(v - known[n].wanted) + sharp * known[n].wanted);
-            }
-            known[n].v = fit_node(f, k1, k2)->v - 0.01 / 1.01 * mean, known[n].blur = fit_node(f, k1, k2)->blur;
-            if (known[n].v > best.v)
-                best.v = known[n].v, best.blur = known[n].blur, best.wanted = known[n].wanted, best.off = known[n].off;
-            n++;
-        }
+    known_node known[(FINE + 1) * (FINE + 1)], best = {0, 0, 0, 0};
+    int n = 0;
+    for (int k = 0; k < (FINE + 1) * (FINE + 1); k++) {
+        if (!know_node(d, b, row_slack, f, mean, k / (FINE + 1), k % (FINE + 1), &known[n])) continue;
+        if (known[n].v > best.v) best = known[n];
+        n++;
+    }
     if (!n) return;
-    factor = best.v / best.wanted, wrong = best.blur / best.v + best.off / best.wanted;
-    for (k = 0; k < n; k++)
+    const double factor = best.v / best.wanted;
+    double wrong = best.blur / best.v + best.off / best.wanted, light = 0;
+    for (int k = 0; k < n; k++)
         CHECK(fabs(known[k].v - factor * known[k].wanted) <=
                   known[k].blur + factor * (known[k].off + wrong * known[k].wanted) + 16 * eps * (best.v + mean),
               "tile %u: a node has %g, not %g", tile, known[k].v, factor * known[k].wanted);
     /* Shares of rows and of columns are integers over 2^24, each at most 2 wrong; every entry adds one. */
-    for (r = b.r0; r < b.r1; r++) light += b.line[r] * d->m->area[r];
+    for (uint32_t r = b.r0; r < b.r1; r++) light += b.line[r] * d->m->area[r];
     wrong += (4 / (mean * light) + 4.0 * d->m->rows) * 0x1p-24;
-    *least = fmax(*least, factor * (1 - wrong)), *most = fmin(*most, factor * (1 + wrong));
+    *least = fmax(*least, factor * (1 - wrong));
+    *most = fmin(*most, factor * (1 + wrong));
+}
+/* A node counts in the mean by the cells around it, a quarter of each; with nothing anywhere else it has all of that. To each is
+ * added: 0.03 of the mean to corners, 0.01 on a grid. */
+static void check_range_of_nodes(uint32_t tile, const fit *f, double mean) {
+    const double least = f->parts > 1 ? 0.01 : 0.03;
+    for (int k1 = 0; k1 <= f->parts; k1++)
+        for (int k2 = 0; k2 <= f->parts; k2++) {
+            const node *v = fit_node(f, k1, k2);
+            const int cells = (k1 % f->parts ? 2 : 1) * (k2 % f->parts ? 2 : 1);
+            const double most = 4.0 * f->parts * f->parts / cells;
+            CHECK(v->v >= least / (1 + least) * mean * (1 - 1e-4) - v->blur &&
+                      v->v <= (most + least) / (1 + least) * mean * (1 + 1e-4) + v->blur,
+                  "tile %u: node (%d, %d) of %d parts has %g within %g, their mean is %g", tile, k1, k2, f->parts, v->v, v->blur,
+                  mean);
+        }
+}
+/* The density at (x, y) of a texel, 0 to 1 each way, is that of the lobe and light times the fit of the tile. */
+static void check_place(const sampler *d, uint32_t c, uint32_t r, double x, double y, const fit *f, const span *s,
+                        double row_slack) {
+    const scene *m = d->m;
+    const double light = m->light[(size_t)r * m->w + c];
+    const mcs_vec3 w = point(m->w, m->h, c, r, 0.01 + 0.98 * x, 0.01 + 0.98 * y);
+    double blur, all, visible, want = 0, tol = 0;
+    const double rest = tile_density(d, w, &blur, &all);
+    reflect_f(d->s, w, &visible);
+    /* and the mixture's rounding */
+    CHECK(fabs(all - rest - d->share * visible) <= d->share * lobe_off(d->s, w, visible) + 4 * eps * rest + blur,
+          "texel (%u, %u): density %g of tiles, %g of the lobe, %g in all", c, r, rest, d->share * visible, all);
+    if (light > 0) {
+        const double t1 = s->t1 + (0.01 + 0.98 * x) * s->part1, t2 = s->t2 + (0.01 + 0.98 * y) * s->part2;
+        const places off = places_off(m, s, r, row_slack);
+        const doubt o = fit_doubt(f, t1, t2, off);
+        want = light * fit_at(f, t1, t2);
+        tol = want * 2 * (slack_of_row(m, r) + slack_of(m, light, r) + row_slack + 8 * eps) + light * (varies(&o, off) + o.blur);
+    }
+    CHECK(rest >= -blur && rest <= FLT_MAX && fabs(rest - want) <= tol + blur,
+          "texel (%u, %u), %g of it across and %g down: density %.8g, not %.8g within %.2g; %d parts", c, r, x, y, rest, want,
+          tol + blur, f->parts);
+}
+/* At the middle of a texel, and at a random place of every other one. Adds what the lobe has there to `seen`; returns what the
+ * texel has of the density. */
+static double check_texel(const sampler *d, uint32_t c, uint32_t r, const fit *f, double row_slack, double *seen) {
+    const scene *m = d->m;
+    const double light = m->light[(size_t)r * m->w + c];
+    span s = {0, 1, 0, 1, 0};
+    double lobe_mass = 0;
+    if (light > 0) s = span_of(m, c, r);
+    check_place(d, c, r, 0.5, 0.5, f, &s, row_slack);
+    if ((r + c) % 2) check_place(d, c, r, (double)hash01(r * m->w + c, 20), (double)hash01(r * m->w + c, 21), f, &s, row_slack);
+    if (d->share > 0) lobe_mass = texel_mass(m, d->s, c, r).visible;
+    *seen += lobe_mass;
+    return (light > 0 ? fmax(light * fit_mean(f, &s), 0) : 0) * m->area[r] + d->share * lobe_mass;
 }
 /* Density times solid angle over the whole map is 1 less what the lobe loses; within a tile it goes with the light times its fit.
  * The number of tiles of many parts. */
 static int check_density(const sampler *d) {
+    static const span whole = {0, 1, 0, 1, 0};
     const scene *m = d->m;
     const uint32_t n = m->w * m->h;
     double sum = 0, seen = 0, least_factor = 0, most_factor = INFINITY;
-    uint32_t r, c, tile;
     int fine = 0;
-    for (tile = 0; tile < 2 * m->rows * m->rows; tile++) {
+    for (uint32_t tile = 0; tile < 2 * m->rows * m->rows; tile++) {
         const box b = tile_box(m, tile);
         const fit f = fit_tile(d, tile);
-        const span whole = {0, 1, 0, 1, 0};
-        /* A node counts in the mean by the cells around it, a quarter of each; with nothing anywhere else it has all of that. To
-         * each is added: 0.03 of the mean to corners, 0.01 on a grid. */
-        const double mean = fit_mean(&f, &whole), least = f.parts > 1 ? 0.01 : 0.03, row_slack = slack_of_tile(m, b);
-        int k1, k2, k;
+        const double mean = fit_mean(&f, &whole), row_slack = slack_of_tile(m, b);
         fine += f.parts > 1;
-        for (k1 = 0; k1 <= f.parts; k1++)
-            for (k2 = 0; k2 <= f.parts; k2++) {
-                const node *v = fit_node(&f, k1, k2);
-                const int cells = (k1 % f.parts ? 2 : 1) * (k2 % f.parts ? 2 : 1);
-                const double most = 4.0 * f.parts * f.parts / cells;
-                CHECK(v->v >= least / (1 + least) * mean * (1 - 1e-4) - v->blur &&
-                          v->v <= (most + least) / (1 + least) * mean * (1 + 1e-4) + v->blur,
-                      "tile %u: node (%d, %d) of %d parts has %g within %g, their mean is %g", tile, k1, k2, f.parts, v->v, v->blur,
-                      mean);
-            }
+        check_range_of_nodes(tile, &f, mean);
         if (f.parts > 1) check_nodes(d, tile, &f, mean, &least_factor, &most_factor);
-        for (r = b.r0; r < b.r1; r++)
-            for (c = b.c0; c < b.c1; c++) {
-                const double omega = m->area[r], light = m->light[(size_t)r * m->w + c];
-                double lobe_mass = 0;
-                span s = whole;
-                places off = {0, 0};
-                if (light > 0) s = span_of(m, c, r), off = places_off(m, &s, r, row_slack);
-                for (k = 0; k < 1 + (int)((r + c) % 2); k++) {
-                    const double x = k ? (double)hash01(r * m->w + c, 20) : 0.5, y = k ? (double)hash01(r * m->w + c, 21) : 0.5;
-                    const mcs_vec3 w = point(m->w, m->h, c, r, 0.01 + 0.98 * x, 0.01 + 0.98 * y);
-                    double blur, all, visible, rest = tile_density(d, w, &blur, &all), want = 0, tol = 0;
-                    reflect_f(d->s, w, &visible);
-                    /* and the mixture's rounding */
-                    CHECK(fabs(all - rest - d->share * visible) <= d->share * lobe_off(d->s, w, visible) + 4 * eps * rest + blur,
-                          "texel (%u, %u): density %g of tiles, %g of the lobe, %g in all", c, r, rest, d->share * visible, all);
-                    if (light > 0) {
-                        const double t1 = s.t1 + (0.01 + 0.98 * x) * s.part1, t2 = s.t2 + (0.01 + 0.98 * y) * s.part2;
-                        const doubt o = fit_doubt(&f, t1, t2, off);
-                        want = light * fit_at(&f, t1, t2);
-                        tol = want * 2 * (slack_of_row(m, r) + slack_of(m, light, r) + row_slack + 8 * eps) +
-                              light * (varies(&o, off) + o.blur);
-                    }
-                    CHECK(rest >= -blur && rest <= FLT_MAX && fabs(rest - want) <= tol + blur,
-                          "texel (%u, %u), %g of it across and %g down: density %.8g, not %.8g within %.2g; %d parts", c, r, x, y,
-                          rest, want, tol + blur, f.parts);
-                }
-                if (d->share > 0) lobe_mass = texel_mass(m, d->s, c, r).visible, seen += lobe_mass;
-                expected[r * m->w + c] = (light > 0 ? fmax(light * fit_mean(&f, &s), 0) : 0) * omega + d->share * lobe_mass;
+        for (uint32_t r = b.r0; r < b.r1; r++)
+            for (uint32_t c = b.c0; c < b.c1; c++) {
+                expected[r * m->w + c] = check_texel(d, c, r, &f, row_slack, &seen);
                 sum += expected[r * m->w + c];
             }
     }
