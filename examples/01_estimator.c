@@ -8,12 +8,12 @@
 int main(void) {
     const double exact = 4 * cos(1.0) - 2 * sin(1.0);
     mcs_pcg32 rng = mcs_pcg32_for(1, 1, 0);
-    int n, i, wrong = 0;
+    int wrong = 0;
 
     printf("%10s %10s %10s %12s %10s\n", "samples", "estimate", "exact", "std. error", "off by");
-    for (n = 1 << 8; n <= 1 << 20; n *= 16) {
+    for (int n = 1 << 8; n <= 1 << 20; n *= 16) {
         mcs_stat s = {0, 0, 0};
-        for (i = 0; i < n; i++) {
+        for (int i = 0; i < n; i++) {
             mcs_sample1 x = mcs_evenpower_sample(2, mcs_pcg32_float(&rng));
             if (x.pdf > 0) mcs_stat_add(&s, x.x * x.x * cos(x.x) / x.pdf);
             else mcs_stat_add(&s, 0); /* density 0: worth nothing, but still counted */

@@ -13,12 +13,15 @@ int main(void) {
     const float R = 2;
     const double exact = 3.14159265358979 * R * R * R * R / 4;
     mcs_pcg32 rng = mcs_pcg32_for(2, 1, 0);
-    mcs_stat polar = {0, 0, 0}, concentric = {0, 0, 0};
-    int i, wrong = 0;
+    mcs_stat polar = {0, 0, 0};
+    mcs_stat concentric = {0, 0, 0};
+    int wrong = 0;
 
-    for (i = 0; i < 1000000; i++) {
-        float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
-        mcs_sample2 p = mcs_disk_sample(R, u1, u2), c = mcs_concentric_sample(R, u1, u2);
+    for (int i = 0; i < 1000000; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const float u2 = mcs_pcg32_float(&rng);
+        mcs_sample2 p = mcs_disk_sample(R, u1, u2);
+        mcs_sample2 c = mcs_concentric_sample(R, u1, u2);
         mcs_stat_add(&polar, p.x * p.x / p.pdf);
         mcs_stat_add(&concentric, c.x * c.x / c.pdf);
     }

@@ -12,13 +12,17 @@ static int report(const char *name, double got, double error, double want) {
 
 int main(void) {
     const mcs_phong m = mcs_phong_make(50);
-    const mcs_vec3 above = {0, 0, 1}, slant = {0.8f, 0, 0.6f};
+    const mcs_vec3 above = {0, 0, 1};
+    const mcs_vec3 slant = {0.8f, 0, 0.6f};
     mcs_pcg32 rng = mcs_pcg32_for(3, 1, 0);
-    mcs_stat top = {0, 0, 0}, lobe = {0, 0, 0}, cosine = {0, 0, 0};
-    int i, wrong = 0;
+    mcs_stat top = {0, 0, 0};
+    mcs_stat lobe = {0, 0, 0};
+    mcs_stat cosine = {0, 0, 0};
+    int wrong = 0;
 
-    for (i = 0; i < 1000000; i++) {
-        float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+    for (int i = 0; i < 1000000; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const float u2 = mcs_pcg32_float(&rng);
         mcs_dir d = mcs_cosine_sample(u1, u2);
         mcs_stat_add(&top, mcs_phong_sample(&m, above, u1, u2).weight);
         mcs_stat_add(&lobe, mcs_phong_sample(&m, slant, u1, u2).weight);

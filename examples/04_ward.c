@@ -11,15 +11,20 @@ static int report(const char *name, double got, double error, double want) {
 }
 
 int main(void) {
-    const float ax = 0.1f, ay = 0.4f;
+    const float ax = 0.1f;
+    const float ay = 0.4f;
     const mcs_ward m = mcs_ward_make(ax, ay, MCS_WARD_GMD);
     const mcs_vec3 wo = {0.6f, 0, 0.8f};
     mcs_pcg32 rng = mcs_pcg32_for(4, 1, 0);
-    mcs_stat x2 = {0, 0, 0}, y2 = {0, 0, 0}, brdf = {0, 0, 0}, cosine = {0, 0, 0};
-    int i, wrong = 0;
+    mcs_stat x2 = {0, 0, 0};
+    mcs_stat y2 = {0, 0, 0};
+    mcs_stat brdf = {0, 0, 0};
+    mcs_stat cosine = {0, 0, 0};
+    int wrong = 0;
 
-    for (i = 0; i < 1000000; i++) {
-        float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+    for (int i = 0; i < 1000000; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const float u2 = mcs_pcg32_float(&rng);
         mcs_vec3 h = mcs_ward_h_sample(&m, u1, u2).w;
         mcs_dir d = mcs_cosine_sample(u1, u2);
         mcs_stat_add(&x2, h.x * h.x / (h.z * h.z));

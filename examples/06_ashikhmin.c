@@ -14,12 +14,16 @@ int main(void) {
     const mcs_ashikhmin m = mcs_ashikhmin_make(5, 80);
     const mcs_vec3 wo = {0, 0.6f, 0.8f};
     mcs_pcg32 rng = mcs_pcg32_for(6, 1, 0);
-    mcs_stat mass = {0, 0, 0}, brdf = {0, 0, 0}, cosine = {0, 0, 0};
-    int i, wrong = 0;
+    mcs_stat mass = {0, 0, 0};
+    mcs_stat brdf = {0, 0, 0};
+    mcs_stat cosine = {0, 0, 0};
+    int wrong = 0;
 
-    for (i = 0; i < 1000000; i++) {
-        float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
-        mcs_dir h = mcs_hemisphere_sample(u1, u2), d = mcs_cosine_sample(u1, u2);
+    for (int i = 0; i < 1000000; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const float u2 = mcs_pcg32_float(&rng);
+        mcs_dir h = mcs_hemisphere_sample(u1, u2);
+        mcs_dir d = mcs_cosine_sample(u1, u2);
         mcs_stat_add(&mass, mcs_ashikhmin_h_pdf(&m, h.w) / h.pdf);
         mcs_stat_add(&brdf, mcs_ashikhmin_sample(&m, wo, u1, u2).weight);
         mcs_stat_add(&cosine, d.pdf > 0 ? mcs_ashikhmin_eval(&m, wo, d.w) * d.w.z / d.pdf : 0);

@@ -11,17 +11,18 @@ enum { W = 64, H = 32, SUN_COLUMN = 10, SUN_ROW = 7 };
 int main(void) {
     const double pi = 3.14159265358979;
     static float sky[H][W];
-    size_t bytes = mcs_env_bytes(W, H);
+    const size_t bytes = mcs_env_bytes(W, H);
     mcs_env *env = (mcs_env *)malloc(bytes);
-    mcs_image image = mcs_image_make(&sky[0][0], W, H, 1);
+    const mcs_image image = mcs_image_make(&sky[0][0], W, H, 1);
     mcs_pcg32 rng = mcs_pcg32_for(8, 1, 0);
-    mcs_stat table = {0, 0, 0}, cosine = {0, 0, 0};
+    mcs_stat table = {0, 0, 0};
+    mcs_stat cosine = {0, 0, 0};
     double exact = 0;
-    int i, x, y;
 
-    for (y = 0; y < H; y++) {
-        double c0 = cos(pi * y / H), c1 = cos(pi * (y + 1) / H);
-        for (x = 0; x < W; x++) {
+    for (int y = 0; y < H; y++) {
+        const double c0 = cos(pi * y / H);
+        const double c1 = cos(pi * (y + 1) / H);
+        for (int x = 0; x < W; x++) {
             sky[y][x] = x == SUN_COLUMN && y == SUN_ROW ? 500 : 1;
             if (y < H / 2) exact += sky[y][x] * (2 * pi / W) * (c0 * c0 - c1 * c1) / 2;
         }
@@ -30,8 +31,9 @@ int main(void) {
         puts("the table could not be built");
         return 1;
     }
-    for (i = 0; i < 1000000; i++) {
-        float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+    for (int i = 0; i < 1000000; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const float u2 = mcs_pcg32_float(&rng);
         mcs_texel s = mcs_env_sample(env, u1, u2);
         mcs_dir d = mcs_cosine_sample(u1, u2);
         mcs_texel at = mcs_env_texel(env, d.w);

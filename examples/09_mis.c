@@ -11,14 +11,19 @@ static const float sky = 0.5f, sun = 5000, k = 1e-4f; /* k: the sun's radius is 
 static float integrand(mcs_vec3 w) { return (mcs_cone_pdf(k, w) > 0 ? sun : sky) * mcs_cosine_pdf(w); }
 
 int main(void) {
-    const double s = (double)k * (2 - (double)k), exact = sky * (1 - s) + sun * s;
+    const double s = (double)k * (2 - (double)k);
+    const double exact = sky * (1 - s) + sun * s;
     mcs_pcg32 rng = mcs_pcg32_for(9, 1, 0);
-    mcs_stat mis = {0, 0, 0}, cosine = {0, 0, 0};
-    int i;
+    mcs_stat mis = {0, 0, 0};
+    mcs_stat cosine = {0, 0, 0};
 
-    for (i = 0; i < 1000000; i++) {
-        float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng), u3 = mcs_pcg32_float(&rng), u4 = mcs_pcg32_float(&rng);
-        mcs_dir a = mcs_cosine_sample(u1, u2), b = mcs_cone_sample(k, u3, u4);
+    for (int i = 0; i < 1000000; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const float u2 = mcs_pcg32_float(&rng);
+        const float u3 = mcs_pcg32_float(&rng);
+        const float u4 = mcs_pcg32_float(&rng);
+        mcs_dir a = mcs_cosine_sample(u1, u2);
+        mcs_dir b = mcs_cone_sample(k, u3, u4);
         float both = 0;
         if (a.pdf > 0) both += integrand(a.w) / a.pdf * mcs_mis_power(a.pdf, mcs_cone_pdf(k, a.w));
         if (b.pdf > 0) both += integrand(b.w) / b.pdf * mcs_mis_power(b.pdf, mcs_cosine_pdf(b.w));

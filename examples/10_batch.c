@@ -11,13 +11,12 @@ int main(void) {
     const double exact = 2.0 / 3;
     mcs_pcg32 rng = mcs_pcg32_for(10, 1, 0);
     mcs_stat s = {0, 0, 0};
-    int round, i;
 
-    for (round = 0; round < ROUNDS; round++) {
+    for (int round = 0; round < ROUNDS; round++) {
         mcs_pcg32_fill_n(&rng, N, u1);
         mcs_pcg32_fill_n(&rng, N, u2);
         mcs_cosine_sample_n(N, u1, u2, NULL, NULL, z, NULL);
-        for (i = 0; i < N; i++) mcs_stat_add(&s, z[i]);
+        for (int i = 0; i < N; i++) mcs_stat_add(&s, z[i]);
     }
     printf("mean z of %d directions: %.5f +- %.5f, exact %.5f\n", N * ROUNDS, s.mean, mcs_stat_error(&s), exact);
     return !(fabs(s.mean - exact) <= 5 * mcs_stat_error(&s));

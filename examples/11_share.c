@@ -28,23 +28,35 @@ int main(void) {
     const size_t bytes = mcs_env_bytes(W, H);
     const mcs_image image = mcs_image_make(&sky[0][0], W, H, 1);
     mcs_env *built = (mcs_env *)malloc(bytes);
-    const mcs_env *shared;
     mcs_pcg32 rng = mcs_pcg32_for(11, 1, 0);
     FILE *f = tmpfile();
-    int whole, cut, other, i, differ = 0;
+    int differ = 0;
 
-    for (i = 0; i < W * H; i++) sky[i / W][i % W] = mcs_pcg32_float(&rng);
-    if (!f || !built || mcs_env_build(built, bytes, &image) != MCS_OK) return puts("no file or no memory"), 1;
-    if (fwrite(built, 1, bytes, f) != bytes || fflush(f) != 0) return puts("the file could not be written"), 1;
-    shared = (const mcs_env *)file_map(f, bytes);
-    if (!shared) return puts("the file could not be mapped"), 1;
+    for (int i = 0; i < W * H; i++) sky[i / W][i % W] = mcs_pcg32_float(&rng);
+    if (!f || !built || mcs_env_build(built, bytes, &image) != MCS_OK) {
+        puts("no file or no memory");
+        return 1;
+    }
+    if (fwrite(built, 1, bytes, f) != bytes || fflush(f) != 0) {
+        puts("the file could not be written");
+        return 1;
+    }
+    const mcs_env *shared = (const mcs_env *)file_map(f, bytes);
+    if (!shared) {
+        puts("the file could not be mapped");
+        return 1;
+    }
 
-    whole = mcs_env_check(shared, bytes);   /* before anything else is asked of it */
-    cut = mcs_env_check(shared, bytes / 2); /* as if the file had been cut short */
-    other = mcs_env_check((const mcs_env *)(const void *)((const char *)shared + 64), bytes - 64); /* no table begins here */
+    const int whole = mcs_env_check(shared, bytes);   /* before anything else is asked of it */
+    const int cut = mcs_env_check(shared, bytes / 2); /* as if the file had been cut short */
+    const int other =
+        mcs_env_check((const mcs_env *)(const void *)((const char *)shared + 64), bytes - 64); /* no table begins here */
+    int i;
     for (i = 0; i < 100000 && whole == MCS_OK; i++) {
-        float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
-        mcs_texel a = mcs_env_sample(built, u1, u2), b = mcs_env_sample(shared, u1, u2);
+        const float u1 = mcs_pcg32_float(&rng);
+        const float u2 = mcs_pcg32_float(&rng);
+        mcs_texel a = mcs_env_sample(built, u1, u2);
+        mcs_texel b = mcs_env_sample(shared, u1, u2);
         differ += !(a.w.x == b.w.x && a.w.y == b.w.y && a.w.z == b.w.z && a.pdf == b.pdf && a.col == b.col && a.row == b.row);
     }
     printf("%zu bytes: check %d, %d of %d samples differ; cut short: %d; no table: %d\n", bytes, whole, differ, i, cut, other);

@@ -85,13 +85,14 @@ static inline void hdr_color(const hdr_picture *p, size_t i, float rgb[3]) {
 static inline hdr_pixel hdr_encode(const float rgb[3]) {
     const float most = 0x1.fep126f; /* 255 with the highest exponent */
     hdr_pixel p = {{0, 0, 0, 0}};
-    float c[3], top = 0;
-    int exponent;
+    float top = 0;
+    float c[3];
     for (int k = 0; k < 3; k++) {
         c[k] = rgb[k] > 0 ? rgb[k] < most ? rgb[k] : most : 0;
         if (c[k] > top) top = c[k];
     }
     if (top <= 1e-32f) return p; /* as Radiance does */
+    int exponent;
     frexpf(top, &exponent);
     for (int k = 0; k < 3; k++) p.c[k] = (unsigned char)ldexpf(c[k], 8 - exponent);
     p.c[3] = (unsigned char)(exponent + 128);
@@ -146,7 +147,10 @@ static inline hdr_matrix hdr_inverse(hdr_matrix a) {
     hdr_matrix inverse;
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) {
-            const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+            const int i1 = (i + 1) % 3;
+            const int i2 = (i + 2) % 3;
+            const int k1 = (k + 1) % 3;
+            const int k2 = (k + 2) % 3;
             inverse.m[k][i] = a.m[i1][k1] * a.m[i2][k2] - a.m[i1][k2] * a.m[i2][k1];
         }
     }
@@ -166,9 +170,10 @@ static inline void hdr_white(const double xy[2], double out[3]) {
 /* From RGB to XYZ: each primary as strong as it takes to make (1, 1, 1) white. Returns 0 where the primaries span no triangle that
  * their four or so digits could tell from a line, and where white lies outside of it: then a strength is not positive. */
 static inline int hdr_to_xyz(const double chroma[8], hdr_matrix *out) {
-    const double *r = chroma, *g = chroma + 2, *b = chroma + 4;
+    const double *r = chroma;
+    const double *g = chroma + 2;
+    const double *b = chroma + 4;
     const double twice_area = (g[0] - r[0]) * (b[1] - r[1]) - (b[0] - r[0]) * (g[1] - r[1]);
-    double white[3], strength[3];
     if (!(fabs(twice_area) > 1e-6)) return 0;
     for (int k = 0; k < 3; k++) {
         out->m[0][k] = chroma[2 * k];
@@ -176,7 +181,9 @@ static inline int hdr_to_xyz(const double chroma[8], hdr_matrix *out) {
         out->m[2][k] = 1 - chroma[2 * k] - chroma[2 * k + 1];
     }
     const hdr_matrix inverse = hdr_inverse(*out);
+    double white[3];
     hdr_white(chroma + 6, white);
+    double strength[3];
     hdr_apply(&inverse, white, strength);
     for (int k = 0; k < 3; k++) {
         if (!(strength[k] > 0 && strength[k] < 1e30)) return 0;
@@ -190,22 +197,26 @@ static inline int hdr_to_xyz(const double chroma[8], hdr_matrix *out) {
 static inline int hdr_conversion(hdr_picture *p, const hdr_header *header) {
     static const double rec709[8] = {0.640, 0.330, 0.300, 0.600, 0.150, 0.060, 0.3127, 0.3290};
     static const hdr_matrix cones = {{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
-    hdr_matrix to_xyz = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, rec709_to_xyz;
+    hdr_matrix to_xyz = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     p->matrix = to_xyz;
     p->converts = header->xyz || header->primaries;
     if (p->converts) {
-        double white[3] = {1, 1, 1}, white709[3], from[3], to[3];
+        double white[3] = {1, 1, 1};
         if (header->primaries) hdr_white(header->chroma + 6, white);
         if (!header->xyz && !hdr_to_xyz(header->chroma, &to_xyz))
             return hdr_fail(p, "the PRIMARIES are no triangle around their white");
+        double white709[3];
         hdr_white(rec709 + 6, white709);
+        double from[3];
         hdr_apply(&cones, white, from);
+        double to[3];
         hdr_apply(&cones, white709, to);
         hdr_matrix adapted = hdr_product(cones, to_xyz);
         for (int i = 0; i < 3; i++) {
             if (!(from[i] > 0 && from[i] < 1e30)) return hdr_fail(p, "the white of the PRIMARIES is no colour");
             for (int k = 0; k < 3; k++) adapted.m[i][k] *= to[i] / from[i];
         }
+        hdr_matrix rec709_to_xyz;
         hdr_to_xyz(rec709, &rec709_to_xyz);
         p->matrix = hdr_product(hdr_inverse(rec709_to_xyz), hdr_product(hdr_inverse(cones), adapted));
     }
@@ -224,7 +235,8 @@ enum { HDR_LINE = 2048, HDR_END = -1 };
 
 /* One line without its end; what does not fit is dropped. Returns its length, or HDR_END where the file ends before its end. */
 static inline int hdr_line(FILE *f, char line[HDR_LINE]) {
-    int n = 0, c;
+    int n = 0;
+    int c;
     while ((c = getc(f)) != EOF && c != '\n')
         if (n < HDR_LINE - 1) line[n++] = (char)c;
     if (n > 0 && line[n - 1] == '\r') n--;
@@ -274,9 +286,11 @@ static inline int hdr_header_line(hdr_picture *p, hdr_header *header, const char
 
 /* The axis that comes first tells scan lines from the pixels in them; a minus sign, which end of it comes first. */
 static inline int hdr_resolution(hdr_picture *p, hdr_header *header, const char *line) {
-    const char *x = strrchr(line, 'X'), *y = strrchr(line, 'Y');
+    const char *x = strrchr(line, 'X');
+    const char *y = strrchr(line, 'Y');
     if (!x || !y) return hdr_fail(p, "the resolution line '%.60s' is not like '-Y height +X width'", line);
-    const long w = strtol(x + 1, NULL, 10), h = strtol(y + 1, NULL, 10);
+    const long w = strtol(x + 1, NULL, 10);
+    const long h = strtol(y + 1, NULL, 10);
     if (w <= 0 || h <= 0) return hdr_fail(p, "the resolution line '%.60s' does not have two positive numbers", line);
     if (w > HDR_PIXELS / h) return hdr_fail(p, "%ld x %ld pixels are more than the %ld that are read", w, h, HDR_PIXELS);
     header->columns = x < y;
@@ -288,13 +302,14 @@ static inline int hdr_resolution(hdr_picture *p, hdr_header *header, const char 
 }
 
 static inline int hdr_read_header(hdr_picture *p, hdr_header *header, FILE *f) {
-    char line[HDR_LINE];
     memset(header, 0, sizeof *header);
     for (int k = 0; k < 3; k++) header->scale[k] = 1;
     const int first = getc(f);
     if (first == EOF) return hdr_fail(p, "%s", ferror(f) ? strerror(errno) : "the file is empty");
     ungetc(first, f);
-    int n = hdr_line(f, line), ok = 1;
+    char line[HDR_LINE];
+    int n = hdr_line(f, line);
+    int ok = 1;
     const int marked = !strncmp(line, "#?", 2);
     for (; ok && n > 0; n = hdr_line(f, line)) ok = hdr_header_line(p, header, line);
     if (ok && n == 0) n = hdr_line(f, line);
@@ -309,7 +324,8 @@ static inline int hdr_read_header(hdr_picture *p, hdr_header *header, FILE *f) {
 
 /* Makes room for n more pixels. */
 static inline int hdr_reserve(hdr_picture *p, size_t n) {
-    const size_t all = (size_t)p->w * p->h, need = p->done + n;
+    const size_t all = (size_t)p->w * p->h;
+    const size_t need = p->done + n;
     size_t room = p->room > 0 ? p->room : 4096;
     if (need <= p->room) return 1;
     while (room < need) room *= 2;
@@ -328,8 +344,10 @@ static inline int hdr_read_channels(hdr_picture *p, FILE *f, uint32_t length, ui
     hdr_pixel *line = p->pixel + p->done;
     for (int channel = 0; channel < 4; channel++) {
         for (uint32_t i = 0; i < length;) {
-            const int code = getc(f), run = code > 128;
-            const uint32_t n = (uint32_t)(run ? code - 128 : code), end = i + n;
+            const int code = getc(f);
+            const int run = code > 128;
+            const uint32_t n = (uint32_t)(run ? code - 128 : code);
+            const uint32_t end = i + n;
             int value = run ? getc(f) : 0;
             if (code == EOF) return hdr_cut(p, f, number, lines);
             if (n > length - i) return hdr_fail(p, "a run in scan line %lu goes beyond its end", (unsigned long)number);
@@ -348,7 +366,9 @@ static inline int hdr_read_channels(hdr_picture *p, FILE *f, uint32_t length, ui
  * hold the bytes of n, the lowest first. A run ends with the line even if n is larger, as in Radiance. */
 static inline int hdr_read_pixels(hdr_picture *p, FILE *f, hdr_pixel first, uint32_t length, uint32_t number, uint32_t lines) {
     hdr_pixel pixel = first;
-    uint32_t left = length, shift = 0, n = 1;
+    uint32_t left = length;
+    uint32_t shift = 0;
+    uint32_t n = 1;
     for (;;) {
         if (!hdr_reserve(p, n)) return 0;
         for (left -= n; n > 0; n--) p->pixel[p->done++] = pixel;
@@ -381,7 +401,8 @@ static inline int hdr_read_scanline(hdr_picture *p, FILE *f, uint32_t length, ui
 
 /* From the order of the file to that of -Y h +X w. */
 static inline int hdr_turn(hdr_picture *p, const hdr_header *header) {
-    const size_t w = p->w, h = p->h;
+    const size_t w = p->w;
+    const size_t h = p->h;
     if (!header->columns && !header->from_right && !header->from_bottom) return 1;
     hdr_pixel *turned = (hdr_pixel *)HDR_REALLOC(NULL, w * h * sizeof *turned);
     if (!turned) return hdr_fail(p, "there is not enough memory to turn %lu x %lu pixels", (unsigned long)w, (unsigned long)h);
@@ -399,10 +420,11 @@ static inline int hdr_turn(hdr_picture *p, const hdr_header *header) {
 
 /* From where the file stands. Bytes after the picture are left alone. */
 static inline int hdr_read_file(hdr_picture *p, FILE *f) {
-    hdr_header header;
     hdr_start(p);
+    hdr_header header;
     int ok = hdr_read_header(p, &header, f);
-    const uint32_t length = header.columns ? p->h : p->w, lines = header.columns ? p->w : p->h;
+    const uint32_t length = header.columns ? p->h : p->w;
+    const uint32_t lines = header.columns ? p->w : p->h;
     for (uint32_t i = 0; ok && i < lines; i++) ok = hdr_read_scanline(p, f, length, i + 1, lines);
     for (size_t i = 0; ok && i < p->done; i++) { /* Black with an exponent is black: the half would make a faint grey of it. */
         unsigned char *c = p->pixel[i].c;

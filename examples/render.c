@@ -37,7 +37,9 @@ typedef mcs_vec3 vec3;
 
 static vec3 vec(float x, float y, float z) {
     vec3 v;
-    v.x = x, v.y = y, v.z = z;
+    v.x = x;
+    v.y = y;
+    v.z = z;
     return v;
 }
 static vec3 add(vec3 a, vec3 b) { return vec(a.x + b.x, a.y + b.y, a.z + b.z); }
@@ -91,26 +93,33 @@ static hdr_pixel encode(vec3 c) {
 
 /* In the map's own axes. */
 static vec3 texel_direction(const environment *e, uint32_t x, uint32_t y) {
-    float theta = PI * ((float)y + 0.5f) / (float)e->map.h, phi = 2 * PI * ((float)x + 0.5f) / (float)e->map.w;
+    const float theta = PI * ((float)y + 0.5f) / (float)e->map.h;
+    const float phi = 2 * PI * ((float)x + 0.5f) / (float)e->map.w;
     return vec(sinf(theta) * cosf(phi), sinf(theta) * sinf(phi), cosf(theta));
 }
 
 /* A clear late afternoon, for a run without a map: blue sky, pale horizon, brown ground, and a sun four degrees wide, since the
  * true half degree would be smaller than a texel. */
 static int map_sky(environment *e, const char *name) {
-    const vec3 zenith = {0.15f, 0.29f, 0.66f}, horizon = {0.95f, 0.98f, 1.06f}, soil = {0.16f, 0.13f, 0.11f};
-    const vec3 sun = {1500, 1180, 800}, haze = {2.2f, 1.5f, 0.8f}, to_sun = unit(vec(1, 0, 0.70f));
-    const float sun_cos = cosf(2 * PI / 180), edge = 0.3f * (1 - sun_cos);
-    uint32_t x, y;
+    const vec3 zenith = {0.15f, 0.29f, 0.66f};
+    const vec3 horizon = {0.95f, 0.98f, 1.06f};
+    const vec3 soil = {0.16f, 0.13f, 0.11f};
+    const vec3 sun = {1500, 1180, 800};
+    const vec3 haze = {2.2f, 1.5f, 0.8f};
+    const vec3 to_sun = unit(vec(1, 0, 0.70f));
+    const float sun_cos = cosf(2 * PI / 180);
+    const float edge = 0.3f * (1 - sun_cos);
     hdr_start(&e->map);
     e->map.w = 512;
     e->map.h = 256;
     e->map.pixel = malloc(512 * 256 * sizeof *e->map.pixel);
     if (!e->map.pixel) return complain(name, "not enough memory");
-    for (y = 0; y < e->map.h; y++) {
-        for (x = 0; x < e->map.w; x++) {
-            vec3 d = texel_direction(e, x, y), c;
-            float near_sun = dot(d, to_sun), disc = fminf(fmaxf((near_sun - sun_cos) / edge, 0), 1);
+    for (uint32_t y = 0; y < e->map.h; y++) {
+        for (uint32_t x = 0; x < e->map.w; x++) {
+            vec3 d = texel_direction(e, x, y);
+            const float near_sun = dot(d, to_sun);
+            const float disc = fminf(fmaxf((near_sun - sun_cos) / edge, 0), 1);
+            vec3 c;
             if (d.z > 0) {
                 c = mix(powf(1 - d.z, 4), zenith, horizon);
                 c = add(c, scale(powf(fmaxf(near_sun, 0), 12), haze));
@@ -126,40 +135,42 @@ static int map_sky(environment *e, const char *name) {
 /* What the camera wants to know of the map: how bright it makes the ground, and where its main light stands, which is taken as the
  * direction of the squared luminance of the upper half. */
 static void map_survey(environment *e) {
-    double lx = 0, ly = 0, irradiance = 0;
-    unsigned x, y;
-    for (y = 0; y < e->map.h / 2; y++) {
-        float area =
+    double lx = 0;
+    double ly = 0;
+    double irradiance = 0;
+    for (unsigned y = 0; y < e->map.h / 2; y++) {
+        const float area =
             2 * PI / (float)e->map.w * (cosf(PI * (float)y / (float)e->map.h) - cosf(PI * (float)(y + 1) / (float)e->map.h));
-        for (x = 0; x < e->map.w; x++) {
+        for (unsigned x = 0; x < e->map.w; x++) {
             vec3 d = mcs_to_world(&e->table->frame, texel_direction(e, x, y));
-            double l = luminance(radiance_at(e, x, y));
-            lx += l * l * area * d.x, ly += l * l * area * d.y;
+            const double l = luminance(radiance_at(e, x, y));
+            lx += l * l * area * d.x;
+            ly += l * l * area * d.y;
             irradiance += l * area * d.z;
         }
     }
-    e->irradiance = (float)irradiance, e->main_light = (float)atan2(ly, lx);
+    e->irradiance = (float)irradiance;
+    e->main_light = (float)atan2(ly, lx);
 }
 
 static int environment_make(environment *e, const char *map) {
     const char *name = map ? map : "built-in sky";
-    unsigned w, h;
-    size_t bytes, i;
-    float *pixel;
-    mcs_image image;
-    int status;
     if (!map && !map_sky(e, name)) return 0;
     if (map && !hdr_read(&e->map, map)) return complain(name, "%s", e->map.fault);
-    w = e->map.w;
-    h = e->map.h;
-    bytes = mcs_env_bytes(w, h);
+    const unsigned w = e->map.w;
+    const unsigned h = e->map.h;
+    size_t bytes = mcs_env_bytes(w, h);
     if (bytes == 0) return complain(name, "%u x %u texels are more than a sampling table takes", w, h);
     e->table = malloc(bytes);
+    float *pixel;
     pixel = malloc((size_t)w * h * sizeof *pixel);
-    if (!e->table || !pixel) return free(pixel), complain(name, "not enough memory for the sampling table");
-    for (i = 0; i < (size_t)w * h; i++) pixel[i] = luminance(radiance_at(e, (unsigned)(i % w), (unsigned)(i / w)));
-    image = mcs_image_make(pixel, w, h, 1);
-    status = mcs_env_build(e->table, bytes, &image);
+    if (!e->table || !pixel) {
+        free(pixel);
+        return complain(name, "not enough memory for the sampling table");
+    }
+    for (size_t i = 0; i < (size_t)w * h; i++) pixel[i] = luminance(radiance_at(e, (unsigned)(i % w), (unsigned)(i / w)));
+    const mcs_image image = mcs_image_make(pixel, w, h, 1);
+    int status = mcs_env_build(e->table, bytes, &image);
     free(pixel);
     if (status == MCS_UNIFORM) return complain(name, "the map is black: there is nothing to light the scene with");
     if (status != MCS_OK) return complain(name, "no sampling table (status %d)", status);
@@ -225,7 +236,7 @@ static float lobe_eval(const material *m, vec3 wo, vec3 wi) {
 
 /* Fresnel's factor, which the lobes of mcsample.h leave to the caller. Phong has no half-vector and a constant reflectance. */
 static vec3 fresnel(const material *m, vec3 wo, vec3 wi) {
-    float c = mcs_cos_d(wo, wi);
+    const float c = mcs_cos_d(wo, wi);
     if (m->kind == PHONG) return m->specular;
     return vec(mcs_schlick(m->specular.x, c), mcs_schlick(m->specular.y, c), mcs_schlick(m->specular.z, c));
 }
@@ -255,11 +266,13 @@ static bounce material_sample(const material *m, vec3 wo, float u_choice, float 
     bounce b = {{0, 0, 1}, 0, {0, 0, 0}};
     if (u_choice < m->p_lobe) {
         mcs_brdf s = lobe_sample(m, wo, u1, u2);
-        b.wi = s.wi, b.pdf = s.pdf;
+        b.wi = s.wi;
+        b.pdf = s.pdf;
         if (b.pdf > 0 && m->p_lobe >= 1) b.weight = scale(s.weight, fresnel(m, wo, s.wi)); /* closed form, no f / pdf */
     } else {
         mcs_dir s = mcs_cosine_sample(u1, u2);
-        b.wi = s.w, b.pdf = s.pdf;
+        b.wi = s.w;
+        b.pdf = s.pdf;
         if (m->p_lobe <= 0) b.weight = m->base;
     }
     if (m->p_lobe > 0 && m->p_lobe < 1) {
@@ -292,11 +305,20 @@ typedef struct {
 static material material_make(lobe_kind kind, float p_lobe, vec3 base, vec3 specular, float a, float b) {
     material m;
     memset(&m, 0, sizeof m);
-    m.kind = kind, m.p_lobe = p_lobe, m.base = base, m.specular = specular, m.share = kind == MATTE ? 0.125f : 1;
-    m.alpha_x = a, m.alpha_y = b, m.profile = kind == PHONG ? MCS_PROFILE_PHONG : MCS_PROFILE_GGX;
+    m.kind = kind;
+    m.p_lobe = p_lobe;
+    m.base = base;
+    m.specular = specular;
+    m.share = kind == MATTE ? 0.125f : 1;
+    m.alpha_x = a;
+    m.alpha_y = b;
+    m.profile = kind == PHONG ? MCS_PROFILE_PHONG : MCS_PROFILE_GGX;
     if (kind == WARD || kind == ASHIKHMIN) m.profile = MCS_PROFILE_GAUSS;
     if (kind == PHONG) m.alpha_x = m.alpha_y = sqrtf(0.5f / (a + 2)); /* about the mirror direction: half that of a half-vector */
-    if (kind == ASHIKHMIN) m.alpha_x = sqrtf(2 / (a + 2)), m.alpha_y = sqrtf(2 / (b + 2));
+    if (kind == ASHIKHMIN) {
+        m.alpha_x = sqrtf(2 / (a + 2));
+        m.alpha_y = sqrtf(2 / (b + 2));
+    }
     if (kind == PHONG) m.lobe.phong = mcs_phong_make(a);
     if (kind == WARD) m.lobe.ward = mcs_ward_make(a, b, MCS_WARD_GMD);
     if (kind == GGX_VISIBLE || kind == GGX_BOUNDED) m.lobe.ggx = mcs_ggx_make(a, b);
@@ -306,15 +328,20 @@ static material material_make(lobe_kind kind, float p_lobe, vec3 base, vec3 spec
 
 /* Seen with the main light of the map behind the camera at the left, where it models the spheres and stays out of the picture. */
 static scene scene_make(unsigned w, unsigned h, float main_light) {
-    const vec3 none = {0, 0, 0}, gloss = {0.05f, 0.05f, 0.05f}, silver = {0.95f, 0.93f, 0.88f}, gold = {1.00f, 0.72f, 0.30f};
-    const vec3 copper = {0.95f, 0.60f, 0.48f}, steel = {0.62f, 0.61f, 0.60f};
-    const float half_width = 7.75f, distance = 26, elevation = 27 * PI / 180;
+    const vec3 none = {0, 0, 0};
+    const vec3 gloss = {0.05f, 0.05f, 0.05f};
+    const vec3 silver = {0.95f, 0.93f, 0.88f};
+    const vec3 gold = {1.00f, 0.72f, 0.30f};
+    const vec3 copper = {0.95f, 0.60f, 0.48f};
+    const vec3 steel = {0.62f, 0.61f, 0.60f};
+    const float half_width = 7.75f;
+    const float distance = 26;
+    const float elevation = 27 * PI / 180;
     const float azimuth = main_light - 118 * PI / 180;
     scene s;
-    int i;
     s.ahead = vec(cosf(azimuth), sinf(azimuth), 0);
     s.side = vec(s.ahead.y, -s.ahead.x, 0);
-    for (i = 0; i < SPHERES; i++)
+    for (int i = 0; i < SPHERES; i++)
         s.center[i] = add(vec(0, 0, 1), add(scale(1.82f * (float)i - 6.24f, s.side), scale(i % 2 ? 0.75f : -0.75f, s.ahead)));
     s.of[0] = material_make(MATTE, 0, vec(0.78f, 0.36f, 0.18f), none, 0, 0);
     s.of[1] = material_make(PHONG, 0.5f, vec(0.52f, 0.05f, 0.04f), vec(0.14f, 0.14f, 0.14f), 120, 0);
@@ -335,25 +362,25 @@ static scene scene_make(unsigned w, unsigned h, float main_light) {
 
 /* Distance along a unit direction to the front of sphere i, or 0. */
 static float hit_sphere(const scene *s, int i, vec3 p, vec3 w) {
-    vec3 d = sub(s->center[i], p);
-    float b = dot(d, w), disc = b * b - dot(d, d) + 1;
+    const vec3 d = sub(s->center[i], p);
+    const float b = dot(d, w);
+    const float disc = b * b - dot(d, d) + 1;
     return b > 0 && disc > 0 ? b - sqrtf(disc) : 0;
 }
 
 /* From a point on an object in the direction w above its surface. All objects are convex, so none shadows itself, and everything
  * stands above the ground, so the ground stops exactly the directions that point down. */
 static int visible(const scene *s, vec3 p, vec3 w, int object) {
-    int i;
     if (w.z <= 0) return 0;
-    for (i = 0; i < SPHERES; i++)
+    for (int i = 0; i < SPHERES; i++)
         if (i != object && hit_sphere(s, i, p, w) > 0) return 0;
     return 1;
 }
 
 /* Spheres get tangents along their circles of latitude, as if turned on a lathe: the anisotropic ones need a direction. */
 static mcs_frame sphere_frame(vec3 n) {
-    mcs_frame f;
     if (n.x * n.x + n.y * n.y < 1e-8f) return mcs_frame_make(n);
+    mcs_frame f;
     f.n = n;
     f.s = unit(vec(-n.y, n.x, 0));
     f.t = cross(n, f.s);
@@ -362,12 +389,17 @@ static mcs_frame sphere_frame(vec3 n) {
 
 static int intersect(const scene *s, vec3 p, vec3 w, surface *x) {
     float nearest = INFINITY;
-    int i;
     x->object = NO_OBJECT;
-    if (w.z < 0) nearest = -p.z / w.z, x->object = GROUND;
-    for (i = 0; i < SPHERES; i++) {
-        float t = hit_sphere(s, i, p, w);
-        if (t > 0 && t < nearest) nearest = t, x->object = i;
+    if (w.z < 0) {
+        nearest = -p.z / w.z;
+        x->object = GROUND;
+    }
+    for (int i = 0; i < SPHERES; i++) {
+        const float t = hit_sphere(s, i, p, w);
+        if (t > 0 && t < nearest) {
+            nearest = t;
+            x->object = i;
+        }
     }
     if (x->object == NO_OBJECT) return 0;
     x->p = add(p, scale(nearest, w));
@@ -391,42 +423,49 @@ static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine", "brdf
 /* With mis, one half of a multi-sample estimator with the power heuristic (Veach and Guibas, "Optimally combining sampling
  * techniques", 1995); without, an estimator by itself. Likewise the environment. */
 static vec3 sample_brdf(const scene *s, const environment *e, const surface *x, int mis, mcs_pcg32 *rng) {
-    float u0 = mcs_pcg32_float(rng), u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng);
+    const float u0 = mcs_pcg32_float(rng);
+    const float u1 = mcs_pcg32_float(rng);
+    const float u2 = mcs_pcg32_float(rng);
     bounce b = material_sample(x->m, x->wo, u0, u1, u2);
-    vec3 w = mcs_to_world(&x->frame, b.wi), value;
-    mcs_texel l;
+    const vec3 w = mcs_to_world(&x->frame, b.wi);
     if (!(b.pdf > 0 && visible(s, x->p, w, x->object))) return vec(0, 0, 0);
-    l = mcs_env_texel(e->table, w);
-    value = mul(b.weight, radiance_at(e, l.col, l.row));
+    mcs_texel l = mcs_env_texel(e->table, w);
+    const vec3 value = mul(b.weight, radiance_at(e, l.col, l.row));
     return mis ? scale(mcs_mis_power(x->m->share * b.pdf, l.pdf) / x->m->share, value) : value;
 }
 
 static vec3 sample_environment(const scene *s, const environment *e, const surface *x, int mis, mcs_pcg32 *rng) {
-    float u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng);
+    const float u1 = mcs_pcg32_float(rng);
+    const float u2 = mcs_pcg32_float(rng);
     mcs_texel l = mcs_env_sample(e->table, u1, u2);
-    vec3 wi = mcs_to_local(&x->frame, l.w), value;
+    vec3 wi = mcs_to_local(&x->frame, l.w);
     if (!(l.pdf > 0 && wi.z > 0 && visible(s, x->p, l.w, x->object))) return vec(0, 0, 0);
-    value = scale(1 / l.pdf, mul(material_eval(x->m, x->wo, wi), radiance_at(e, l.col, l.row)));
+    const vec3 value = scale(1 / l.pdf, mul(material_eval(x->m, x->wo, wi), radiance_at(e, l.col, l.row)));
     return mis ? scale(mcs_mis_power(l.pdf, x->m->share * material_pdf(x->m, x->wo, wi)), value) : value;
 }
 
 static vec3 sample_hemisphere(const scene *s, const environment *e, const surface *x, int cosine, mcs_pcg32 *rng) {
-    float u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng);
+    const float u1 = mcs_pcg32_float(rng);
+    const float u2 = mcs_pcg32_float(rng);
     mcs_dir d = cosine ? mcs_cosine_sample(u1, u2) : mcs_hemisphere_sample(u1, u2);
-    vec3 w = mcs_to_world(&x->frame, d.w);
-    mcs_texel l;
+    const vec3 w = mcs_to_world(&x->frame, d.w);
     if (!(d.pdf > 0 && visible(s, x->p, w, x->object))) return vec(0, 0, 0);
-    l = mcs_env_texel(e->table, w);
+    mcs_texel l = mcs_env_texel(e->table, w);
     return scale(1 / d.pdf, mul(material_eval(x->m, x->wo, d.w), radiance_at(e, l.col, l.row)));
 }
 
 /* What product sampling is told of a surface; Fresnel's factor as the mirror direction has it. */
 static mcs_reflection reflection_of(const surface *x) {
     const material *m = x->m;
-    mcs_reflection r;
-    float base = m->p_lobe < 1 ? luminance(m->base) : 0, lobe = 0;
+    const float base = m->p_lobe < 1 ? luminance(m->base) : 0;
+    float lobe = 0;
     if (m->p_lobe > 0) lobe = m->kind == PHONG ? luminance(m->specular) : mcs_schlick(luminance(m->specular), x->wo.z);
-    r.frame = x->frame, r.wo = x->wo, r.alpha_x = m->alpha_x, r.alpha_y = m->alpha_y, r.matte = base / (base + lobe);
+    mcs_reflection r;
+    r.frame = x->frame;
+    r.wo = x->wo;
+    r.alpha_x = m->alpha_x;
+    r.alpha_y = m->alpha_y;
+    r.matte = base / (base + lobe);
     r.profile = m->profile;
     return r;
 }
@@ -445,19 +484,25 @@ static vec3 sample_product(const scene *s, const environment *e, const surface *
         mcs_product p;
         char room[MCS_PRODUCT_BYTES(TILES)];
     } point;
-    mcs_reflection r = reflection_of(x);
+    const mcs_reflection r = reflection_of(x);
     vec3 sum = {0, 0, 0};
-    float u1[BLOCK], u2[BLOCK], wx[BLOCK], wy[BLOCK], wz[BLOCK], pdf[BLOCK];
-    uint32_t col[BLOCK], row[BLOCK], i, n;
     if (mcs_product_build(&point.p, sizeof point, e->tiles, e->table, &r) != MCS_OK) return sum;
+    uint32_t n;
     for (; lights > 0; lights -= n) {
         n = lights < BLOCK ? lights : BLOCK;
+        float u1[BLOCK];
         mcs_pcg32_fill_n(rng, n, u1);
+        float u2[BLOCK];
         mcs_pcg32_fill_n(rng, n, u2);
+        float wx[BLOCK], wy[BLOCK], wz[BLOCK], pdf[BLOCK];
+        uint32_t col[BLOCK], row[BLOCK];
         mcs_product_sample_n(&point.p, n, u1, u2, wx, wy, wz, pdf, col, row);
-        for (i = 0; i < n; i++) {
+        for (uint32_t i = 0; i < n; i++) {
             mcs_texel l;
-            l.w = vec(wx[i], wy[i], wz[i]), l.pdf = pdf[i], l.col = col[i], l.row = row[i];
+            l.w = vec(wx[i], wy[i], wz[i]);
+            l.pdf = pdf[i];
+            l.col = col[i];
+            l.row = row[i];
             sum = add(sum, product_value(s, e, x, l));
         }
     }
@@ -466,8 +511,9 @@ static vec3 sample_product(const scene *s, const environment *e, const surface *
 
 /* One sample: the one-shot form. */
 static vec3 sample_oneshot(const scene *s, const environment *e, const surface *x, mcs_pcg32 *rng) {
-    mcs_reflection r = reflection_of(x);
-    float u1 = mcs_pcg32_float(rng), u2 = mcs_pcg32_float(rng);
+    const mcs_reflection r = reflection_of(x);
+    const float u1 = mcs_pcg32_float(rng);
+    const float u2 = mcs_pcg32_float(rng);
     return product_value(s, e, x, mcs_oneshot_sample(e->tiles, e->table, &r, u1, u2));
 }
 
@@ -475,16 +521,18 @@ static vec3 sample_oneshot(const scene *s, const environment *e, const surface *
 static vec3 direct(const scene *s, const environment *e, const surface *x, strategy how, uint32_t lights, mcs_pcg32 *rng,
                    uint32_t *drawn) {
     vec3 sum = {0, 0, 0};
-    uint32_t i;
     *drawn += lights;
     if (how == PRODUCT && lights > 1) return scale(1 / (float)lights, sample_product(s, e, x, lights, rng));
-    for (i = 0; i < lights; i++) {
+    for (uint32_t i = 0; i < lights; i++) {
         switch (how) {
         case BRDF: sum = add(sum, sample_brdf(s, e, x, 0, rng)); break;
         case ENVIRONMENT: sum = add(sum, sample_environment(s, e, x, 0, rng)); break;
         case PRODUCT: sum = add(sum, sample_oneshot(s, e, x, rng)); break;
         case MIS:
-            if (x->m->share == 1 || mcs_pcg32_float(rng) < x->m->share) sum = add(sum, sample_brdf(s, e, x, 1, rng)), ++*drawn;
+            if (x->m->share == 1 || mcs_pcg32_float(rng) < x->m->share) {
+                sum = add(sum, sample_brdf(s, e, x, 1, rng));
+                ++*drawn;
+            }
             sum = add(sum, sample_environment(s, e, x, 1, rng));
             break;
         default: sum = add(sum, sample_hemisphere(s, e, x, how == COSINE, rng));
@@ -536,7 +584,7 @@ static double seconds(clockid_t clock_id) {
 static void progress_row(progress *p) {
     if (p->rows < 0) return;
     OMP(omp critical(progress)) {
-        double now = seconds(CLOCK_MONOTONIC);
+        const double now = seconds(CLOCK_MONOTONIC);
         p->done++;
         if (now - p->last > 0.2) {
             p->last = now;
@@ -547,15 +595,14 @@ static void progress_row(progress *p) {
 }
 
 static void render_row(const options *o, const scene *s, const environment *e, strategy how, uint32_t y, uint32_t n, pixel *row) {
-    uint32_t x, i;
-    for (x = 0; x < o->w; x++) {
+    for (uint32_t x = 0; x < o->w; x++) {
         pixel *p = row + x;
-        for (i = 0; i < n; i++) {
-            float px = 2 * ((float)x + mcs_pcg32_float(&p->rng)) / (float)o->w - 1; /* a box filter: anywhere in the pixel */
-            float py = 1 - 2 * ((float)y + mcs_pcg32_float(&p->rng)) / (float)o->h;
-            vec3 w = unit(add(s->forward, add(scale(px, s->right), scale(py, s->up)))), c;
+        for (uint32_t i = 0; i < n; i++) {
+            const float px = 2 * ((float)x + mcs_pcg32_float(&p->rng)) / (float)o->w - 1; /* a box filter: anywhere in the pixel */
+            const float py = 1 - 2 * ((float)y + mcs_pcg32_float(&p->rng)) / (float)o->h;
+            const vec3 w = unit(add(s->forward, add(scale(px, s->right), scale(py, s->up))));
             surface at;
-            c = intersect(s, s->eye, w, &at) ? direct(s, e, &at, how, o->lights, &p->rng, &p->drawn) : radiance(e, w);
+            const vec3 c = intersect(s, s->eye, w, &at) ? direct(s, e, &at, how, o->lights, &p->rng, &p->drawn) : radiance(e, w);
             p->object = p->luminance.n > 0 && at.object != p->object ? NO_OBJECT : at.object;
             p->sum = add(p->sum, c);
             mcs_stat_add(&p->luminance, luminance(c));
@@ -567,18 +614,21 @@ static void render_row(const options *o, const scene *s, const environment *e, s
  * of the variances of the pixel means over the square of their number. What differs between pixels is picture, not error. As with
  * any estimate: where samples hardly ever find a small bright light, both the mean and its error come out low until they do. */
 static void picture_statistics(const pixel *p, size_t n, outcome *r) {
-    double variance = 0, count[SPHERES + 1] = {0};
-    size_t i;
-    int k;
+    double variance = 0;
+    double count[SPHERES + 1] = {0};
     r->mean = r->samples = 0;
     memset(r->mse, 0, sizeof r->mse);
-    for (i = 0; i < n; i++) {
-        double e = mcs_stat_error(&p[i].luminance);
-        r->mean += p[i].luminance.mean, r->samples += p[i].drawn;
+    for (size_t i = 0; i < n; i++) {
+        const double e = mcs_stat_error(&p[i].luminance);
+        r->mean += p[i].luminance.mean;
+        r->samples += p[i].drawn;
         variance += e * e;
-        if (p[i].object != NO_OBJECT) r->mse[p[i].object] += e * e, count[p[i].object]++;
+        if (p[i].object != NO_OBJECT) {
+            r->mse[p[i].object] += e * e;
+            count[p[i].object]++;
+        }
     }
-    for (k = 0; k <= SPHERES; k++) r->mse[k] /= fmax(count[k], 1);
+    for (int k = 0; k <= SPHERES; k++) r->mse[k] /= fmax(count[k], 1);
     r->mean /= (double)n;
     r->error = r->spp > 1 ? sqrt(variance) / (double)n : INFINITY; /* one sample tells nothing of its error */
 }
@@ -586,23 +636,22 @@ static void picture_statistics(const pixel *p, size_t n, outcome *r) {
 /* Every pixel has its own stream, seeded from (seed, pixel, strategy), and owns all that it
  * changes: the picture does not depend on the number of threads. */
 static outcome render(const options *o, const scene *s, const environment *e, strategy how, pixel *image) {
-    size_t pixels = (size_t)o->w * o->h, i;
+    const size_t pixels = (size_t)o->w * o->h;
     outcome r = {0, 0, 0, 0, 0, 0, {0}};
     const unsigned pass = o->seconds > 0 ? 1 : PASS;
     progress p = {strategy_name[how], seconds(CLOCK_MONOTONIC), 0, o->h * ceil(o->spp / (double)pass), 0};
-    double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
-    int watched = isatty(fileno(stderr));
+    const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    const int watched = isatty(fileno(stderr));
     if (!watched) p.rows = -1;
-    for (i = 0; i < pixels; i++) {
+    for (size_t i = 0; i < pixels; i++) {
         memset(&image[i], 0, sizeof image[i]);
         image[i].rng = mcs_pcg32_for(o->seed, i, how);
     }
     while (r.spp < o->spp && !(o->error > 0 && r.spp > 0 && r.error <= o->error * r.mean) &&
            !(o->seconds > 0 && r.spp > 1 && r.cpu >= o->seconds)) {
-        uint32_t n = o->spp - r.spp < pass ? o->spp - r.spp : pass;
-        int y;
+        const uint32_t n = o->spp - r.spp < pass ? o->spp - r.spp : pass;
         OMP(omp parallel for schedule(dynamic) num_threads(o->threads))
-        for (y = 0; y < (int)o->h; y++) {
+        for (int y = 0; y < (int)o->h; y++) {
             render_row(o, s, e, how, (uint32_t)y, n, image + (size_t)y * o->w);
             progress_row(&p);
         }
@@ -623,18 +672,17 @@ static outcome render(const options *o, const scene *s, const environment *e, st
 static vec3 pixel_color(const pixel *p) { return scale(1 / (float)p->luminance.n, p->sum); }
 
 static int file_close(FILE *f, const char *name) {
-    int bad = ferror(f);
+    const int bad = ferror(f);
     if (fclose(f) != 0 || bad) return complain(name, "cannot write: %s", strerror(errno));
     return 1;
 }
 
 static int hdr_write(const char *name, const pixel *image, unsigned w, unsigned h) {
     FILE *f = fopen(name, "wb");
-    size_t i;
     if (!f) return complain(name, "%s", strerror(errno));
     hdr_write_header(f, w, h);
-    for (i = 0; i < (size_t)w * h; i++) {
-        hdr_pixel p = encode(pixel_color(&image[i]));
+    for (size_t i = 0; i < (size_t)w * h; i++) {
+        const hdr_pixel p = encode(pixel_color(&image[i]));
         fwrite(p.c, 1, 4, f);
     }
     return file_close(f, name);
@@ -642,8 +690,8 @@ static int hdr_write(const char *name, const pixel *image, unsigned w, unsigned 
 
 /* Exposure, a filmic curve without hard clipping (Narkowicz, "ACES filmic tone mapping curve", 2015), sRGB coding, 8 bits. */
 static unsigned char display(float linear, float exposure) {
-    float x = fminf(linear * exposure, 1e4f);
-    float y = fminf(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1);
+    const float x = fminf(linear * exposure, 1e4f);
+    const float y = fminf(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1);
     return (unsigned char)(255 * (y <= 0.0031308f ? 12.92f * y : 1.055f * powf(y, 1 / 2.4f) - 0.055f) + 0.5f);
 }
 
@@ -652,13 +700,13 @@ static unsigned char display(float linear, float exposure) {
 /* Lengths of a prefix code for n bytes counted: Shannon's lengths, then shortened until the code is complete, as deflate wants it.
  * No count is taken as less than n / 8192, which keeps the lengths at 14 bits and below. */
 static void code_lengths(const uint32_t *count, size_t n, unsigned char *length) {
-    uint64_t total = n + SYMBOLS * (n / 8192 + 1);
-    uint32_t used = 0, i; /* sum of 2^(15 - length): 2^15 when complete */
-    for (i = 0; i < SYMBOLS; i++) {
+    const uint64_t total = n + SYMBOLS * (n / 8192 + 1);
+    uint32_t used = 0; /* sum of 2^(15 - length): 2^15 when complete */
+    for (uint32_t i = 0; i < SYMBOLS; i++) {
         for (length[i] = 1; (count[i] + n / 8192 + 1) << length[i] < total;) length[i]++;
         used += 1u << (15 - length[i]);
     }
-    for (i = 0; used < 1u << 15; i = (i + 1) % SYMBOLS)
+    for (uint32_t i = 0; used < 1u << 15; i = (i + 1) % SYMBOLS)
         if (used + (1u << (15 - length[i])) <= 1u << 15) used += 1u << (15 - length[i]--);
 }
 
@@ -668,84 +716,108 @@ typedef struct {
 } bit_writer;
 
 static void put_bits(bit_writer *b, uint32_t value, uint32_t n) {
-    for (b->bits |= value << b->n, b->n += n; b->n >= 8; b->n -= 8, b->bits >>= 8) *b->at++ = (unsigned char)b->bits;
+    b->bits |= value << b->n;
+    for (b->n += n; b->n >= 8; b->n -= 8) {
+        *b->at++ = (unsigned char)b->bits;
+        b->bits >>= 8;
+    }
 }
 
 static void put_code(bit_writer *b, uint32_t code, uint32_t n) { /* codes go out highest bit first */
-    uint32_t reversed = 0, i;
-    for (i = 0; i < n; i++) reversed |= (code >> i & 1) << (n - 1 - i);
+    uint32_t reversed = 0;
+    for (uint32_t i = 0; i < n; i++) reversed |= (code >> i & 1) << (n - 1 - i);
     put_bits(b, reversed, n);
 }
 
 static unsigned char *put_u32(unsigned char *at, uint32_t v) {
-    *at++ = (unsigned char)(v >> 24), *at++ = (unsigned char)(v >> 16), *at++ = (unsigned char)(v >> 8), *at++ = (unsigned char)v;
+    *at++ = (unsigned char)(v >> 24);
+    *at++ = (unsigned char)(v >> 16);
+    *at++ = (unsigned char)(v >> 8);
+    *at++ = (unsigned char)v;
     return at;
 }
 
 /* zlib stream (RFC 1950) of one deflate block (RFC 1951) with its own prefix code and no matches: a rendered picture has hardly
  * any repetition to match, but its filtered bytes are far from evenly spread. `out` has room for 2 n + 1024 bytes. */
 static size_t zlib_pack(const unsigned char *data, size_t n, unsigned char *out) {
-    uint32_t count[SYMBOLS] = {0}, code[SYMBOLS], next = 0, s1 = 1, s2 = 0, bits;
-    unsigned char length[SYMBOLS];
+    uint32_t count[SYMBOLS] = {0};
+    uint32_t next = 0;
+    uint32_t s1 = 1;
+    uint32_t s2 = 0;
     bit_writer b = {NULL, 0, 0};
-    size_t i;
     b.at = out;
-    for (i = 0; i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         count[data[i]]++;
-        s1 = (s1 + data[i]) % 65521, s2 = (s2 + s1) % 65521; /* Adler-32 */
+        s1 = (s1 + data[i]) % 65521;
+        s2 = (s2 + s1) % 65521; /* Adler-32 */
     }
+    unsigned char length[SYMBOLS];
     code_lengths(count, n, length);
-    for (bits = 1; bits <= 15; bits++, next <<= 1)
-        for (i = 0; i < SYMBOLS; i++)
+    uint32_t code[SYMBOLS];
+    for (uint32_t bits = 1; bits <= 15; bits++, next <<= 1)
+        for (size_t i = 0; i < SYMBOLS; i++)
             if (length[i] == bits) code[i] = next++;
-    put_bits(&b, 0x0178, 16);                                /* zlib: deflate, 32 KiB window */
-    put_bits(&b, 1 | 2 << 1, 3);                             /* the last block; its own codes */
-    put_bits(&b, 0, 10), put_bits(&b, 15, 4);                /* 257 byte codes, 1 distance code, all 19 length codes: */
-    for (i = 0; i < 19; i++) put_bits(&b, i < 3 ? 0 : 4, 3); /* 16-18 unused, so that 0-15 are themselves in 4 bits */
-    for (i = 0; i < SYMBOLS; i++) put_code(&b, length[i], 4);
+    put_bits(&b, 0x0178, 16);    /* zlib: deflate, 32 KiB window */
+    put_bits(&b, 1 | 2 << 1, 3); /* the last block; its own codes */
+    put_bits(&b, 0, 10);
+    put_bits(&b, 15, 4);                                            /* 257 byte codes, 1 distance code, all 19 length codes: */
+    for (size_t i = 0; i < 19; i++) put_bits(&b, i < 3 ? 0 : 4, 3); /* 16-18 unused, so that 0-15 are themselves in 4 bits */
+    for (size_t i = 0; i < SYMBOLS; i++) put_code(&b, length[i], 4);
     put_code(&b, 0, 4); /* no distances */
-    for (i = 0; i < n; i++) put_code(&b, code[data[i]], length[data[i]]);
+    for (size_t i = 0; i < n; i++) put_code(&b, code[data[i]], length[data[i]]);
     put_code(&b, code[SYMBOLS - 1], length[SYMBOLS - 1]);
     put_bits(&b, 0, 7);
     return (size_t)(put_u32(b.at, s2 << 16 | s1) - out);
 }
 
 static void png_chunk(FILE *f, const char *type, const unsigned char *data, size_t n) {
-    unsigned char head[8], tail[4];
     uint32_t crc = 0xffffffffu;
-    size_t i;
-    int k;
+    unsigned char head[8];
     memcpy(put_u32(head, (uint32_t)n), type, 4);
-    for (i = 4; i < n + 8; i++) { /* over the type and the data */
+    for (size_t i = 4; i < n + 8; i++) { /* over the type and the data */
         crc ^= i < 8 ? head[i] : data[i - 8];
-        for (k = 0; k < 8; k++) crc = crc >> 1 ^ (0xedb88320u & (0u - (crc & 1)));
+        for (int k = 0; k < 8; k++) crc = crc >> 1 ^ (0xedb88320u & (0u - (crc & 1)));
     }
+    unsigned char tail[4];
     put_u32(tail, ~crc);
-    fwrite(head, 1, 8, f), fwrite(data, 1, n, f), fwrite(tail, 1, 4, f);
+    fwrite(head, 1, 8, f);
+    fwrite(data, 1, n, f);
+    fwrite(tail, 1, 4, f);
 }
 
 static int png_write(const char *name, const pixel *image, unsigned w, unsigned h, float exposure) {
-    size_t stride = (size_t)w * 3, raw_size = (stride + 1) * h, x, y;
-    unsigned char *rows = calloc(2, stride), *raw = malloc(raw_size), *packed = malloc(2 * raw_size + 1024), head[13];
+    const size_t stride = (size_t)w * 3;
+    const size_t raw_size = (stride + 1) * h;
+    unsigned char *rows = calloc(2, stride);
+    unsigned char *raw = malloc(raw_size);
+    unsigned char *packed = malloc(2 * raw_size + 1024);
     FILE *f = rows && raw && packed ? fopen(name, "wb") : NULL;
     int ok = f ? 1 : complain(name, "%s", strerror(errno));
-    for (y = 0; ok && y < h; y++) { /* PNG's average filter: the one that suits pictures with noise */
-        unsigned char *row = rows + (y & 1) * stride, *above = rows + (~y & 1) * stride, *out = raw + y * (stride + 1);
-        for (x = 0; x < w; x++) {
+    for (size_t y = 0; ok && y < h; y++) { /* PNG's average filter: the one that suits pictures with noise */
+        unsigned char *row = rows + (y & 1) * stride;
+        unsigned char *above = rows + (~y & 1) * stride;
+        unsigned char *out = raw + y * (stride + 1);
+        for (size_t x = 0; x < w; x++) {
             vec3 c = pixel_color(&image[y * w + x]);
-            row[3 * x] = display(c.x, exposure), row[3 * x + 1] = display(c.y, exposure), row[3 * x + 2] = display(c.z, exposure);
+            row[3 * x] = display(c.x, exposure);
+            row[3 * x + 1] = display(c.y, exposure);
+            row[3 * x + 2] = display(c.z, exposure);
         }
-        for (*out++ = 3, x = 0; x < stride; x++) out[x] = (unsigned char)(row[x] - ((x < 3 ? 0 : row[x - 3]) + above[x]) / 2);
+        *out++ = 3;
+        for (size_t x = 0; x < stride; x++) out[x] = (unsigned char)(row[x] - ((x < 3 ? 0 : row[x - 3]) + above[x]) / 2);
     }
     if (ok) {
         fwrite("\211PNG\r\n\032\n", 1, 8, f);
+        unsigned char head[13];
         memcpy(put_u32(put_u32(head, w), h), "\10\2\0\0\0", 5); /* 8 bits, RGB, not interlaced */
         png_chunk(f, "IHDR", head, 13);
         png_chunk(f, "IDAT", packed, zlib_pack(raw, raw_size, packed));
         png_chunk(f, "IEND", head, 0);
         ok = file_close(f, name);
     }
-    free(rows), free(raw), free(packed);
+    free(rows);
+    free(raw);
+    free(packed);
     return ok;
 }
 
@@ -755,7 +827,7 @@ static float exposure_for(const options *o, const environment *e) {
 
 /* The caller frees the name. Returns NULL after a complaint. */
 static char *picture_name(const options *o, strategy how, const char *extension) {
-    size_t size = strlen(o->out) + strlen(strategy_name[how]) + strlen(extension) + 2;
+    const size_t size = strlen(o->out) + strlen(strategy_name[how]) + strlen(extension) + 2;
     char *name = malloc(size);
     if (name) snprintf(name, size, "%s-%s%s", o->out, strategy_name[how], extension);
     else complain(o->out, "not enough memory");
@@ -763,8 +835,9 @@ static char *picture_name(const options *o, strategy how, const char *extension)
 }
 
 static int write_pictures(const options *o, strategy how, const environment *e, const pixel *image) {
-    char *png = picture_name(o, how, ".png"), *hdr = picture_name(o, how, ".hdr");
-    int ok = png && hdr && png_write(png, image, o->w, o->h, exposure_for(o, e)) && hdr_write(hdr, image, o->w, o->h);
+    char *png = picture_name(o, how, ".png");
+    char *hdr = picture_name(o, how, ".hdr");
+    const int ok = png && hdr && png_write(png, image, o->w, o->h, exposure_for(o, e)) && hdr_write(hdr, image, o->w, o->h);
     free(png);
     free(hdr);
     return ok;
@@ -773,10 +846,9 @@ static int write_pictures(const options *o, strategy how, const environment *e, 
 /* Whether a file can be written, asked before the time is spent on what goes into it. What was in it stays for now. */
 static int can_write(const char *name) {
     struct stat status;
-    int exists = lstat(name, &status) == 0; /* if only as a link to nothing */
-    FILE *f;
+    const int exists = lstat(name, &status) == 0; /* if only as a link to nothing */
     if (stat(name, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) return 1; /* a device or a pipe */
-    f = fopen(name, "ab");
+    FILE *f = fopen(name, "ab");
     if (!f) return complain(name, "cannot write: %s", strerror(errno));
     fclose(f);
     if (!exists) remove(name);
@@ -784,12 +856,11 @@ static int can_write(const char *name) {
 }
 
 static int can_write_pictures(const options *o) {
-    int i, ok = !o->stack || can_write(o->stack);
-    for (i = 0; ok && i < STRATEGIES; i++) {
-        char *png, *hdr;
+    int ok = !o->stack || can_write(o->stack);
+    for (int i = 0; ok && i < STRATEGIES; i++) {
         if (!o->wanted[i]) continue;
-        png = picture_name(o, (strategy)i, ".png");
-        hdr = picture_name(o, (strategy)i, ".hdr");
+        char *png = picture_name(o, (strategy)i, ".png");
+        char *hdr = picture_name(o, (strategy)i, ".hdr");
         ok = png && hdr && can_write(png) && can_write(hdr);
         free(png);
         free(hdr);
@@ -851,9 +922,9 @@ static int parse_size(const char *text, options *o) {
 static int parse_strategies(const char *list, options *o) {
     memset(o->wanted, 0, sizeof o->wanted);
     for (;;) {
-        size_t n = strcspn(list, ",");
-        int i, known = 0;
-        for (i = 0; i < STRATEGIES; i++)
+        const size_t n = strcspn(list, ",");
+        int known = 0;
+        for (int i = 0; i < STRATEGIES; i++)
             if ((n == 3 && !strncmp(list, "all", 3)) || (n == strlen(strategy_name[i]) && !strncmp(list, strategy_name[i], n)))
                 known = o->wanted[i] = 1;
         if (!known) return complain("--strategy", "'%.*s' is none of uniform, cosine, brdf, env, mis, product, all", (int)n, list);
@@ -885,18 +956,19 @@ static const struct {
                            {"--stops", -20, 20, 0}, {"--threads", 1, 1024, 1}, {"--seed", 0, 9e15, 1}};
 
 static int parse_number(option which, const char *text, double *value) {
-    const double low = option_table[which].low, high = option_table[which].high;
+    const double low = option_table[which].low;
+    const double high = option_table[which].high;
     const int whole = option_table[which].whole;
-    char *end, from[64], to[64];
     errno = 0;
+    char *end;
     *value = strtod(text, &end);
     if (end != text && !*end && !errno && *value >= low && *value <= high && (!whole || *value == floor(*value))) return 1;
+    char from[64], to[64];
     return complain(option_table[which].name, "'%s' is not a %s from %s to %s", text, whole ? "whole number" : "number",
                     plain(low, from), plain(high, to));
 }
 
 static int parse_value(option which, const char *text, options *o) {
-    double v;
     switch (which) {
     case O_STRATEGY: return parse_strategies(text, o);
     case O_SIZE: return parse_size(text, o);
@@ -904,6 +976,7 @@ static int parse_value(option which, const char *text, options *o) {
     case O_STACK: return parse_name(option_table[which].name, text, &o->stack);
     default: break;
     }
+    double v;
     if (!parse_number(which, text, &v)) return 0;
     switch (which) {
     case O_SPP: o->spp = (uint32_t)v; break;
@@ -919,7 +992,7 @@ static int parse_value(option which, const char *text, options *o) {
 
 /* The option that an argument names, alone or with =value. OPTIONS: none. */
 static option find_option(const char *argument) {
-    size_t n = strcspn(argument, "=");
+    const size_t n = strcspn(argument, "=");
     int i = 0;
     while (i < OPTIONS && !(strlen(option_table[i].name) == n && !strncmp(argument, option_table[i].name, n))) i++;
     return (option)i;
@@ -927,11 +1000,15 @@ static option find_option(const char *argument) {
 
 /* Returns 0 for a wrong argument. */
 static int parse_arguments(int argc, char **argv, options *o) {
-    int i;
     memset(o, 0, sizeof *o);
-    o->w = 960, o->h = 320, o->seed = 1, o->lights = 1, o->wanted[MIS] = 1, o->out = "render";
-    for (i = 1; i < argc; i++) {
-        option which = find_option(argv[i]);
+    o->w = 960;
+    o->h = 320;
+    o->seed = 1;
+    o->lights = 1;
+    o->wanted[MIS] = 1;
+    o->out = "render";
+    for (int i = 1; i < argc; i++) {
+        const option which = find_option(argv[i]);
         const char *text = strchr(argv[i], '=');
         if (!strcmp(argv[i], "-h") || !strcmp(argv[i], "--help")) return o->help = 1;
         if (argv[i][0] != '-') {
@@ -963,12 +1040,13 @@ static void print_row(strategy how, const outcome *r) {
 }
 
 static void print_comparison(const options *o, const outcome *result) {
-    int i, best = -1;
-    for (i = 0; i < STRATEGIES; i++)
+    int best = -1;
+    for (int i = 0; i < STRATEGIES; i++)
         if (o->wanted[i] && (best < 0 || efficiency(&result[i]) > efficiency(&result[best]))) best = i;
     puts("\nstrategy  of best  deviation");
-    for (i = 0; i < STRATEGIES; i++) {
-        const outcome *r = &result[i], *b = &result[best];
+    for (int i = 0; i < STRATEGIES; i++) {
+        const outcome *r = &result[i];
+        const outcome *b = &result[best];
         if (!o->wanted[i]) continue;
         printf("%-8s  %7.3f  %9.2f\n", strategy_name[i], efficiency(b) > 0 ? efficiency(r) / efficiency(b) : 1,
                i != best ? (r->mean - b->mean) / fmax(hypot(r->error, b->error), 1e-300) : 0);
@@ -980,15 +1058,14 @@ static void print_comparison(const options *o, const outcome *result) {
 /* Over the pixels that show nothing but that object. */
 static void print_objects(const options *o, const outcome *result) {
     static const char *const name[] = {"matte", "Phong", "Ward.18", "Ward ani", "GGX.06", "GGX.12", "GGX.40", "A.-S.", "ground"};
-    int i, k;
     printf("\nmean squared error of a pixel x cpu s, over that of mis\nstrategy");
-    for (k = 0; k <= SPHERES; k++) printf(" %9s", name[k]);
+    for (int k = 0; k <= SPHERES; k++) printf(" %9s", name[k]);
     putchar('\n');
-    for (i = 0; i < STRATEGIES; i++) {
+    for (int i = 0; i < STRATEGIES; i++) {
         if (!o->wanted[i] || i == MIS) continue;
         printf("%-8s", strategy_name[i]);
-        for (k = 0; k <= SPHERES; k++) {
-            double mis = result[MIS].mse[k] * result[MIS].cpu;
+        for (int k = 0; k <= SPHERES; k++) {
+            const double mis = result[MIS].mse[k] * result[MIS].cpu;
             printf(" %9.3g", mis > 0 ? result[i].mse[k] * result[i].cpu / mis : 0);
         }
         putchar('\n');
@@ -996,34 +1073,31 @@ static void print_objects(const options *o, const outcome *result) {
 }
 
 int main(int argc, char **argv) {
+    unsigned shown = 0;
+    unsigned count = 0;
     options o;
-    environment e;
-    outcome result[STRATEGIES];
-    pixel *image;
-    scene s;
-    size_t pixels;
-    unsigned shown = 0, count = 0;
-    char error[64];
-    int i, ok;
     if (!parse_arguments(argc, argv, &o)) return 2;
     if (o.help) {
         usage();
         return flush_output() ? 0 : 1;
     }
     if (!can_write_pictures(&o)) return 1;
+    environment e;
     memset(&e, 0, sizeof e);
-    for (i = 0; i < STRATEGIES; i++) count += o.wanted[i] != 0;
-    pixels = (size_t)o.w * o.h;
+    for (int i = 0; i < STRATEGIES; i++) count += o.wanted[i] != 0;
+    const size_t pixels = (size_t)o.w * o.h;
+    pixel *image;
     image = malloc((o.stack ? count : 1) * pixels * sizeof *image); /* a stack needs all of them at once */
-    ok = image ? environment_make(&e, o.map) : complain("--size", "not enough memory for the picture");
-    s = scene_make(o.w, o.h, e.main_light);
+    int ok = image ? environment_make(&e, o.map) : complain("--size", "not enough memory for the picture");
+    const scene s = scene_make(o.w, o.h, e.main_light);
     if (ok) {
         printf("%s %u x %u, picture %u x %u, %d thread%s\n", o.map ? o.map : "built-in sky", e.map.w, e.map.h, o.w, o.h, o.threads,
                o.threads > 1 ? "s" : "");
         print_head();
         ok = flush_output();
     }
-    for (i = 0; ok && i < STRATEGIES; i++) {
+    outcome result[STRATEGIES];
+    for (int i = 0; ok && i < STRATEGIES; i++) {
         if (!o.wanted[i]) continue;
         result[i] = render(&o, &s, &e, (strategy)i, image + (o.stack ? shown : 0) * pixels);
         print_row((strategy)i, &result[i]);
@@ -1033,10 +1107,14 @@ int main(int argc, char **argv) {
     if (ok && count > 1 && o.spp > 1) print_comparison(&o, result);
     if (ok && count > 1 && o.spp > 1 && o.wanted[MIS]) print_objects(&o, result);
     ok = ok && flush_output() && (!o.stack || png_write(o.stack, image, o.w, shown * o.h, exposure_for(&o, &e)));
-    for (i = 0; ok && i < STRATEGIES; i++)
+    char error[64];
+    for (int i = 0; ok && i < STRATEGIES; i++)
         if (o.wanted[i] && o.error > 0 && !(result[i].error <= o.error * result[i].mean))
             ok = complain(strategy_name[i], "error %s not reached with %u sample%s per pixel", plain(o.error, error), result[i].spp,
                           result[i].spp > 1 ? "s" : "");
-    free(image), free(e.map.pixel), free(e.table), free(e.tiles);
+    free(image);
+    free(e.map.pixel);
+    free(e.table);
+    free(e.tiles);
     return ok ? 0 : 1;
 }

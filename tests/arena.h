@@ -30,8 +30,7 @@ static inline arena arena_make(size_t bytes) {
 enum { ARENA_PASTS = 3 };
 static inline void arena_past(arena *a, int past) {
     unsigned state = 1;
-    size_t i;
-    for (i = 0; i < a->bytes; i++) {
+    for (size_t i = 0; i < a->bytes; i++) {
         state = state * 1664525u + 1013904223u;
         a->at[i] = (unsigned char)(past == 0 ? 0 : past == 1 ? 0xff : state >> 24);
     }
@@ -44,8 +43,8 @@ static inline size_t arena_differ(const arena *a, const arena *b) {
 }
 
 static inline size_t filled(const unsigned char *p, size_t n) {
-    size_t i, count = 0;
-    for (i = 0; i < n; i++) count += p[i] == ARENA_FILL;
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++) count += p[i] == ARENA_FILL;
     return count;
 }
 

@@ -29,17 +29,23 @@ static inline double mcst_dot(const double *a, const double *b) { return a[0] * 
 
 static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
     mcst_map m;
-    int i;
     memset(&m, 0, sizeof m);
     m.coord = row->coord;
     m.s_bins = row->dim == 1 ? MCST_LINE_BINS : MCST_S;
     m.t_bins = row->dim == 1 ? 1 : MCST_T;
     m.a = (double)p[0];
     m.b = (double)p[1];
-    for (i = 0; i < 3; i++) m.wo[i] = (double)p[3 + i];
+    for (int i = 0; i < 3; i++) m.wo[i] = (double)p[3 + i];
     switch (row->coord) {
-    case MCST_UNIT: m.a = 0, m.b = 1; break; /* x = a + b s */
-    case MCST_TENT: m.b = 2 * m.a, m.a = -m.a, m.coord = MCST_UNIT; break;
+    case MCST_UNIT:
+        m.a = 0;
+        m.b = 1;
+        break; /* x = a + b s */
+    case MCST_TENT:
+        m.b = 2 * m.a;
+        m.a = -m.a;
+        m.coord = MCST_UNIT;
+        break;
     case MCST_SPHERE: m.k = 2; break; /* 1 - z = k s */
     case MCST_HEMISPHERE: m.k = 1; break;
     case MCST_CONE: m.k = m.a; break;
@@ -47,7 +53,10 @@ static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
         if (row->params == 1) m.b = m.a;
         break;
     case MCST_SLOPES: /* slopes are a X, b Y; above 1 the reflected part of the lobe is the part with slopes below 1 */
-        if (row->shape == MCST_IS_BRDF) m.a = fmin(m.a, 1), m.b = fmin(m.b, 1);
+        if (row->shape == MCST_IS_BRDF) {
+            m.a = fmin(m.a, 1);
+            m.b = fmin(m.b, 1);
+        }
         break;
     default: break;
     }
@@ -63,14 +72,22 @@ static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
         m.frame = MCST_HALF;
         if (!strcmp(row->name, "phong")) {
             const double *z = m.ez;
-            double l;
             m.frame = MCST_MIRROR;
-            m.ez[0] = -m.wo[0], m.ez[1] = -m.wo[1], m.ez[2] = m.wo[2];
+            m.ez[0] = -m.wo[0];
+            m.ez[1] = -m.wo[1];
+            m.ez[2] = m.wo[2];
             /* x = the axis least along z, made orthogonal; y = z cross x */
-            if (fabs(z[0]) < fabs(z[1])) m.ex[0] = 1 - z[0] * z[0], m.ex[1] = -z[0] * z[1], m.ex[2] = -z[0] * z[2];
-            else m.ex[0] = -z[1] * z[0], m.ex[1] = 1 - z[1] * z[1], m.ex[2] = -z[1] * z[2];
-            l = sqrt(mcst_dot(m.ex, m.ex));
-            for (i = 0; i < 3; i++) m.ex[i] /= l;
+            if (fabs(z[0]) < fabs(z[1])) {
+                m.ex[0] = 1 - z[0] * z[0];
+                m.ex[1] = -z[0] * z[1];
+                m.ex[2] = -z[0] * z[2];
+            } else {
+                m.ex[0] = -z[1] * z[0];
+                m.ex[1] = 1 - z[1] * z[1];
+                m.ex[2] = -z[1] * z[2];
+            }
+            const double l = sqrt(mcst_dot(m.ex, m.ex));
+            for (int i = 0; i < 3; i++) m.ex[i] /= l;
             m.ey[0] = z[1] * m.ex[2] - z[2] * m.ex[1];
             m.ey[1] = z[2] * m.ex[0] - z[0] * m.ex[2];
             m.ey[2] = z[0] * m.ex[1] - z[1] * m.ex[0];
@@ -94,19 +111,37 @@ static inline double mcst_power_y(double n, double s, double *dy_ds) {
 
 /* Diamond angle: t in [0,1) to a unit vector and the derivative of its angle. */
 static inline double mcst_azimuth(double t, double *x, double *y) {
-    const double q = floor(4 * t), f = 4 * t - q, l2 = (1 - f) * (1 - f) + f * f, l = 1 / sqrt(l2);
-    const double c = (1 - f) * l, s = f * l;
+    const double q = floor(4 * t);
+    const double f = 4 * t - q;
+    const double l2 = (1 - f) * (1 - f) + f * f;
+    const double l = 1 / sqrt(l2);
+    const double c = (1 - f) * l;
+    const double s = f * l;
     switch ((int)q & 3) {
-    case 0: *x = c, *y = s; break;
-    case 1: *x = -s, *y = c; break;
-    case 2: *x = -c, *y = -s; break;
-    default: *x = s, *y = -c; break;
+    case 0:
+        *x = c;
+        *y = s;
+        break;
+    case 1:
+        *x = -s;
+        *y = c;
+        break;
+    case 2:
+        *x = -c;
+        *y = -s;
+        break;
+    default:
+        *x = s;
+        *y = -c;
+        break;
     }
     return 4 / l2;
 }
 
 static inline double mcst_diamond(double x, double y) {
-    const double ax = fabs(x), ay = fabs(y), sum = ax + ay;
+    const double ax = fabs(x);
+    const double ay = fabs(y);
+    const double sum = ax + ay;
     if (!(sum > 0)) return 0;
     if (y >= 0) return x > 0 ? 0.25 * ay / sum : 0.25 + 0.25 * ax / sum;
     return x <= 0 ? 0.5 + 0.25 * ay / sum : 0.75 + 0.25 * ax / sum;
@@ -135,68 +170,91 @@ static inline double mcst_place_line(const mcst_map *m, double s, double *x) {
 
 /* The point at (s, t) and |d measure / d(s, t)|. */
 static inline double mcst_place(const mcst_map *m, double s, double t, double x[3]) {
-    double c, n, jac = mcst_azimuth(t, &c, &n), r, z, v[3], l;
-    int i;
+    double c, n;
+    double jac = mcst_azimuth(t, &c, &n);
     if (m->t_bins == 1) return mcst_place_line(m, s, x);
+    double r, z, v[3], l;
     switch (m->coord) {
     case MCST_DISK: /* s = (r / a)^2 */
         r = m->a * sqrt(s);
-        x[0] = r * c, x[1] = r * n;
+        x[0] = r * c;
+        x[1] = r * n;
         return jac * 0.5 * m->a * m->a;
     case MCST_SPHERE:
     case MCST_HEMISPHERE:
     case MCST_CONE:
         r = sqrt(m->k * s * (2 - m->k * s));
-        v[0] = r * c, v[1] = r * n, v[2] = 1 - m->k * s;
+        v[0] = r * c;
+        v[1] = r * n;
+        v[2] = 1 - m->k * s;
         jac *= m->k;
         break;
     case MCST_COSPOWER: /* an azimuth that spreads out the narrower axis, then 1 - z with the exponent there */
-        c /= sqrt(m->a + 1), n /= sqrt(m->b + 1);
+        c /= sqrt(m->a + 1);
+        n /= sqrt(m->b + 1);
         l = c * c + n * n;
         jac /= sqrt((m->a + 1) * (m->b + 1)) * l;
-        l = sqrt(l), c /= l, n /= l;
+        l = sqrt(l);
+        c /= l;
+        n /= l;
         z = mcst_power_y(m->a * c * c + m->b * n * n, s, &r);
         jac *= r;
         r = sqrt(z * (2 - z));
-        v[0] = r * c, v[1] = r * n, v[2] = 1 - z;
+        v[0] = r * c;
+        v[1] = r * n;
+        v[2] = 1 - z;
         break;
     default: /* MCST_SLOPES: slopes (a X, b Y), 1 - s = 1 / sqrt(1 + X^2 + Y^2); d(h) = cos^3 d(slopes) */
         r = sqrt(s * (2 - s)) / (1 - s);
-        v[0] = m->a * r * c, v[1] = m->b * r * n;
+        v[0] = m->a * r * c;
+        v[1] = m->b * r * n;
         l = 1 / sqrt(1 + v[0] * v[0] + v[1] * v[1]);
-        v[0] *= l, v[1] *= l, v[2] = l;
+        v[0] *= l;
+        v[1] *= l;
+        v[2] = l;
         jac *= l * l * l * m->a * m->b / ((1 - s) * (1 - s) * (1 - s));
     }
     if (m->frame == MCST_HALF) {
         l = mcst_dot(m->wo, v);
-        for (i = 0; i < 3; i++) x[i] = 2 * l * v[i] - m->wo[i];
+        for (int i = 0; i < 3; i++) x[i] = 2 * l * v[i] - m->wo[i];
         return 4 * fabs(l) * jac;
     }
-    for (i = 0; i < 3; i++) x[i] = m->frame == MCST_MIRROR ? v[0] * m->ex[i] + v[1] * m->ey[i] + v[2] * m->ez[i] : v[i];
+    for (int i = 0; i < 3; i++) x[i] = m->frame == MCST_MIRROR ? v[0] * m->ex[i] + v[1] * m->ey[i] + v[2] * m->ez[i] : v[i];
     return jac;
 }
 
 static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
-    double s, t = 0, v[3], n, z;
-    int i, j;
-    v[0] = x, v[1] = y, v[2] = w;
+    double t = 0;
+    double v[3];
+    v[0] = x;
+    v[1] = y;
+    v[2] = w;
     if (m->frame == MCST_HALF) {
-        for (i = 0; i < 3; i++) v[i] += m->wo[i];
+        for (int i = 0; i < 3; i++) v[i] += m->wo[i];
     } else if (m->frame == MCST_MIRROR) {
         const double d[3] = {x, y, w};
-        v[0] = mcst_dot(d, m->ex), v[1] = mcst_dot(d, m->ey), v[2] = mcst_dot(d, m->ez);
+        v[0] = mcst_dot(d, m->ex);
+        v[1] = mcst_dot(d, m->ey);
+        v[2] = mcst_dot(d, m->ez);
     }
+    double s, n, z;
     switch (m->coord) {
     case MCST_UNIT: s = (x - m->a) / m->b; break;
     case MCST_HALFLINE: s = m->a * x / (1 + m->a * x); break;
     case MCST_TRUNCATED: s = x * (1 + m->a * m->b) / (m->b * (1 + m->a * x)); break;
-    case MCST_WHOLELINE: n = (x - m->a) / m->b, s = 0.5 + 0.5 * n / (1 + fabs(n)); break;
+    case MCST_WHOLELINE:
+        n = (x - m->a) / m->b;
+        s = 0.5 + 0.5 * n / (1 + fabs(n));
+        break;
     case MCST_POWER: s = mcst_power_s(m->a, 1 - x); break;
     case MCST_EVENPOWER:
         s = 0.5 * mcst_power_s(m->a, 1 - fabs(x));
         if (x > 0) s = 1 - s;
         break;
-    case MCST_DISK: s = (v[0] * v[0] + v[1] * v[1]) / (m->a * m->a), t = mcst_diamond(v[0], v[1]); break;
+    case MCST_DISK:
+        s = (v[0] * v[0] + v[1] * v[1]) / (m->a * m->a);
+        t = mcst_diamond(v[0], v[1]);
+        break;
     case MCST_SPHERE:
     case MCST_HEMISPHERE:
     case MCST_CONE: /* 1 - z without the cancellation */
@@ -210,13 +268,15 @@ static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
         t = mcst_diamond(v[0] * sqrt(m->a + 1), v[1] * sqrt(m->b + 1));
         break;
     default:
-        v[0] /= m->a, v[1] /= m->b;
+        v[0] /= m->a;
+        v[1] /= m->b;
         n = v[0] * v[0] + v[1] * v[1];
         z = sqrt(n + v[2] * v[2]);
         s = v[2] > 0 ? n / (z * (z + v[2])) : 1;
         t = mcst_diamond(v[0], v[1]);
     }
-    i = (int)(s * m->s_bins), j = (int)(t * m->t_bins);
+    int i = (int)(s * m->s_bins);
+    int j = (int)(t * m->t_bins);
     if (!(s > 0)) i = 0;
     if (i >= m->s_bins) i = m->s_bins - 1;
     if (j >= m->t_bins) j = m->t_bins - 1;
@@ -242,16 +302,18 @@ typedef struct {
 static inline double mcst_density_at(const mcst_density *d, double s, double t) {
     double x[3] = {0, 0, 0};
     const double jac = mcst_place(&d->map, s, t, x);
-    float xf[3], pdf;
-    xf[0] = (float)x[0], xf[1] = (float)x[1], xf[2] = (float)x[2];
+    float xf[3];
+    xf[0] = (float)x[0];
+    xf[1] = (float)x[1];
+    xf[2] = (float)x[2];
+    float pdf;
     d->row->fn[0].pdf(d->p, xf, &pdf);
     return (double)pdf * jac;
 }
 
 static inline double mcst_panel(const mcst_density *d, double s0, double s1, double t) {
     double sum = 0;
-    int i;
-    for (i = 0; i < 8; i++) sum += mcst_gl_w[i] * mcst_density_at(d, s0 + (s1 - s0) * mcst_gl_x[i], t);
+    for (int i = 0; i < 8; i++) sum += mcst_gl_w[i] * mcst_density_at(d, s0 + (s1 - s0) * mcst_gl_x[i], t);
     return sum * (s1 - s0);
 }
 
@@ -259,13 +321,12 @@ static inline double mcst_panel(const mcst_density *d, double s0, double s1, dou
  * towards it. */
 static inline double mcst_smooth(const mcst_density *d, double s0, double s1, double t) {
     double sum = 0;
-    int i;
     if (d->map.t_bins == 1) {
-        for (i = 0; i < 8; i++) sum += mcst_panel(d, s0 + (s1 - s0) * i / 8, s0 + (s1 - s0) * (i + 1) / 8, t);
+        for (int i = 0; i < 8; i++) sum += mcst_panel(d, s0 + (s1 - s0) * i / 8, s0 + (s1 - s0) * (i + 1) / 8, t);
         return sum;
     }
     if (d->map.coord == MCST_COSPOWER && s1 == 1) {
-        for (i = 0; i < 5; i++) {
+        for (int i = 0; i < 5; i++) {
             const double cut = s0 + 0.75 * (s1 - s0);
             sum += mcst_panel(d, s0, cut, t);
             s0 = cut;
@@ -277,12 +338,15 @@ static inline double mcst_smooth(const mcst_density *d, double s0, double s1, do
 /* The integral over [s0, s1] at one t. Where the density is positive at one end and zero at the other it is cut at the jump. */
 static inline double mcst_span(const mcst_density *d, double s0, double s1, double t) {
     /* the ends s = 0 and s = 1 may be singular (a horizon at infinite slope): look just inside */
-    const double inset = 1e-9, e0 = fmax(s0, inset), e1 = fmin(s1, 1 - inset);
-    const int in0 = mcst_density_at(d, e0, t) > 0, in1 = mcst_density_at(d, e1, t) > 0;
-    double lo = e0, hi = e1;
-    int i;
+    const double inset = 1e-9;
+    const double e0 = fmax(s0, inset);
+    const double e1 = fmin(s1, 1 - inset);
+    const int in0 = mcst_density_at(d, e0, t) > 0;
+    const int in1 = mcst_density_at(d, e1, t) > 0;
+    double lo = e0;
+    double hi = e1;
     if (in0 == in1) return mcst_smooth(d, s0, s1, t);
-    for (i = 0; i < 30; i++) {
+    for (int i = 0; i < 30; i++) {
         const double mid = 0.5 * (lo + hi);
         if ((mcst_density_at(d, mid, t) > 0) == in0) lo = mid;
         else hi = mid;
@@ -291,17 +355,16 @@ static inline double mcst_span(const mcst_density *d, double s0, double s1, doub
 }
 
 static inline void mcst_line(const mcst_density *d, double t, double weight, double *sums) {
-    int i;
     const int n = d->map.s_bins;
-    for (i = 0; i < n; i++) sums[i] += weight * mcst_span(d, (double)i / n, (i + 1.0) / n, t);
+    for (int i = 0; i < n; i++) sums[i] += weight * mcst_span(d, (double)i / n, (i + 1.0) / n, t);
 }
 
 static inline void mcst_column_rule(const mcst_density *d, double t0, double t1, double *sums) {
     /* Gauss-Legendre, 4 points (Abramowitz and Stegun 1964, table 25.4) */
     static const double x[2] = {0.1699905217924281, 0.4305681557970263}, w[2] = {0.3260725774312731, 0.1739274225687269};
-    const double mid = 0.5 * (t0 + t1), len = t1 - t0;
-    int i;
-    for (i = 0; i < 2; i++) {
+    const double mid = 0.5 * (t0 + t1);
+    const double len = t1 - t0;
+    for (int i = 0; i < 2; i++) {
         mcst_line(d, mid - len * x[i], len * w[i], sums);
         mcst_line(d, mid + len * x[i], len * w[i], sums);
     }
@@ -311,41 +374,47 @@ static inline void mcst_column_rule(const mcst_density *d, double t0, double t1,
  * as well as the rounding of the points allows. */
 static inline void mcst_column(const mcst_density *d, double t0, double t1, const double *whole, double tol, int depth,
                                double *out) {
-    double a[MCST_S] = {0}, b[MCST_S] = {0}, diff = 0, mass = 0;
+    double a[MCST_S] = {0};
+    double b[MCST_S] = {0};
+    double diff = 0;
+    double mass = 0;
     const double mid = 0.5 * (t0 + t1);
-    int i;
     mcst_column_rule(d, t0, mid, a);
     mcst_column_rule(d, mid, t1, b);
-    for (i = 0; i < MCST_S; i++) diff += fabs(whole[i] - a[i] - b[i]), mass += whole[i];
+    for (int i = 0; i < MCST_S; i++) {
+        diff += fabs(whole[i] - a[i] - b[i]);
+        mass += whole[i];
+    }
     if (depth > 0 && !(diff <= tol + d->map.noise * mass)) {
         mcst_column(d, t0, mid, a, tol * 0.7, depth - 1, out);
         mcst_column(d, mid, t1, b, tol * 0.7, depth - 1, out);
         return;
     }
-    for (i = 0; i < MCST_S; i++) out[i] += a[i] + b[i];
+    for (int i = 0; i < MCST_S; i++) out[i] += a[i] + b[i];
 }
 
 /* mass[i * t_bins + j]: the integral of the density over each bin; returns their sum. tol bounds the estimated error of a column of
  * bins. */
 static inline double mcst_masses(const mcst_row *row, const float *p, double tol, double *mass) {
-    mcst_density d;
     double total = 0;
-    int i, j;
+    mcst_density d;
     d.row = row;
     d.p = p;
     d.map = mcst_map_make(row, p);
     if (d.map.t_bins == 1) {
-        for (i = 0; i < d.map.s_bins; i++) mass[i] = 0;
+        for (int i = 0; i < d.map.s_bins; i++) mass[i] = 0;
         mcst_line(&d, 0, 1, mass);
-        for (i = 0; i < d.map.s_bins; i++) total += mass[i];
+        for (int i = 0; i < d.map.s_bins; i++) total += mass[i];
         return total;
     }
-    for (j = 0; j < MCST_T; j++) {
-        double whole[MCST_S] = {0}, sums[MCST_S] = {0};
-        const double t0 = (double)j / MCST_T, t1 = (j + 1.0) / MCST_T;
+    for (int j = 0; j < MCST_T; j++) {
+        double whole[MCST_S] = {0};
+        double sums[MCST_S] = {0};
+        const double t0 = (double)j / MCST_T;
+        const double t1 = (j + 1.0) / MCST_T;
         mcst_column_rule(&d, t0, t1, whole);
         mcst_column(&d, t0, t1, whole, tol, 14, sums);
-        for (i = 0; i < MCST_S; i++) total += mass[i * MCST_T + j] = sums[i];
+        for (int i = 0; i < MCST_S; i++) total += mass[i * MCST_T + j] = sums[i];
     }
     return total;
 }
@@ -362,10 +431,12 @@ typedef struct {
 
 /* p-value of the largest distance between two distributions given on the same bins (at bin edges only, so conservative). */
 static inline double mcst_ks_bins(const double *observed, const double *expected, size_t bins, double n) {
-    double o = 0, e = 0, d = 0;
-    size_t i;
-    for (i = 0; i < bins; i++) {
-        o += observed[i], e += expected[i];
+    double o = 0;
+    double e = 0;
+    double d = 0;
+    for (size_t i = 0; i < bins; i++) {
+        o += observed[i];
+        e += expected[i];
         d = fmax(d, fabs(o - e) / n);
         if (!(d >= 0)) return NAN;
     }
@@ -377,19 +448,23 @@ static inline double mcst_ks_bins(const double *observed, const double *expected
 static inline void mcst_fit_xy(const mcst_row *row, const float *p, double n, uint64_t seed, mcst_fit *fit) {
     static float buffer[7][MCST_BLOCK];
     static double observed[MCST_CELLS + 1], expected[MCST_CELLS + 1];
-    double so[MCST_LINE_BINS + 1] = {0}, se[MCST_LINE_BINS + 1] = {0}, to[MCST_T + 1] = {0}, te[MCST_T + 1] = {0};
+    double so[MCST_LINE_BINS + 1] = {0};
+    double se[MCST_LINE_BINS + 1] = {0};
+    double to[MCST_T + 1] = {0};
+    double te[MCST_T + 1] = {0};
     float *const out[5] = {buffer[2], buffer[3], buffer[4], buffer[5], buffer[6]};
     const mcst_map map = mcst_map_make(row, p);
-    const int cells = map.s_bins * map.t_bins, brdf = row->shape == MCST_IS_BRDF;
+    const int cells = map.s_bins * map.t_bins;
+    const int brdf = row->shape == MCST_IS_BRDF;
     const double tol = 1e-8;
-    double done = 0, stray = 0;
-    int i;
+    double done = 0;
+    double stray = 0;
     memset(buffer, 0, sizeof buffer);
     memset(observed, 0, sizeof observed);
     while (done < n) {
         mcst_uniform(&seed, MCST_BLOCK, buffer[0], buffer[1]);
         row->sample_n(p, MCST_BLOCK, buffer[0], buffer[1], out);
-        for (i = 0; i < MCST_BLOCK; i++) {
+        for (int i = 0; i < MCST_BLOCK; i++) {
             const int lost = brdf && !(out[3][i] > 0);
             if (!(isfinite(out[0][i]) && isfinite(out[1][i]) && isfinite(out[2][i]) && isfinite(out[3][i]))) {
                 fit->chi2 = fit->stray = fit->ks_s = fit->ks_t = fit->mass = NAN;
@@ -400,14 +475,19 @@ static inline void mcst_fit_xy(const mcst_row *row, const float *p, double n, ui
         done += MCST_BLOCK;
     }
     fit->mass = mcst_masses(row, p, tol, expected);
-    for (i = 0; i < cells; i++) {
+    for (int i = 0; i < cells; i++) {
         expected[i] *= done;
-        if (expected[i] == 0) stray += observed[i], observed[i] = 0;
+        if (expected[i] == 0) {
+            stray += observed[i];
+            observed[i] = 0;
+        }
     }
     expected[cells] = brdf ? fmax(0, 1 - fit->mass) * done : 0;
-    for (i = 0; i < cells; i++) {
-        so[i / map.t_bins] += observed[i], se[i / map.t_bins] += expected[i];
-        to[i % map.t_bins] += observed[i], te[i % map.t_bins] += expected[i];
+    for (int i = 0; i < cells; i++) {
+        so[i / map.t_bins] += observed[i];
+        se[i / map.t_bins] += expected[i];
+        to[i % map.t_bins] += observed[i];
+        te[i % map.t_bins] += expected[i];
     }
     so[map.s_bins] = to[map.t_bins] = observed[cells];
     se[map.s_bins] = te[map.t_bins] = expected[cells];
@@ -426,7 +506,6 @@ static inline void mcst_fit_u(const mcst_row *row, const float *p, double n, uin
     float *const out[5] = {buffer[2], buffer[3], buffer[4], buffer[5], buffer[6]};
     const int cells = row->inputs == 1 ? MCST_GRID_U : MCST_GRID_U * MCST_GRID_U;
     double done = 0;
-    int i;
     fit->chi2_u = fit->ks_u1 = fit->ks_u2 = 1;
     if (!row->fn[0].invert) return;
     memset(buffer, 0, sizeof buffer);
@@ -435,7 +514,7 @@ static inline void mcst_fit_u(const mcst_row *row, const float *p, double n, uin
     while (done < n) {
         mcst_uniform(&seed, MCST_BLOCK, buffer[0], buffer[1]);
         row->sample_n(p, MCST_BLOCK, buffer[0], buffer[1], out);
-        for (i = 0; i < MCST_BLOCK; i++) {
+        for (int i = 0; i < MCST_BLOCK; i++) {
             const float x[3] = {out[0][i], out[1][i], out[2][i]};
             float u[2] = {0, 0};
             row->fn[0].invert(p, x, u);
@@ -449,8 +528,8 @@ static inline void mcst_fit_u(const mcst_row *row, const float *p, double n, uin
         }
         done += MCST_BLOCK;
     }
-    for (i = 0; i < cells; i++) expected[i] = done / cells;
-    for (i = 0; i < MCST_FINE_U; i++) flat[i] = done / MCST_FINE_U;
+    for (int i = 0; i < cells; i++) expected[i] = done / cells;
+    for (int i = 0; i < MCST_FINE_U; i++) flat[i] = done / MCST_FINE_U;
     fit->chi2_u = chi2_test(observed, expected, (size_t)cells, NULL, NULL);
     fit->ks_u1 = mcst_ks_bins(fine[0], flat, MCST_FINE_U, done);
     if (row->inputs == 2) fit->ks_u2 = mcst_ks_bins(fine[1], flat, MCST_FINE_U, done);
@@ -464,16 +543,14 @@ static inline int mcst_fit_tests(const mcst_row *row) {
 /* The level of one p-value when the whole suite (every set of every row, however the programs share them) has level 0.01. */
 static inline double mcst_level(void) {
     double tests = 0;
-    size_t i;
-    for (i = 0; i < MCST_NROWS; i++) tests += (double)mcst_rows[i].chi_size * mcst_fit_tests(&mcst_rows[i]);
+    for (size_t i = 0; i < MCST_NROWS; i++) tests += (double)mcst_rows[i].chi_size * mcst_fit_tests(&mcst_rows[i]);
     return sidak(0.01, tests);
 }
 
 static inline double mcst_fit_worst(const mcst_fit *f) {
     const double v[7] = {f->chi2, f->stray, f->ks_s, f->ks_t, f->chi2_u, f->ks_u1, f->ks_u2};
     double worst = 1;
-    int i;
-    for (i = 0; i < 7; i++) {
+    for (int i = 0; i < 7; i++) {
         if (isnan(v[i])) return NAN;
         worst = fmin(worst, v[i]);
     }

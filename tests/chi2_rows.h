@@ -5,20 +5,20 @@
 #include "bins.h"
 
 static inline int mcst_chi2_main(int argc, char **argv, int (*mine)(const mcst_row *row)) {
-    const double level = mcst_level(), scale = mcst_scale();
-    size_t i, j;
+    const double level = mcst_level();
+    const double scale = mcst_scale();
     mcst_start(argc, argv);
-    for (i = 0; i < MCST_NROWS; i++) {
+    for (size_t i = 0; i < MCST_NROWS; i++) {
         const mcst_row *row = &mcst_rows[i];
         if (!mine(row)) continue;
         mcst_group(row->name);
-        for (j = 0; j < row->chi_size; j++) {
+        for (size_t j = 0; j < row->chi_size; j++) {
             const mcst_set *set = &row->chi[j];
             const double n = set->millions * 1e6 * scale;
-            float p[MCST_P];
-            mcst_fit fit;
             if (!mcst_case("chi-square %g %g cos %g, %g samples", (double)set->a, (double)set->b, (double)set->cos_o, n)) continue;
+            float p[MCST_P];
             mcst_fill(row, set->a, set->b, set->cos_o, set->azimuth, p);
+            mcst_fit fit;
             mcst_fit_xy(row, p, n, mcst_seed_for(row->name, "chi2", j), &fit);
             mcst_fit_u(row, p, n / 20, mcst_seed_for(row->name, "u-space", j), &fit);
             CHECK(fit.chi2 >= level, "p = %g, mass %.8f", fit.chi2, fit.mass);

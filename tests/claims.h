@@ -18,8 +18,10 @@ typedef struct {
 /* The figures of u for small exponents: a power n of the cosine gives (1-u1)/cos with ln cos = ln(1-u1)/(n+1), at most 16.7 in
  * size. Its logarithm, 1/(n+1) and their product round by half an ulp of that or more, 2.5e-6 in all, and with two exponents
  * 1/(n+1) is a rounded sum. |ln(pdf/peak)| = n/(n+1) 16.7 does not pay for that when n is near 0. */
-#define MCST_NO_PARAMETER {0, 0}, {0, 0}
-#define MCST_ALPHAS {1e-7, 1e-7}, {1e4, 1e4}
+#define MCST_NO_PARAMETER \
+    {0, 0}, { 0, 0 }
+#define MCST_ALPHAS \
+    {1e-7, 1e-7}, { 1e4, 1e4 }
 static const mcst_claim mcst_claims[] = {
     {"linear", MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 0}},
     {"tent", MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 0}},
@@ -64,12 +66,12 @@ static const mcst_claim mcst_claims[] = {
 /* The sentences that state them. */
 static const char *const mcst_claim_sentences[] = {
     "pdf errors are relative, in units of E = 1e-6 (1 + |ln(pdf/peak)|)",
-    "pdf of u and of x within 0.45 E (normal), 0.2 E (the others)", /* [1d] */
-    "coordinates within 2^-23 R, pdf 0.1 E.",                       /* [disk] */
-    "unit length within 4 x 2^-24, pdf within 0.2 E.", /* [sphere] */
+    "pdf of u and of x within 0.45 E (normal), 0.2 E (the others)",                                           /* [1d] */
+    "coordinates within 2^-23 R, pdf 0.1 E.",                                                                 /* [disk] */
+    "unit length within 4 x 2^-24, pdf within 0.2 E.",                                                        /* [sphere] */
     "pdf of u 0.4 E (n below 1: 1.2 E, below 0.1: 2.9 E), of w and eval 0.6 E, weight 0.3e-6, |w| 4 x 2^-24", /* [phong] */
     "pdf of u 1.2 E; of h and wi 1e-6 (1 + e), eval 1.4e-6 (1 + e), e the exponent, while e is below 87; weight 0.8e-6, of a "
-    "sample 1.8e-6; |h| and |wi| 4 x 2^-24", /* [ward] */
+    "sample 1.8e-6; |h| and |wi| 4 x 2^-24",        /* [ward] */
     "Parameters, edges, cost and accuracy as Ward", /* [beckmann] */
     "h and ggx: pdf of u 1.2 E, of h or wi 1.2 E; vndf, bounded: pdf of u 2.1 E, of h or wi 1.5 E; eval 1.5 E, weight 0.7e-6, of a "
     "sample 0.7e-6 (ggx 1.6e-6); |h| and |wi| 4 x 2^-24", /* [ggx] */
@@ -78,8 +80,7 @@ static const char *const mcst_claim_sentences[] = {
 
 /* The figure for parameters p: of the narrowest range that holds them. Rows that the table leaves out have 1, in their units. */
 static inline double mcst_claim_of(const mcst_row *row, int what, const float *p) {
-    size_t i;
-    for (i = 0; i < MCST_COUNT(mcst_claims); i++) {
+    for (size_t i = 0; i < MCST_COUNT(mcst_claims); i++) {
         const mcst_claim *c = &mcst_claims[i];
         if (strcmp(c->row, row->name) != 0 || c->claim[what] == 0) continue;
         if ((double)p[0] < c->least[0] && row->coord == MCST_COSPOWER) continue;
@@ -99,8 +100,9 @@ static inline int mcst_header_says(const char *path, const char *sentence) {
     FILE *f = fopen(path, "r");
     static char text[1 << 20];
     size_t n = 0;
-    int c, start_of_line = 1;
+    int start_of_line = 1;
     if (!f) return 0;
+    int c;
     while ((c = getc(f)) != EOF && n + 1 < sizeof text) {
         if (c == '\n') {
             start_of_line = 1;

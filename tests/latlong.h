@@ -14,12 +14,17 @@ static inline long double solid_angle(uint32_t r, uint32_t w, uint32_t h) {
 
 /* Direction of a point of a texel, from fractions of its column and of its cos(theta) range. */
 static inline mcs_vec3 point(uint32_t w, uint32_t h, uint32_t col, uint32_t row, double fc, double fr) {
-    const double pi = acos(-1.0), phi = 2 * pi * (col + fc) / w;
+    const double pi = acos(-1.0);
+    const double phi = 2 * pi * (col + fc) / w;
     /* (1 - cos theta) / 2 = sin^2(theta/2) keeps its digits at the poles */
-    const double a = pow(sin(pi / 2 * row / h), 2), b = pow(sin(pi / 2 * (row + 1) / h), 2);
-    const double half = a + (b - a) * fr, s = 2 * sqrt(half * (1 - half));
+    const double a = pow(sin(pi / 2 * row / h), 2);
+    const double b = pow(sin(pi / 2 * (row + 1) / h), 2);
+    const double half = a + (b - a) * fr;
+    const double s = 2 * sqrt(half * (1 - half));
     mcs_vec3 v;
-    v.x = (float)(s * cos(phi)), v.y = (float)(s * sin(phi)), v.z = (float)(1 - 2 * half);
+    v.x = (float)(s * cos(phi));
+    v.y = (float)(s * sin(phi));
+    v.z = (float)(1 - 2 * half);
     return v;
 }
 /* Texel of a direction, with fractions of its width and of its height in theta. */
@@ -35,8 +40,8 @@ static inline void texel_of(uint32_t w, uint32_t h, mcs_vec3 v, double *col, dou
  * left. Size and layout must be those of the memory. */
 static inline void seal(mcs_env *e) {
     mcsi_env_info *info = (mcsi_env_info *)(void *)((char *)e + e->at.info);
-    uint32_t y;
-    for (y = 0; y < e->h; y++) info[y].sum = mcsi_env_row_sum(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.guides);
+    for (uint32_t y = 0; y < e->h; y++)
+        info[y].sum = mcsi_env_row_sum(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.guides);
     e->sum = mcsi_env_sum(e);
 }
 #endif

@@ -11,7 +11,9 @@ typedef struct {
 } mcst_lit_line;
 
 static inline int mcst_is_lit(const mcst_lit_line *l, double u, double v) {
-    float a = (float)u, b = (float)v, out[5];
+    float a = (float)u;
+    float b = (float)v;
+    float out[5];
     l->row->fn[0].sample(l->p, l->radial ? &b : &a, l->radial ? &a : &b, out);
     return out[3] > 0;
 }
@@ -21,11 +23,15 @@ static inline double mcst_lit_length(double v, void *ctx) {
     enum { SCAN = 128 };
     const mcst_lit_line *l = (const mcst_lit_line *)ctx;
     const double top = 1 - 0x1p-24;
-    double length = 0, lo = 0, last = 0;
-    int i, was = mcst_is_lit(l, 0, v);
-    for (i = 1; i <= SCAN; i++) {
-        const double to_go = 1 - (double)i / SCAN, u = fmin(1 - to_go * to_go * to_go, top); /* the bands are narrow near 1 */
-        double a = last, b = u;
+    double length = 0;
+    double lo = 0;
+    double last = 0;
+    int was = mcst_is_lit(l, 0, v);
+    for (int i = 1; i <= SCAN; i++) {
+        const double to_go = 1 - (double)i / SCAN;
+        const double u = fmin(1 - to_go * to_go * to_go, top); /* the bands are narrow near 1 */
+        double a = last;
+        double b = u;
         last = u;
         if (mcst_is_lit(l, u, v) == was) continue;
         while (b - a > 0x1p-25) {
@@ -70,7 +76,9 @@ static inline mcst_mass mcst_mass_of(const mcst_row *row, const float *p) {
     m.integral = mcst_masses(row, p, 1e-7, mass);
     if (row->shape == MCST_IS_BRDF) {
         mcst_lit_line l;
-        l.row = row, l.p = p, l.radial = strstr(row->name, "vndf") || strstr(row->name, "bounded");
+        l.row = row;
+        l.p = p;
+        l.radial = strstr(row->name, "vndf") || strstr(row->name, "bounded");
         m.lit = quad1(mcst_lit_length, &l, 0, 1 - 0x1p-24, 0, 2e-7, 16, NULL);
     }
     return m;

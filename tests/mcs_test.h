@@ -58,11 +58,11 @@ static void mcst_close_group(void) {
 }
 
 static void mcst_start(int argc, char **argv) {
-    const char *folder = strrchr(argv[0], '/'), *verbose = getenv("MCS_TEST_VERBOSE");
-    int i;
+    const char *folder = strrchr(argv[0], '/');
+    const char *verbose = getenv("MCS_TEST_VERBOSE");
     mcst.program = folder ? folder + 1 : argv[0];
     mcst.verbose = verbose && *verbose && strcmp(verbose, "0") != 0;
-    for (i = 1; i < argc; i++) {
+    for (int i = 1; i < argc; i++) {
         if (!strcmp(argv[i], "--list")) mcst.list = 1;
         else if (!strcmp(argv[i], "--filter") && i + 1 < argc) mcst.filter = argv[++i];
         else if (!strcmp(argv[i], "--seed") && i + 1 < argc) mcst.seed = strtoull(argv[++i], NULL, 0);
@@ -84,12 +84,12 @@ static void mcst_group(const char *group) {
 
 /* Opens a case; non-zero when it is to be run. */
 static int mcst_case(const char *fmt, ...) {
-    char full[256];
-    va_list a;
     mcst_close_case();
+    va_list a;
     va_start(a, fmt);
     vsnprintf(mcst.name, sizeof mcst.name, fmt, a);
     va_end(a);
+    char full[256];
     snprintf(full, sizeof full, "%s/%s", mcst.group, mcst.name);
     if (mcst.filter) {
         const int others = mcst.filter[0] == '^';
@@ -105,9 +105,9 @@ static int mcst_case(const char *fmt, ...) {
 }
 
 static void mcst_fail(const char *file, int line, const char *what, const char *fmt, ...) {
-    va_list a;
     if (++mcst.bad > MCST_SHOWN) return;
     printf("    %s:%d: %s/%s: %s: ", file, line, mcst.group, mcst.name, what);
+    va_list a;
     va_start(a, fmt);
     vprintf(fmt, a);
     va_end(a);
@@ -116,8 +116,8 @@ static void mcst_fail(const char *file, int line, const char *what, const char *
 
 /* Detail, for MCS_TEST_VERBOSE=1 alone. */
 static inline void mcst_note(const char *fmt, ...) {
-    va_list a;
     if (!mcst.verbose || mcst.list) return;
+    va_list a;
     va_start(a, fmt);
     vprintf(fmt, a);
     va_end(a);
@@ -127,9 +127,10 @@ static inline void mcst_note(const char *fmt, ...) {
 #define MCST_CONTRACTS(function)                               \
     static inline int function(void) {                         \
         volatile float v[3] = {1 + 0x1p-12f, 1 + 0x1p-12f, 0}; \
-        float a, b, c;                                         \
         v[2] = -(v[0] * v[1]);                                 \
-        a = v[0], b = v[1], c = v[2];                          \
+        const float a = v[0];                                  \
+        const float b = v[1];                                  \
+        const float c = v[2];                                  \
         return a * b + c != 0;                                 \
     }
 MCST_CONTRACTS(mcst_contracts)

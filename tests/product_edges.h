@@ -28,15 +28,15 @@ static void check_support(int shaped) {
         {"41 x 21, one texel", v_one_texel, 41, 21, 50, 4},
     };
     const char *of = shaped ? ", Gauss and Phong" : "";
-    int a, i, form;
-    uint32_t rows, c = 0, r = 0;
-    for (a = 0; a < (int)(sizeof maps / sizeof *maps); a++)
-        for (rows = 16; rows <= 64; rows *= 2) {
-            scene m;
+    uint32_t c = 0;
+    uint32_t r = 0;
+    for (int a = 0; a < (int)(sizeof maps / sizeof *maps); a++)
+        for (uint32_t rows = 16; rows <= 64; rows *= 2) {
             if (!mcst_case("%s, %u rows of tiles%s", maps[a].name, rows, of)) continue;
-            m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, rows);
-            for (i = 0; i < maps[a].normals; i++) {
-                const float u1 = hash01((uint32_t)i, 7), u2 = hash01((uint32_t)i, 8);
+            scene m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, rows);
+            for (int i = 0; i < maps[a].normals; i++) {
+                const float u1 = hash01((uint32_t)i, 7);
+                const float u2 = hash01((uint32_t)i, 8);
                 /* the axes, then random ones; every other one nearly a pole or nearly on the equator */
                 mcs_vec3 n =
                     i < 6 ? vec(i / 2 == 0 ? 1 - i % 2 * 2 : 0, i / 2 == 1 ? 1 - i % 2 * 2 : 0, i / 2 == 2 ? 1 - i % 2 * 2 : 0)
@@ -45,7 +45,7 @@ static void check_support(int shaped) {
                                                : i % 4 == 1 ? vec(n.x * 1e-3, n.y * 1e-3, n.z + 1e-9)
                                                             : n,
                                                local_wo(0.05 + 0.019 * i, 0.07 * i), lobe_of(shaped, i, 6));
-                for (form = 0; form < 2; form++) {
+                for (int form = 0; form < 2; form++) {
                     sampler d = sampler_make(&m, &s, form);
                     const int bad = d.share > 0 ? 0 : unsupported(&d, maps[a].sub, &c, &r);
                     CHECK(bad == 0, "%s, normal %a %a %a: %d texels cannot be drawn, the first (%u, %u) that rises to %g",
@@ -56,23 +56,26 @@ static void check_support(int shaped) {
             scene_free(&m);
         }
     /* A texel, alone in its tile, of which just one corner rises over the horizon, and a sun below it. */
-    for (a = 0; a < 3; a++)
-        for (rows = 16; rows <= 64; rows *= 2) {
+    for (int a = 0; a < 3; a++)
+        for (uint32_t rows = 16; rows <= 64; rows *= 2) {
             static const char *const beside[] = {"", " beside a sun", " beside a sun, in a row with another"};
-            const uint32_t w = 2 * rows, h = rows, col = rows * 5 / 8, row = rows * 5 / 16;
+            const uint32_t w = 2 * rows;
+            const uint32_t h = rows;
+            const uint32_t col = rows * 5 / 8;
+            const uint32_t row = rows * 5 / 16;
             if (!mcst_case("barely visible%s, %u rows of tiles%s", beside[a], rows, of)) continue;
-            for (i = 2; i <= 24; i++) {
+            for (int i = 2; i <= 24; i++) {
                 float *light = (float *)memory(w * h * sizeof *light);
-                scene m;
-                surface s;
-                double corner[3], middle[3], n[3], z;
-                int k;
+                double corner[3];
                 /* the normal: at right angles to the corner, away from the middle, then towards the corner by 2^-i */
-                to3(corner, point(w, h, col, row, 0, 1)), to3(middle, point(w, h, col, row, 0.5, 0.5));
-                for (k = 0; k < 3; k++) n[k] = dot3(corner, middle) * corner[k] - middle[k];
-                z = sqrt(dot3(n, n));
-                for (k = 0; k < 3; k++) n[k] = n[k] / z + ldexp(corner[k], -i);
-                s = surface_make(vec(n[0], n[1], n[2]), local_wo(0.5, 0.1), lobe_of(shaped, i, 5));
+                to3(corner, point(w, h, col, row, 0, 1));
+                double middle[3];
+                to3(middle, point(w, h, col, row, 0.5, 0.5));
+                double n[3];
+                for (int k = 0; k < 3; k++) n[k] = dot3(corner, middle) * corner[k] - middle[k];
+                double z = sqrt(dot3(n, n));
+                for (int k = 0; k < 3; k++) n[k] = n[k] / z + ldexp(corner[k], -i);
+                const surface s = surface_make(vec(n[0], n[1], n[2]), local_wo(0.5, 0.1), lobe_of(shaped, i, 5));
                 memset(light, 0, w * h * sizeof *light);
                 light[row * w + col] = 1;
                 if (a) { /* a sun far below; and another light in the row where that lies deepest */
@@ -82,21 +85,26 @@ static void check_support(int shaped) {
                         for (c = 0; c < w; c++) {
                             double v[3];
                             to3(v, point(w, h, c, r, 0.5, 0.5));
-                            if (dot3(s.n, v) < low[0] && r != row) low[0] = dot3(s.n, v), deep[0] = r * w + c;
-                            if (dot3(s.n, v) < low[1] && r == row) low[1] = dot3(s.n, v), deep[1] = r * w + c;
+                            if (dot3(s.n, v) < low[0] && r != row) {
+                                low[0] = dot3(s.n, v);
+                                deep[0] = r * w + c;
+                            }
+                            if (dot3(s.n, v) < low[1] && r == row) {
+                                low[1] = dot3(s.n, v);
+                                deep[1] = r * w + c;
+                            }
                         }
                     CHECK(low[0] < -0.8 && low[1] < -0.8, "the other lights at %g, %g", low[0], low[1]);
                     light[deep[0]] = 1e18f;
                     if (a == 2) light[deep[1]] = 1e9f;
                 }
-                m = scene_from("texel", w, h, light, rows);
+                scene m = scene_from("texel", w, h, light, rows);
                 z = highest(&m, s.n, col, row, 4);
-                for (k = 0; k < 2; k++) {
+                for (int k = 0; k < 2; k++) {
                     sampler d = sampler_make(&m, &s, k);
                     const int bad = d.share > 0 ? 0 : unsupported(&d, 4, &c, &r);
-                    int j;
                     CHECK(bad == 0, "%s: %d texels cannot be drawn, the first rises to %g", k ? "prepared" : "one-shot", bad, z);
-                    for (j = 0; j < 64; j++) {
+                    for (int j = 0; j < 64; j++) {
                         const mcs_texel t = draw(&d, hash01((uint32_t)j, 9), hash01((uint32_t)j, 10));
                         CHECK(t.pdf >= 0 && t.pdf <= FLT_MAX && agrees(&d, t), "2^-%d over the horizon: pdf %g, again %g", i,
                               (double)t.pdf, density(&d, t.w));
@@ -122,12 +130,13 @@ static void test_support(void) {
 /* A black map is drawn from like an even one, as the environment's. */
 static void check_black(const sampler *d, const scene *even) {
     sampler e = sampler_make(even, d->s, d->p != NULL);
-    uint32_t j;
     CHECK(d->status == e.status, "black: build returns %d, of an even map %d", (int)d->status, (int)e.status);
-    for (j = 0; j < 20; j++) {
-        const float u1 = hash01(j, 13), u2 = hash01(j, 19);
+    for (uint32_t j = 0; j < 20; j++) {
+        const float u1 = hash01(j, 13);
+        const float u2 = hash01(j, 19);
         const mcs_vec3 w = mcs_sphere_sample(u1, u2).w;
-        const mcs_texel a = draw(d, u1, u2), b = draw(&e, u1, u2);
+        const mcs_texel a = draw(d, u1, u2);
+        const mcs_texel b = draw(&e, u1, u2);
         CHECK(density(d, w) == density(&e, w) && !memcmp(&a, &b, sizeof a), "black: density %g, of an even map %g", density(d, w),
               density(&e, w));
     }
@@ -147,44 +156,45 @@ static void test_extremes(void) {
                 {"sun", v_sun, 64, 32, MCS_PROFILE_PHONG}};
     static const float alphas[] = {1e-6f, 1e-4f, 1e-3f, 0.0f, 1e4f, 1e10f, INFINITY, NAN, -1.0f, 0.3f};
     static const float mattes[] = {0.0f, 1.0f, 0.5f, NAN, -1.0f, 2.0f};
-    int a, i, j, form;
     mcst_group("product, extremes");
-    for (a = 0; a < (int)(sizeof maps / sizeof *maps); a++) {
+    for (int a = 0; a < (int)(sizeof maps / sizeof *maps); a++) {
         const mcs_profile profile = maps[a].profile;
-        scene m, even;
         if (!mcst_case("%s%s", maps[a].name,
                        profile == MCS_PROFILE_GAUSS   ? ", Gauss"
                        : profile == MCS_PROFILE_PHONG ? ", Phong"
                                                       : ""))
             continue;
-        m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, a % 2 ? 32 : 16);
-        even = scene_make("constant", maps[a].w, maps[a].h, v_constant, m.rows);
-        for (form = 0; form < 2; form++)
-            for (i = 0; i < 10 * 6; i++) {
+        scene m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, a % 2 ? 32 : 16);
+        scene even = scene_make("constant", maps[a].w, maps[a].h, v_constant, m.rows);
+        for (int form = 0; form < 2; form++)
+            for (int i = 0; i < 10 * 6; i++) {
                 surface s = surface_make(normals[i % NORMALS], local_wo(i % 5 ? 0.2 * (i % 5) : 1e-6, 0.1 * i), lobes[0]);
-                sampler d;
-                s.r.alpha_x = alphas[i % 10], s.r.alpha_y = alphas[i % 3 ? i % 10 : 9 - i % 10], s.r.matte = mattes[i / 10];
+                s.r.alpha_x = alphas[i % 10];
+                s.r.alpha_y = alphas[i % 3 ? i % 10 : 9 - i % 10];
+                s.r.matte = mattes[i / 10];
                 s.r.profile = s.profile = profile;
-                d = sampler_make(&m, &s, form);
+                sampler d = sampler_make(&m, &s, form);
                 check_sane(&d, 1);
                 if (maps[a].value == v_black) check_black(&d, &even);
                 sampler_free(&d);
             }
-        scene_free(&m), scene_free(&even);
+        scene_free(&m);
+        scene_free(&even);
     }
     if (mcst_case("eye below the surface")) {
         scene m = scene_make("sun", 64, 32, v_sun, 16);
         static const float bad_wo[][3] = {{0, 0, -1},  {1, 0, 0},        {0.6f, 0, -0.8f}, {0, 0, 0},
                                           {NAN, 0, 1}, {0, 0, INFINITY}, {0, 0, 5}};
-        for (form = 0; form < 2; form++)
-            for (i = 0; i < (int)(sizeof bad_wo / sizeof *bad_wo); i++) {
+        for (int form = 0; form < 2; form++)
+            for (int i = 0; i < (int)(sizeof bad_wo / sizeof *bad_wo); i++) {
                 surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[2]);
-                sampler d;
-                s.r.wo.x = bad_wo[i][0], s.r.wo.y = bad_wo[i][1], s.r.wo.z = bad_wo[i][2];
-                d = sampler_make(&m, &s, form);
+                s.r.wo.x = bad_wo[i][0];
+                s.r.wo.y = bad_wo[i][1];
+                s.r.wo.z = bad_wo[i][2];
+                sampler d = sampler_make(&m, &s, form);
                 CHECK(!form || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
                 check_sane(&d, 1);
-                for (j = 0; j < HARD; j++)
+                for (int j = 0; j < HARD; j++)
                     CHECK(!(draw(&d, hard_u[j], 0.3f).pdf > 0) && density(&d, normals[4]) == 0, "eye (%g, %g, %g): density",
                           (double)s.r.wo.x, (double)s.r.wo.y, (double)s.r.wo.z);
                 sampler_free(&d);
@@ -193,8 +203,8 @@ static void test_extremes(void) {
     }
     if (mcst_case("light below the surface")) {
         scene m = scene_make("one texel", 64, 32, v_one_texel, 16);
-        for (form = 0; form < 2; form++)
-            for (i = 0; i < 4; i++) {
+        for (int form = 0; form < 2; form++)
+            for (int i = 0; i < 4; i++) {
                 const mcs_vec3 to = point(64, 32, 21, 10, 0.5, 0.5);
                 const surface s = surface_make(vec(-(double)to.x, -(double)to.y, -(double)to.z), local_wo(0.5, 0), lobes[i]);
                 sampler d = sampler_make(&m, &s, form);
@@ -208,16 +218,15 @@ static void test_extremes(void) {
     }
     if (mcst_case("bad frames")) {
         scene m = scene_make("sun", 64, 32, v_sun, 16);
-        for (form = 0; form < 2; form++)
-            for (i = 0; i < 60; i++) {
+        for (int form = 0; form < 2; form++)
+            for (int i = 0; i < 60; i++) {
                 static const float wrong[] = {NAN, INFINITY, 0.0f, 1e30f, -INFINITY};
                 surface s = surface_make(normals[i % NORMALS], local_wo(0.6, 0.2), lobes[i % 2 ? 3 : i % 4 ? 0 : 8]);
-                sampler d;
                 mcs_vec3 *at = i % 3 == 0 ? &s.r.frame.s : i % 3 == 1 ? &s.r.frame.t : &s.r.frame.n;
                 if (i % 4 < 2) at->x = wrong[i % 5];
                 if (i % 4 != 1) at->y = wrong[i % 5];
                 if (i % 4 > 1) at->z = wrong[i % 5];
-                d = sampler_make(&m, &s, form);
+                sampler d = sampler_make(&m, &s, form);
                 check_sane(&d, 0);
                 sampler_free(&d);
             }
@@ -228,17 +237,13 @@ static void test_extremes(void) {
 /* ---- memory ---- */
 
 static void test_memory(void) {
-    uint32_t rows;
     mcst_group("product, memory");
-    for (rows = 16; rows <= 64; rows *= 2) {
+    for (uint32_t rows = 16; rows <= 64; rows *= 2) {
         const surface s = surface_make(normals[4], local_wo(0.7, 0.2), lobes[2]);
-        scene m;
-        arena moved;
-        sampler d;
-        size_t bytes;
-        uint32_t i;
         if (!mcst_case("%u rows of tiles", rows)) continue;
-        m = scene_make("sun", 100, 47, v_sun, rows), d = sampler_make(&m, &s, 1), bytes = mcs_product_bytes(rows);
+        scene m = scene_make("sun", 100, 47, v_sun, rows);
+        sampler d = sampler_make(&m, &s, 1);
+        const size_t bytes = mcs_product_bytes(rows);
         CHECK(m.tiles.bytes % 4 == 0 && d.mem.bytes % 4 == 0, "%zu and %zu bytes", m.tiles.bytes, d.mem.bytes);
         CHECK(mcs_product_build(d.p, bytes - 1, tiles_of(&m), env_of(&m), &s.r) == MCS_ERR_MEMORY, "one byte too few");
         CHECK(mcs_product_build(NULL, bytes, tiles_of(&m), env_of(&m), &s.r) == MCS_ERR_ARG, "no memory");
@@ -250,7 +255,7 @@ static void test_memory(void) {
         CHECK(mcs_product_build_weights(d.p, bytes, tiles_of(&m), env_of(&m), NULL) == MCS_ERR_ARG, "no weights");
         CHECK(arena_intact(&d.mem), "refused arguments, yet wrote outside");
         CHECK(mcs_product_build(d.p, bytes, tiles_of(&m), env_of(&m), &s.r) == MCS_OK, "the same again");
-        moved = arena_make(m.tiles.bytes);
+        arena moved = arena_make(m.tiles.bytes);
         CHECK(mcs_tiles_build(NULL, moved.bytes, env_of(&m), rows) == MCS_ERR_ARG, "no memory");
         CHECK(mcs_tiles_build((mcs_tiles *)(void *)moved.at, moved.bytes, NULL, rows) == MCS_ERR_ARG, "no map");
         CHECK(mcs_tiles_build((mcs_tiles *)(void *)(moved.at + 4), moved.bytes, env_of(&m), rows) == MCS_ERR_ARG, "misaligned");
@@ -258,16 +263,17 @@ static void test_memory(void) {
               "one byte too few");
         CHECK(untouched(moved.at, moved.bytes), "refused arguments, yet wrote");
         memcpy(moved.at, m.tiles.at, moved.bytes);
-        for (i = 0; i < 200; i++) {
-            const float u1 = hash01(i, 14), u2 = hash01(i, 15);
-            const mcs_texel a = mcs_oneshot_sample(tiles_of(&m), env_of(&m), &s.r, u1, u2),
-                            b = mcs_oneshot_sample((const mcs_tiles *)(const void *)moved.at, env_of(&m), &s.r, u1, u2);
+        for (uint32_t i = 0; i < 200; i++) {
+            const float u1 = hash01(i, 14);
+            const float u2 = hash01(i, 15);
+            const mcs_texel a = mcs_oneshot_sample(tiles_of(&m), env_of(&m), &s.r, u1, u2);
+            const mcs_texel b = mcs_oneshot_sample((const mcs_tiles *)(const void *)moved.at, env_of(&m), &s.r, u1, u2);
             CHECK(!memcmp(&a, &b, sizeof a), "u = %a, %a: moved tiles draw another", (double)u1, (double)u2);
         }
         {
             scene other = m;
-            sampler e;
-            other.tiles = moved, e = sampler_make(&other, &s, 1);
+            other.tiles = moved;
+            sampler e = sampler_make(&other, &s, 1);
             CHECK(!memcmp(e.mem.at + sizeof(mcs_product), d.mem.at + sizeof(mcs_product), bytes - sizeof(mcs_product)),
                   "moved tiles give another table");
             sampler_free(&e);
@@ -285,7 +291,7 @@ static void test_memory(void) {
             } at;
         } on_stack;
         scene m = scene_make("smooth", 64, 32, v_smooth, 16);
-        surface s = surface_make(normals[0], local_wo(0.7, 0.1), lobes[0]);
+        const surface s = surface_make(normals[0], local_wo(0.7, 0.1), lobes[0]);
         const mcs_status rc = mcs_product_build(&on_stack.at.p, sizeof on_stack.at, tiles_of(&m), env_of(&m), &s.r);
         CHECK(rc == MCS_OK, "refused: %d", rc);
         CHECK((uintptr_t)mcsi_product_units(&on_stack.at.p) % offsetof(mcsi_aligned, at) == 0, "units are misaligned");
@@ -294,8 +300,7 @@ static void test_memory(void) {
     if (mcst_case("refused sizes")) {
         static const uint32_t wrong[] = {0, 1, 8, 15, 17, 24, 48, 65, 128, 0x80000000u, 0xffffffffu};
         scene m = scene_make("sun", 64, 32, v_sun, 16);
-        int i;
-        for (i = 0; i < (int)(sizeof wrong / sizeof *wrong); i++) {
+        for (int i = 0; i < (int)(sizeof wrong / sizeof *wrong); i++) {
             CHECK(mcs_tiles_bytes(env_of(&m), wrong[i]) == 0, "%u rows: %zu bytes", wrong[i],
                   mcs_tiles_bytes(env_of(&m), wrong[i]));
             CHECK(mcs_product_bytes(wrong[i]) == 0, "%u rows: %zu bytes", wrong[i], mcs_product_bytes(wrong[i]));
@@ -310,40 +315,49 @@ static void test_memory(void) {
  * texel: there its density has to be that of its direction. */
 static int same_draw(const sampler *d, float u1, float u2, mcs_texel by_array) {
     const mcs_texel t = mcs_product_sample(d->p, u1, u2);
-    double col, row;
     if (!mcst_arrays_contract()) return !memcmp(&t, &by_array, sizeof t);
     if (!(by_array.pdf > 0)) return !(t.pdf > 0);
+    double col, row;
     texel_of(d->m->w, d->m->h, by_array.w, &col, &row);
-    by_array.col = col < d->m->w ? (uint32_t)col : d->m->w - 1, by_array.row = row < d->m->h ? (uint32_t)row : d->m->h - 1;
+    by_array.col = col < d->m->w ? (uint32_t)col : d->m->w - 1;
+    by_array.row = row < d->m->h ? (uint32_t)row : d->m->h - 1;
     return t.pdf > 0 && agrees(d, by_array);
 }
 static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
     enum { MOST = 150 };
     float u1[MOST + 1], u2[MOST + 1], out[4][MOST + 1], all[4][MOST + 1];
     uint32_t col[2][MOST + 1], row[2][MOST + 1];
-    int n, k, i, off;
-    for (n = 0; n <= 72; n++) {
+    for (int n = 0; n <= 72; n++) {
         const int count = n <= 70 ? n : n == 71 ? 129 : MOST;
-        for (k = 0; k < 18; k++) { /* bit 0 to 3: outputs that are wanted; 16, 17: over the inputs */
+        for (int k = 0; k < 18; k++) { /* bit 0 to 3: outputs that are wanted; 16, 17: over the inputs */
             const int wanted = k < 16 ? k : 15;
-            float *x = k == 16 ? u1 : k == 17 ? u2 : out[0], *y = k == 16 ? u2 : k == 17 ? u1 : out[1];
+            float *x = k == 16 ? u1 : k == 17 ? u2 : out[0];
+            float *y = k == 16 ? u2 : k == 17 ? u1 : out[1];
             if (n % 7 && k < 15 && k) continue;
-            off = n & 1;
+            const int off = n & 1;
             fill(rng, (size_t)count + 1, u1, u2);
-            if (count > 3) u1[off + 2] = NAN, u2[off + 3] = 1.0f;
+            if (count > 3) {
+                u1[off + 2] = NAN;
+                u2[off + 3] = 1.0f;
+            }
             if (count > 4) u1[off + 4] = 0.0f;
             mcs_product_sample_n(d->p, (size_t)count, u1 + off, u2 + off, all[0] + off, all[1] + off, all[2] + off, all[3] + off,
                                  col[0] + off, row[0] + off);
-            for (i = off; i < count + off; i++) {
+            for (int i = off; i < count + off; i++) {
                 mcs_texel t;
-                t.w.x = all[0][i], t.w.y = all[1][i], t.w.z = all[2][i], t.pdf = all[3][i], t.col = col[0][i], t.row = row[0][i];
+                t.w.x = all[0][i];
+                t.w.y = all[1][i];
+                t.w.z = all[2][i];
+                t.pdf = all[3][i];
+                t.col = col[0][i];
+                t.row = row[0][i];
                 CHECK(same_draw(d, u1[i], u2[i], t), "n = %d, entry %d: not that of sample(%a, %a)", count, i, (double)u1[i],
                       (double)u2[i]);
             }
             mcs_product_sample_n(d->p, (size_t)count, u1 + off, u2 + off, wanted & 1 ? x + off : NULL, wanted & 2 ? y + off : NULL,
                                  wanted & 4 ? out[2] + off : NULL, wanted & 8 ? out[3] + off : NULL,
                                  wanted & 2 ? col[1] + off : NULL, wanted & 1 ? row[1] + off : NULL);
-            for (i = off; i < count + off; i++)
+            for (int i = off; i < count + off; i++)
                 CHECK((!(wanted & 1) || !memcmp(all[0] + i, x + i, 4)) && (!(wanted & 2) || !memcmp(all[1] + i, y + i, 4)) &&
                           (!(wanted & 4) || !memcmp(all[2] + i, out[2] + i, 4)) &&
                           (!(wanted & 8) || !memcmp(all[3] + i, out[3] + i, 4)) && (!(wanted & 2) || col[0][i] == col[1][i]) &&
@@ -354,24 +368,20 @@ static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
 }
 
 static int has_fine(const sampler *d) {
-    uint32_t k, fine = 0;
-    for (k = 0; k < 2 * d->m->rows * d->m->rows; k++) fine += mcsi_product_fine(d->p)[k] > 0;
+    uint32_t fine = 0;
+    for (uint32_t k = 0; k < 2 * d->m->rows * d->m->rows; k++) fine += mcsi_product_fine(d->p)[k] > 0;
     return fine > 0;
 }
 
 static void test_arrays(void) {
-    int i;
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 72);
     mcst_group("product, arrays");
-    for (i = 0; i < 6; i++) { /* the last one has fine grids and no share for the lobe: then arrays go through them, too */
-        scene m;
-        surface s;
-        sampler d;
+    for (int i = 0; i < 6; i++) { /* the last one has fine grids and no share for the lobe: then arrays go through them, too */
         static const int of[] = {0, 2, 8, 1, 2, 4};
         if (!mcst_case("%s%s", lobes[of[i]].name, i == 3 ? ", black" : i == 4 ? ", constant" : "")) continue;
-        m = scene_make("sun", 64, 32, i == 3 ? v_black : i == 4 ? v_constant : v_sun, 16);
-        s = surface_make(normals[i], local_wo(0.5, 0.1), lobes[of[i]]);
-        d = sampler_make(&m, &s, 1);
+        scene m = scene_make("sun", 64, 32, i == 3 ? v_black : i == 4 ? v_constant : v_sun, 16);
+        const surface s = surface_make(normals[i], local_wo(0.5, 0.1), lobes[of[i]]);
+        sampler d = sampler_make(&m, &s, 1);
         CHECK((i == 2) == (d.share > 0), "share %g", d.share);
         CHECK((i == 2 || i == 5) == has_fine(&d), "grids of fine tiles");
         check_arrays(&d, &rng);
@@ -383,36 +393,34 @@ static void test_arrays(void) {
 /* ---- a turned map ---- */
 
 static void test_turned(void) {
-    int form, i;
-    uint32_t r, c;
     mcst_group("product, turned map");
-    for (form = 0; form < 2; form++) {
-        scene m;
-        surface s, turned;
-        sampler d, e;
+    for (int form = 0; form < 2; form++) {
         const mcs_frame f = mcs_frame_make(vec(0.48, -0.6, 0.64));
-        mcs_env *env;
         if (!mcst_case("%s", form ? "prepared" : "one-shot")) continue;
-        m = scene_make("sun", 64, 32, v_sun, 16), s = surface_make(normals[4], local_wo(0.7, 0.2), lobes[2]), turned = s;
-        env = (mcs_env *)(void *)m.env.at;
-        turned.r.frame.s = mcs_to_world(&f, s.r.frame.s), turned.r.frame.t = mcs_to_world(&f, s.r.frame.t);
+        scene m = scene_make("sun", 64, 32, v_sun, 16);
+        surface s = surface_make(normals[4], local_wo(0.7, 0.2), lobes[2]);
+        surface turned = s;
+        mcs_env *env = (mcs_env *)(void *)m.env.at;
+        turned.r.frame.s = mcs_to_world(&f, s.r.frame.s);
+        turned.r.frame.t = mcs_to_world(&f, s.r.frame.t);
         turned.r.frame.n = mcs_to_world(&f, s.r.frame.n);
         double *const expected = (double *)memory(64 * 32 * sizeof *expected);
-        d = sampler_make(&m, &s, form);
-        for (r = 0; r < 32; r++)
-            for (c = 0; c < 64; c++) expected[r * 64 + c] = density(&d, point(64, 32, c, r, 0.5, 0.5));
+        sampler d = sampler_make(&m, &s, form);
+        for (uint32_t r = 0; r < 32; r++)
+            for (uint32_t c = 0; c < 64; c++) expected[r * 64 + c] = density(&d, point(64, 32, c, r, 0.5, 0.5));
         env->frame = f;
-        e = sampler_make(&m, &turned, form);
-        for (r = 0; r < 32; r++)
-            for (c = 0; c < 64; c++) {
-                const double p = density(&e, mcs_to_world(&f, point(64, 32, c, r, 0.5, 0.5))), want = expected[r * 64 + c];
+        sampler e = sampler_make(&m, &turned, form);
+        for (uint32_t r = 0; r < 32; r++)
+            for (uint32_t c = 0; c < 64; c++) {
+                const double p = density(&e, mcs_to_world(&f, point(64, 32, c, r, 0.5, 0.5)));
+                const double want = expected[r * 64 + c];
                 /* Cosines move by some 4 eps, weights by that over a cosine; tiles on the horizon have one of a hundredth at least
                  * where they are not at the floor; shares are integers over 2^24 */
                 CHECK(fabs(p - want) <= 1e-4 * want + 1e-6, "texel (%u, %u): density %g, not %g", c, r, p, want);
             }
-        for (i = 0; i < 500; i++) {
+        for (int i = 0; i < 500; i++) {
             const mcs_texel t = draw(&e, hash01((uint32_t)i, 16), hash01((uint32_t)i, 17));
-            mcs_vec3 local = mcs_to_local(&f, t.w);
+            const mcs_vec3 local = mcs_to_local(&f, t.w);
             double col, row;
             texel_of(64, 32, local, &col, &row);
             /* a place within rounding of a border of its texel: 4 eps of a turn */
@@ -420,7 +428,8 @@ static void test_turned(void) {
                       fabs(row - t.row - 0.5) <= 0.5 + 32 * 8 * eps,
                   "texel (%u, %u), direction at (%g, %g)", t.col, t.row, col, row);
         }
-        sampler_free(&d), sampler_free(&e);
+        sampler_free(&d);
+        sampler_free(&e);
         free(expected);
         scene_free(&m);
     }
@@ -436,25 +445,26 @@ static void test_directions(void) {
     } maps[] = {{"sun", v_sun, 64, 32, 16},           {"sparse", v_sparse, 50, 25, 16}, {"room", v_room, 200, 100, 64},
                 {"constant", v_constant, 64, 32, 32}, {"half", v_half, 7, 5, 16},       {"1 x 1", v_constant, 1, 1, 16},
                 {"black", v_black, 64, 32, 16}};
-    int a;
     mcst_group("product, directions");
-    for (a = 0; a < (int)(sizeof maps / sizeof *maps); a++) {
-        scene m;
-        uint32_t i, j;
+    for (int a = 0; a < (int)(sizeof maps / sizeof *maps); a++) {
         if (!mcst_case("%s", maps[a].name)) continue;
-        m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, maps[a].rows);
-        for (j = 0; j < 2 * m.rows; j++)
-            for (i = 0; i < m.rows; i++) {
+        scene m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, maps[a].rows);
+        for (uint32_t j = 0; j < 2 * m.rows; j++)
+            for (uint32_t i = 0; i < m.rows; i++) {
                 const mcs_vec3 w = mcs_tiles_direction(tiles_of(&m), env_of(&m), j * m.rows + i);
                 const double len = sqrt((double)w.x * w.x + (double)w.y * w.y + (double)w.z * w.z);
-                const uint32_t c0 = j * m.w / (2 * m.rows), c1 = (j + 1) * m.w / (2 * m.rows), r0 = i * m.h / m.rows,
-                               r1 = (i + 1) * m.h / m.rows;
-                double col, row, bulge, t0 = pi * r0 / m.h, t1 = pi * r1 / m.h;
+                const uint32_t c0 = j * m.w / (2 * m.rows);
+                const uint32_t c1 = (j + 1) * m.w / (2 * m.rows);
+                const uint32_t r0 = i * m.h / m.rows;
+                const uint32_t r1 = (i + 1) * m.h / m.rows;
+                double t0 = pi * r0 / m.h;
+                double t1 = pi * r1 / m.h;
                 CHECK(fabs(len - 1) <= 8 * eps, "tile %u: length 1 + %g", j * m.rows + i, len - 1);
+                double col, row;
                 texel_of(m.w, m.h, w, &col, &row);
                 /* The mean of directions at one height lies nearer to the pole: tan(theta) of it is at least their tan times the
                  * cosine of half their azimuths' range. */
-                bulge = c1 > c0 && c1 - c0 < m.w / 2 + 1 ? cos(pi * (c1 - c0) / m.w) : 0;
+                const double bulge = c1 > c0 && c1 - c0 < m.w / 2 + 1 ? cos(pi * (c1 - c0) / m.w) : 0;
                 if (t1 <= pi / 2) t0 = atan(tan(t0) * bulge);
                 if (t0 >= pi / 2) t1 = pi - atan(tan(pi - t1) * bulge);
                 CHECK(row * pi / m.h >= t0 - 1e-6 && row * pi / m.h <= t1 + 1e-6, "tile (%u, %u): row %g, not in %u to %u", i, j,

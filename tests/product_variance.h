@@ -17,11 +17,14 @@ enum { SUB_MOST = 16 };
 static int middles(const fit *f, double t, double part, int sub, double *x, double *wide) {
     double at[FINE + 1];
     const int pieces = fit_pieces(f, t, part, at);
-    int i, k, n = 0;
-    for (i = 0; i < pieces; i++) {
+    int n = 0;
+    for (int i = 0; i < pieces; i++) {
         const double size = at[i + 1] - at[i];
         const int parts = (int)ceil(sub * size);
-        for (k = 0; k < parts; k++, n++) x[n] = at[i] + (k + 0.5) / parts * size, wide[n] = size / parts;
+        for (int k = 0; k < parts; k++, n++) {
+            x[n] = at[i] + (k + 0.5) / parts * size;
+            wide[n] = size / parts;
+        }
     }
     return n;
 }
@@ -31,83 +34,128 @@ static int middles(const fit *f, double t, double part, int sub, double *x, doub
 static variances variance_of(const scene *m, const surface *s, int least, const double *tile_rows, const double *tile_parts,
                              const double *row_slack) {
     const uint32_t tiles = 2 * m->rows * m->rows;
-    fit *fits = (fit *)memory(tiles * sizeof *fits), *one_fits = (fit *)memory(tiles * sizeof *one_fits);
-    sampler d = sampler_make(m, s, 1), o = sampler_make(m, s, 0);
-    double I = 0, env = 0, brdf = 0, product = 0, oneshot = 0, a_env = 0, a_brdf = 0, m_env = 0;
-    variances v;
-    uint32_t r, c;
+    fit *fits = (fit *)memory(tiles * sizeof *fits);
+    fit *one_fits = (fit *)memory(tiles * sizeof *one_fits);
+    sampler d = sampler_make(m, s, 1);
+    sampler o = sampler_make(m, s, 0);
+    double I = 0;
+    double env = 0;
+    double brdf = 0;
+    double product = 0;
+    double oneshot = 0;
+    double a_env = 0;
+    double a_brdf = 0;
+    double m_env = 0;
     int fine = 0;
-    for (r = 0; r < tiles; r++) fits[r] = fit_tile(&d, r), one_fits[r] = fit_tile(&o, r), fine += fits[r].parts > 1;
+    for (uint32_t r = 0; r < tiles; r++) {
+        fits[r] = fit_tile(&d, r);
+        one_fits[r] = fit_tile(&o, r);
+        fine += fits[r].parts > 1;
+    }
     CHECK(fine <= d.most_fine, "%s: %d tiles of many parts", m->name, fine);
-    for (r = 0; r < m->h; r++) {
-        const double omega = m->area[r], size = pi / m->h;
+    for (uint32_t r = 0; r < m->h; r++) {
+        const double omega = m->area[r];
+        const double size = pi / m->h;
         /* half the cosine's distance from 1: linear in what is equal areas */
-        const double top = pow(sin(0.5 * pi * r / m->h), 2), height = pow(sin(0.5 * pi * (r + 1) / m->h), 2) - top;
+        const double top = pow(sin(0.5 * pi * r / m->h), 2);
+        const double height = pow(sin(0.5 * pi * (r + 1) / m->h), 2) - top;
         const uint32_t row_tile = tile_at(m, 0, r);
         span at = {0, 0, 0, 0, 0};
         uint32_t last = UINT32_MAX;
-        for (c = 0; c < m->w; c++) {
+        for (uint32_t c = 0; c < m->w; c++) {
             const uint32_t tile = tile_at(m, c, r);
-            const double light = m->light[(size_t)r * m->w + c], pe = light / m->total, mid = top + 0.5 * height,
-                         st = 2 * sqrt(mid * (1 - mid)), p = 2 * pi * (c + 0.5) / m->w;
-            const fit *f = fits + tile, *g = one_fits + tile;
-            double w[3], away = 0, visible, x[SUB_MOST + FINE], y[SUB_MOST + FINE], wide[SUB_MOST + FINE], high[SUB_MOST + FINE];
-            int sub, across, down, i, j, k;
+            const double light = m->light[(size_t)r * m->w + c];
+            const double pe = light / m->total;
+            const double mid = top + 0.5 * height;
+            const double st = 2 * sqrt(mid * (1 - mid));
+            const double p = 2 * pi * (c + 0.5) / m->w;
+            const fit *f = fits + tile;
+            const fit *g = one_fits + tile;
+            double away = 0;
             if (tile != last) {
-                last = tile, at.t1 = at.part1 = 0, at.line = tile_box(m, tile).line[r];
-                at.t2 = tile_rows[(size_t)(tile - row_tile) / m->rows * m->h + r],
+                last = tile;
+                at.t1 = at.part1 = 0;
+                at.line = tile_box(m, tile).line[r];
+                at.t2 = tile_rows[(size_t)(tile - row_tile) / m->rows * m->h + r];
                 at.part2 = tile_parts[(size_t)(tile - row_tile) / m->rows * m->h + r];
             }
             if (!(light > 0)) continue;
-            at.t1 += at.part1, at.part1 = light / at.line;
-            w[0] = st * cos(p), w[1] = st * sin(p), w[2] = 1 - 2 * mid;
+            at.t1 += at.part1;
+            at.part1 = light / at.line;
+            double w[3];
+            w[0] = st * cos(p);
+            w[1] = st * sin(p);
+            w[2] = 1 - 2 * mid;
             if (dot3(s->n, w) < -size) continue;
-            for (k = 0; k < 3; k++) away += (w[k] - s->mirror[k]) * (w[k] - s->mirror[k]);
-            sub = s->matte >= 1 ? 1 : (int)ceil(size / (0.35 * sqrt(s->width * s->width + away / 4)));
+            for (int k = 0; k < 3; k++) away += (w[k] - s->mirror[k]) * (w[k] - s->mirror[k]);
+            int sub = s->matte >= 1 ? 1 : (int)ceil(size / (0.35 * sqrt(s->width * s->width + away / 4)));
             if (s->profile != MCS_PROFILE_GGX) {
                 const fall at_middle = fall_at(s, w);
                 sub = at_middle.root - 2 * size / at_middle.scale < 6 ? (int)ceil(fmin(size / (0.35 * at_middle.scale), SUB_MOST))
                                                                       : 1;
             }
             sub = sub > least ? sub < SUB_MOST ? sub : SUB_MOST : least;
-            across = middles(f, at.t1, at.part1, sub, x, wide), down = middles(f, at.t2, at.part2, sub, y, high);
-            for (i = 0; i < down; i++)
-                for (j = 0; j < across; j++) {
-                    const double a = omega * wide[j] * high[i], u1 = at.t1 + x[j] * at.part1, u2 = at.t2 + y[i] * at.part2,
-                                 q = fmax(light * fit_at(f, u1, u2), 0), q1 = fmax(light * fit_at(g, u1, u2), 0);
-                    double F, pb, pp;
+            double x[SUB_MOST + FINE], wide[SUB_MOST + FINE];
+            const int across = middles(f, at.t1, at.part1, sub, x, wide);
+            double y[SUB_MOST + FINE], high[SUB_MOST + FINE];
+            const int down = middles(f, at.t2, at.part2, sub, y, high);
+            for (int i = 0; i < down; i++)
+                for (int j = 0; j < across; j++) {
+                    const double a = omega * wide[j] * high[i];
+                    const double u1 = at.t1 + x[j] * at.part1;
+                    const double u2 = at.t2 + y[i] * at.part2;
+                    const double q = fmax(light * fit_at(f, u1, u2), 0);
+                    const double q1 = fmax(light * fit_at(g, u1, u2), 0);
                     if (across * down > 1) {
-                        const double half = top + height * y[i], sine = 2 * sqrt(half * (1 - half)),
-                                     ph = 2 * pi * (c + x[j]) / m->w;
-                        w[0] = sine * cos(ph), w[1] = sine * sin(ph), w[2] = 1 - 2 * half;
+                        const double half = top + height * y[i];
+                        const double sine = 2 * sqrt(half * (1 - half));
+                        const double ph = 2 * pi * (c + x[j]) / m->w;
+                        w[0] = sine * cos(ph);
+                        w[1] = sine * sin(ph);
+                        w[2] = 1 - 2 * half;
                     }
-                    F = light * reflect(s, w, &visible);
+                    double visible;
+                    const double F = light * reflect(s, w, &visible);
                     if (!(F > 0)) continue;
-                    pb = s->matte >= 1 ? F / light : visible, pp = q + d.share * visible;
+                    const double pb = s->matte >= 1 ? F / light : visible;
+                    const double pp = q + d.share * visible;
                     if (hash01(r * m->w + c, 22) < 1e-3f && i == down / 2 && j == across / 2 && surely_in(m, x[j], y[i])) {
                         const mcs_vec3 to = vec(w[0], w[1], w[2]);
-                        const double q2 = density(&d, to), q3 = density(&o, to), lobe_wrong = lobe_off(s, to, visible),
-                                     tol = 2 * (slack_of_row(m, r) + slack_of(m, light, r) + row_slack[tile] + 8 * eps);
+                        const double q2 = density(&d, to);
+                        const double q3 = density(&o, to);
+                        const double lobe_wrong = lobe_off(s, to, visible);
+                        const double tol = 2 * (slack_of_row(m, r) + slack_of(m, light, r) + row_slack[tile] + 8 * eps);
                         const places off = places_off(m, &at, r, row_slack[tile]);
-                        const doubt of = fit_doubt(f, u1, u2, off), og = fit_doubt(g, u1, u2, off);
+                        const doubt of = fit_doubt(f, u1, u2, off);
+                        const doubt og = fit_doubt(g, u1, u2, off);
                         CHECK(fabs(q2 - pp) <= tol * q + d.share * lobe_wrong + 4 * eps * q2 + light * (varies(&of, off) + of.blur),
                               "%s: density %g, not %g", m->name, q2, pp);
                         CHECK(fabs(q3 - q1 - o.share * visible) <= tol * q1 + o.share * lobe_wrong + o.share_off * visible +
                                                                        4 * eps * q3 + light * (varies(&og, off) + og.blur),
                               "%s: one-shot density %g, not %g", m->name, q3, q1 + o.share * visible);
                     }
-                    I += a * F, env += a * F * F / pe, brdf += a * F * F / pb;
-                    product += a * F * F / pp, oneshot += a * F * F / (q1 + o.share * visible);
-                    a_env += a * F * F * pe / ((pe + pb) * (pe + pb)), a_brdf += a * F * F * pb / ((pe + pb) * (pe + pb));
+                    I += a * F;
+                    env += a * F * F / pe;
+                    brdf += a * F * F / pb;
+                    product += a * F * F / pp;
+                    oneshot += a * F * F / (q1 + o.share * visible);
+                    a_env += a * F * F * pe / ((pe + pb) * (pe + pb));
+                    a_brdf += a * F * F * pb / ((pe + pb) * (pe + pb));
                     m_env += a * F * pe / (pe + pb);
                 }
         }
     }
-    v.env = env / I / I - 1, v.brdf = brdf / I / I - 1, v.product = product / I / I - 1, v.oneshot = oneshot / I / I - 1;
+    variances v;
+    v.env = env / I / I - 1;
+    v.brdf = brdf / I / I - 1;
+    v.product = product / I / I - 1;
+    v.oneshot = oneshot / I / I - 1;
     /* two samples, one of each: times two for the same number of samples */
     v.mis = 2 * (a_env - m_env * m_env + a_brdf - (I - m_env) * (I - m_env)) / I / I;
-    sampler_free(&d), sampler_free(&o);
-    free(fits), free(one_fits);
+    sampler_free(&d);
+    sampler_free(&o);
+    free(fits);
+    free(one_fits);
     return v;
 }
 
@@ -122,62 +170,83 @@ static const float varied[VARIED] = {0, 0.8f, 0.5f, 0.3f, 0.2f, 0.1f, 0.05f, 0.0
 static void add_map(const scene *m, mcs_profile profile, ratios *sum, int *n) {
     const int most = profile == MCS_PROFILE_GGX ? VARIED : SHAPED;
     const size_t rows = 2 * (size_t)m->rows * m->h;
-    double *tile_rows = (double *)memory(rows * sizeof *tile_rows), *tile_parts = (double *)memory(rows * sizeof *tile_parts),
-           row_slack[64 * 128];
-    uint32_t r, c;
-    int k, i;
-    for (c = 0; c < 2 * m->rows; c++) /* columns of tiles; rows of texels, each tile's by itself */
-        for (r = 0; r < m->rows; r++) {
+    double *tile_rows = (double *)memory(rows * sizeof *tile_rows);
+    double *tile_parts = (double *)memory(rows * sizeof *tile_parts);
+    double row_slack[64 * 128];
+    for (uint32_t c = 0; c < 2 * m->rows; c++) /* columns of tiles; rows of texels, each tile's by itself */
+        for (uint32_t r = 0; r < m->rows; r++) {
             const box b = tile_box(m, c * m->rows + r);
-            double all = 0, *at = tile_rows + (size_t)c * m->h, *part = tile_parts + (size_t)c * m->h;
-            uint32_t y;
-            for (y = b.r0; y < b.r1; y++) at[y] = all, part[y] = b.line[y] * m->area[y], all += part[y];
-            for (y = b.r0; y < b.r1 && all > 0; y++) at[y] /= all, part[y] /= all;
+            double all = 0;
+            double *at = tile_rows + (size_t)c * m->h;
+            double *part = tile_parts + (size_t)c * m->h;
+            for (uint32_t y = b.r0; y < b.r1; y++) {
+                at[y] = all;
+                part[y] = b.line[y] * m->area[y];
+                all += part[y];
+            }
+            for (uint32_t y = b.r0; y < b.r1 && all > 0; y++) {
+                at[y] /= all;
+                part[y] /= all;
+            }
             row_slack[c * m->rows + r] = slack_of_tile(m, b);
         }
-    for (k = 0; k < most; k++)
-        for (i = 0; i < TWELVE; i++) {
+    for (int k = 0; k < most; k++)
+        for (int i = 0; i < TWELVE; i++) {
             /* normals spread over the sphere by the golden angle, the eye at cosines of 0.35 to 0.95 */
-            const double z = 1 - (2 * i + 1.0) / TWELVE, turn = 0.381966 * i, golden = fmod(0.618034 * i, 1);
+            const double z = 1 - (2 * i + 1.0) / TWELVE;
+            const double turn = 0.381966 * i;
+            const double golden = fmod(0.618034 * i, 1);
             const float alpha = (profile == MCS_PROFILE_GGX ? varied : shaped_alpha)[k];
             lobe l = lobes[0];
-            surface s;
-            variances v;
-            if (alpha > 0) l.ax = l.ay = alpha, l.matte = 0, l.profile = profile;
-            s = surface_make(vec(sqrt(1 - z * z) * cos(2 * pi * turn), sqrt(1 - z * z) * sin(2 * pi * turn), z),
-                             local_wo(0.35 + 0.6 * golden, 2.4 * i), l);
+            if (alpha > 0) {
+                l.ax = l.ay = alpha;
+                l.matte = 0;
+                l.profile = profile;
+            }
+            const surface s = surface_make(vec(sqrt(1 - z * z) * cos(2 * pi * turn), sqrt(1 - z * z) * sin(2 * pi * turn), z),
+                                           local_wo(0.35 + 0.6 * golden, 2.4 * i), l);
             /* lobes and cosines are smooth on the scale of a tile, 0.2: eight points of a tile each way leave 0.025^2/24 of them */
-            v = variance_of(m, &s, m->h / m->rows < 8 ? 2 : 1, tile_rows, tile_parts, row_slack);
+            variances v = variance_of(m, &s, m->h / m->rows < 8 ? 2 : 1, tile_rows, tile_parts, row_slack);
             CHECK(v.product > -1e-6 && v.oneshot > -1e-6 && v.env > 0 && v.mis > 0,
                   "%s, alpha %g, normal %d: variances %g, %g, %g, %g", m->name, (double)alpha, i, v.product, v.oneshot, v.env,
                   v.mis);
-            sum[k].env += log(v.env / v.product), sum[k].brdf += log(v.brdf / v.product), sum[k].mis += log(v.mis / v.product);
-            sum[k].env_one += log(v.env / v.oneshot), sum[k].mis_one += log(v.mis / v.oneshot);
-            sum[k].worst = fmin(sum[k].worst, v.mis / v.product), sum[k].worst_one = fmin(sum[k].worst_one, v.mis / v.oneshot);
+            sum[k].env += log(v.env / v.product);
+            sum[k].brdf += log(v.brdf / v.product);
+            sum[k].mis += log(v.mis / v.product);
+            sum[k].env_one += log(v.env / v.oneshot);
+            sum[k].mis_one += log(v.mis / v.oneshot);
+            sum[k].worst = fmin(sum[k].worst, v.mis / v.product);
+            sum[k].worst_one = fmin(sum[k].worst_one, v.mis / v.oneshot);
             n[k]++;
         }
-    free(tile_rows), free(tile_parts);
+    free(tile_rows);
+    free(tile_parts);
 }
 
 static void finish(const char *what, mcs_profile profile, ratios *sum, const int *n) {
     const int most = profile == MCS_PROFILE_GGX ? VARIED : SHAPED;
-    int k;
     mcst_note("    %s: variance per sample, geometric means over %d\n", what, n[0]);
     mcst_note("    %-8s %10s %10s %10s %10s | %10s %10s %10s\n", "alpha", "env/prod", "BRDF/prod", "MIS/prod", "worst", "env/one",
               "MIS/one", "worst");
-    for (k = 0; k < most; k++) {
+    for (int k = 0; k < most; k++) {
         const float alpha = (profile == MCS_PROFILE_GGX ? varied : shaped_alpha)[k];
         ratios *q = sum + k;
-        q->env = exp(q->env / n[k]), q->brdf = exp(q->brdf / n[k]), q->mis = exp(q->mis / n[k]);
-        q->env_one = exp(q->env_one / n[k]), q->mis_one = exp(q->mis_one / n[k]);
+        q->env = exp(q->env / n[k]);
+        q->brdf = exp(q->brdf / n[k]);
+        q->mis = exp(q->mis / n[k]);
+        q->env_one = exp(q->env_one / n[k]);
+        q->mis_one = exp(q->mis_one / n[k]);
         mcst_note("    %-8.3g %10.4g %10.4g %10.4g %10.3g | %10.4g %10.4g %10.3g\n", alpha > 0 ? (double)alpha : INFINITY, q->env,
                   q->brdf, q->mis, q->worst, q->env_one, q->mis_one, q->worst_one);
     }
 }
 
 static void start(ratios *sum, int *n) {
-    int k;
-    for (k = 0; k < VARIED; k++) memset(sum + k, 0, sizeof *sum), sum[k].worst = sum[k].worst_one = 1e300, n[k] = 0;
+    for (int k = 0; k < VARIED; k++) {
+        memset(sum + k, 0, sizeof *sum);
+        sum[k].worst = sum[k].worst_one = 1e300;
+        n[k] = 0;
+    }
 }
 
 static void add_own_maps(const char *what, mcs_profile profile, ratios *sum, int *n) {
@@ -185,9 +254,8 @@ static void add_own_maps(const char *what, mcs_profile profile, ratios *sum, int
         const char *name;
         light_fn value;
     } maps[] = {{"smooth", v_smooth}, {"sun", v_sun}, {"room", v_room}};
-    int k;
     start(sum, n);
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         scene m = scene_make(maps[k].name, 128, 64, maps[k].value, 16);
         add_map(&m, profile, sum, n);
         scene_free(&m);
@@ -197,59 +265,57 @@ static void add_own_maps(const char *what, mcs_profile profile, ratios *sum, int
 
 static void test_variance(void) {
     const char *list = getenv("MCS_TEST_MAPS");
-    ratios sum[VARIED];
-    int n[VARIED], k, lobe_kind;
     mcst_group("product, variance");
+    ratios sum[VARIED];
+    int n[VARIED];
     if (mcst_case("own maps")) {
         add_own_maps("own maps, 16 x 32 tiles", MCS_PROFILE_GGX, sum, n);
         /* Quadrature without noise: half of what it gave when this was written, so that weights may be changed a little, but not
          * lose a factor. */
         CHECK(sum[0].env >= 293 && sum[0].env_one >= 78, "matte: environment / product %g, %g", sum[0].env, sum[0].env_one);
-        for (k = 0; k < VARIED; k++) {
+        for (int k = 0; k < VARIED; k++) {
             static const double half[VARIED] = {144, 155, 149, 106, 60, 93, 19.4, 1.64},
                                 half_one[VARIED] = {38, 36, 32, 13.9, 6.4, 1.8, 0.71, 0.55};
             CHECK(sum[k].mis >= half[k] && sum[k].mis_one >= half_one[k], "row %d: MIS / product %g, %g", k, sum[k].mis,
                   sum[k].mis_one);
         }
     }
-    for (lobe_kind = 0; lobe_kind < 2; lobe_kind++) {
+    for (int lobe_kind = 0; lobe_kind < 2; lobe_kind++) {
         static const double half[2][SHAPED] = {{81, 13.8, 2.1}, {8.2, 26, 5.6}},
                             half_one[2][SHAPED] = {{3.9, 0.73, 0.27}, {5.1, 2.2, 0.69}},
                             half_worst[2][SHAPED] = {{6.9, 1.6, 0.056}, {1.2, 2.5, 0.28}};
         if (!mcst_case("own maps, %s", lobe_kind ? "Phong" : "Gauss")) continue;
         add_own_maps(lobe_kind ? "Phong, own maps, 16 x 32 tiles" : "Gauss, own maps, 16 x 32 tiles",
                      lobe_kind ? MCS_PROFILE_PHONG : MCS_PROFILE_GAUSS, sum, n);
-        for (k = 0; k < SHAPED; k++) /* half of what it gave, too */
+        for (int k = 0; k < SHAPED; k++) /* half of what it gave, too */
             CHECK(sum[k].mis >= half[lobe_kind][k] && sum[k].mis_one >= half_one[lobe_kind][k] &&
                       sum[k].worst >= half_worst[lobe_kind][k],
                   "row %d: MIS / product %g, %g, at worst %g", k, sum[k].mis, sum[k].mis_one, sum[k].worst);
     }
     if (list && *list && mcst_case("captured maps")) {
-        char *names = (char *)memory(strlen(list) + 1), *name;
+        char *names = (char *)memory(strlen(list) + 1);
         start(sum, n);
         memcpy(names, list, strlen(list) + 1);
-        for (name = strtok(names, " "); name; name = strtok(NULL, " ")) {
+        for (char *name = strtok(names, " "); name; name = strtok(NULL, " ")) {
             hdr_picture p;
             const int ok = hdr_read(&p, name);
-            scene m;
-            float *light;
-            size_t i;
             CHECK(ok, "%s: %s", name, p.fault);
             if (!ok) continue;
+            float *light;
             light = (float *)memory((size_t)p.w * p.h * sizeof *light);
-            for (i = 0; i < (size_t)p.w * p.h; i++) {
+            for (size_t i = 0; i < (size_t)p.w * p.h; i++) {
                 float c[3];
                 hdr_color(&p, i, c);
                 light[i] = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
             }
             free(p.pixel);
-            m = scene_from(name, p.w, p.h, light, 16);
+            scene m = scene_from(name, p.w, p.h, light, 16);
             add_map(&m, MCS_PROFILE_GGX, sum, n);
             scene_free(&m);
         }
         finish("captured maps, 16 x 32 tiles", MCS_PROFILE_GGX, sum, n);
         CHECK(sum[0].env >= 60, "matte: environment / product %g", sum[0].env);
-        for (k = 1; k <= 4; k++) CHECK(sum[k].mis >= 20, "alpha %g: MIS / product %g", (double)varied[k], sum[k].mis);
+        for (int k = 1; k <= 4; k++) CHECK(sum[k].mis >= 20, "alpha %g: MIS / product %g", (double)varied[k], sum[k].mis);
         free(names);
     }
 }

@@ -14,18 +14,16 @@
  * exp(-a (m - log1p(m)) - S(a)) / sqrt(2 pi a), m = (x - a)/a, S Stirling's series (DLMF 5.11.1; at a = 16 the first term left out
  * is 3e-14). The difference m - log1p(m) near 0 by its own series, so that its product with a keeps its digits. */
 static inline double st_poisson(double a, double x) {
-    double m, g, s, r;
-    int k;
     if (a < 16.0) return exp(a * log(x) - x) / tgamma(a + 1.0);
-    m = (x - a) / a;
-    g = m - log1p(m);
+    const double m = (x - a) / a;
+    double g = m - log1p(m);
     if (fabs(m) < 0.05) { /* sum over k >= 2 of (-1)^k m^k / k: 14 terms leave 0.05^14 */
         g = 0.0;
-        for (k = 15; k >= 2; k--) g = 1.0 / (double)k - m * g;
+        for (int k = 15; k >= 2; k--) g = 1.0 / (double)k - m * g;
         g *= m * m;
     }
-    r = 1.0 / (a * a);
-    s = (1.0 / 12.0 - r * (1.0 / 360.0 - r * (1.0 / 1260.0 - r * (1.0 / 1680.0 - r / 1188.0)))) / a;
+    const double r = 1.0 / (a * a);
+    const double s = (1.0 / 12.0 - r * (1.0 / 360.0 - r * (1.0 / 1260.0 - r * (1.0 / 1680.0 - r / 1188.0)))) / a;
     return exp(-a * g - s) / sqrt(2.0 * ST_PI * a);
 }
 
@@ -34,31 +32,31 @@ static inline double st_poisson(double a, double x) {
  * complex arguments and order". Both settle within some multiple of sqrt(a) terms. */
 static inline double gamma_q(double a, double x) {
     enum { TERMS = 200000 };
-    double sum = 1.0, term = 1.0, b, c, d, h, an, step;
-    int i;
+    double sum = 1.0;
+    double term = 1.0;
     if (!(a > 0.0) || !(x >= 0.0)) return (double)NAN;
     if (x == 0.0) return 1.0;
     if (isinf(x)) return 0.0;
     if (x < a + 1.0) {
-        for (i = 1; i < TERMS && term > sum * DBL_EPSILON * 0.1; i++) {
+        for (int i = 1; i < TERMS && term > sum * DBL_EPSILON * 0.1; i++) {
             term *= x / (a + (double)i);
             sum += term;
         }
         return 1.0 - st_poisson(a, x) * sum;
     }
-    b = x + 1.0 - a;
-    c = 1e300;
-    d = 1.0 / b;
-    h = d;
-    for (i = 1; i < TERMS; i++) {
-        an = -(double)i * ((double)i - a);
+    double b = x + 1.0 - a;
+    double c = 1e300;
+    double d = 1.0 / b;
+    double h = d;
+    for (int i = 1; i < TERMS; i++) {
+        const double an = -(double)i * ((double)i - a);
         b += 2.0;
         d = an * d + b;
         c = b + an / c;
         if (fabs(d) < 1e-300) d = 1e-300;
         if (fabs(c) < 1e-300) c = 1e-300;
         d = 1.0 / d;
-        step = d * c;
+        const double step = d * c;
         h *= step;
         if (fabs(step - 1.0) < DBL_EPSILON) break;
     }
@@ -71,18 +69,19 @@ static inline double chi2_p(double stat, double dof) { return gamma_q(0.5 * dof,
  * lambda = (sqrt n + 0.12 + 0.11/sqrt n) d (Stephens 1970, "Use of the Kolmogorov-Smirnov, Cramer-von Mises and related
  * statistics"). Two series of the same theta function, each where it needs few terms. */
 static inline double ks_p(double d, double n) {
-    double l = (sqrt(n) + 0.12 + 0.11 / sqrt(n)) * d, sum = 0.0, k;
-    int j;
+    const double l = (sqrt(n) + 0.12 + 0.11 / sqrt(n)) * d;
+    double sum = 0.0;
     if (!(d >= 0.0) || !(n >= 1.0)) return (double)NAN;
     if (l < 0.04) return 1.0; /* the complement is below exp(-pi^2 / (8 l^2)) < 1e-300 */
+    double k;
     if (l < 1.18) {
-        for (j = 1; j <= 5; j++) {
+        for (int j = 1; j <= 5; j++) {
             k = (double)(2 * j - 1) * ST_PI / l;
             sum += exp(-k * k / 8.0);
         }
         return 1.0 - sqrt(2.0 * ST_PI) / l * sum;
     }
-    for (j = 5; j >= 1; j--) {
+    for (int j = 5; j >= 1; j--) {
         k = (double)j * l;
         sum += (j & 1 ? 2.0 : -2.0) * exp(-2.0 * k * k);
     }
@@ -97,10 +96,15 @@ static inline double sidak(double alpha, double tests) { return -expm1(log1p(-al
  * p = 0 when a bin that expects exactly nothing was hit; NaN when an expectation is negative or NaN, or when fewer than two groups
  * are left: then nothing was tested. */
 static inline double chi2_test(const double *observed, const double *expected, size_t bins, double *stat, int *dof) {
-    double sum = 0.0, group_o = 0.0, group_e = 0.0, pool_o = 0.0, pool_e = 0.0, diff;
-    int groups = 0, impossible = 0, bad = 0;
-    size_t i;
-    for (i = 0; i <= bins; i++) {
+    double sum = 0.0;
+    double group_o = 0.0;
+    double group_e = 0.0;
+    double pool_o = 0.0;
+    double pool_e = 0.0;
+    int groups = 0;
+    int impossible = 0;
+    int bad = 0;
+    for (size_t i = 0; i <= bins; i++) {
         double close_o, close_e;
         if (i == bins) { /* the last group is still open, so that what is left of the pool can join it */
             close_o = close_e = 0.0;
@@ -122,7 +126,7 @@ static inline double chi2_test(const double *observed, const double *expected, s
             }
         }
         if (group_e > 0.0) {
-            diff = group_o - group_e;
+            const double diff = group_o - group_e;
             sum += diff * diff / group_e;
             groups++;
         }
@@ -164,15 +168,19 @@ static inline void quad_rule1(const quad_of *q, quad_cell *c) {
                                  0.204432940075298892414161999234649, 0.209482141084727828012999174891714};
     static const double wg[4] = {0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
                                  0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
-    double mid = 0.5 * (c->x0 + c->x1), half = 0.5 * (c->x1 - c->x0), k = 0.0, g = 0.0, spread = 0.0, v[15];
-    int i;
-    for (i = 0; i < 15; i++) {
-        int j = i < 8 ? i : 14 - i;
+    const double mid = 0.5 * (c->x0 + c->x1);
+    const double half = 0.5 * (c->x1 - c->x0);
+    double k = 0.0;
+    double g = 0.0;
+    double spread = 0.0;
+    double v[15];
+    for (int i = 0; i < 15; i++) {
+        const int j = i < 8 ? i : 14 - i;
         v[i] = q->f1(mid + (i < 8 ? -node[j] : node[j]) * half, q->ctx);
         k += wk[j] * v[i];
         if (j & 1) g += wg[j / 2] * v[i];
     }
-    for (i = 0; i < 15; i++) spread += wk[i < 8 ? i : 14 - i] * fabs(v[i] - 0.5 * k);
+    for (int i = 0; i < 15; i++) spread += wk[i < 8 ? i : 14 - i] * fabs(v[i] - 0.5 * k);
     c->value = k * half;
     c->error = fabs(k - g);
     if (c->error > 0.0 && spread > 0.0) c->error = spread * fmin(1.0, pow(200.0 * c->error / spread, 1.5));
@@ -183,25 +191,32 @@ static inline void quad_rule1(const quad_of *q, quad_cell *c) {
 /* Genz and Malik 1980, "Remarks on algorithm 006: an adaptive algorithm for numerical integration over an N-dimensional rectangular
  * region", N = 2: 17 points, degree 7, error against the degree 5 embedded in it; cut along the larger fourth difference. */
 static inline void quad_rule2(const quad_of *q, quad_cell *c) {
-    const double l2 = 0.35856858280031809, l3 = 0.94868329805051380, l5 = 0.68824720161168530; /* sqrt of 9/70, 9/10, 9/19 */
-    double mx = 0.5 * (c->x0 + c->x1), my = 0.5 * (c->y0 + c->y1), hx = 0.5 * (c->x1 - c->x0), hy = 0.5 * (c->y1 - c->y0);
-    double f0 = q->f2(mx, my, q->ctx), two[2], three[2], s2, s3, s4, s5, fourth[2], low;
-    int i;
+    const double l2 = 0.35856858280031809;
+    const double l3 = 0.94868329805051380;
+    const double l5 = 0.68824720161168530; /* sqrt of 9/70, 9/10, 9/19 */
+    const double mx = 0.5 * (c->x0 + c->x1);
+    const double my = 0.5 * (c->y0 + c->y1);
+    const double hx = 0.5 * (c->x1 - c->x0);
+    const double hy = 0.5 * (c->y1 - c->y0);
+    const double f0 = q->f2(mx, my, q->ctx);
+    double two[2];
     two[0] = q->f2(mx - l2 * hx, my, q->ctx) + q->f2(mx + l2 * hx, my, q->ctx);
     two[1] = q->f2(mx, my - l2 * hy, q->ctx) + q->f2(mx, my + l2 * hy, q->ctx);
+    double three[2];
     three[0] = q->f2(mx - l3 * hx, my, q->ctx) + q->f2(mx + l3 * hx, my, q->ctx);
     three[1] = q->f2(mx, my - l3 * hy, q->ctx) + q->f2(mx, my + l3 * hy, q->ctx);
-    s4 = q->f2(mx - l3 * hx, my - l3 * hy, q->ctx) + q->f2(mx + l3 * hx, my - l3 * hy, q->ctx) +
-         q->f2(mx - l3 * hx, my + l3 * hy, q->ctx) + q->f2(mx + l3 * hx, my + l3 * hy, q->ctx);
-    s5 = q->f2(mx - l5 * hx, my - l5 * hy, q->ctx) + q->f2(mx + l5 * hx, my - l5 * hy, q->ctx) +
-         q->f2(mx - l5 * hx, my + l5 * hy, q->ctx) + q->f2(mx + l5 * hx, my + l5 * hy, q->ctx);
-    s2 = two[0] + two[1];
-    s3 = three[0] + three[1];
+    const double s4 = q->f2(mx - l3 * hx, my - l3 * hy, q->ctx) + q->f2(mx + l3 * hx, my - l3 * hy, q->ctx) +
+                      q->f2(mx - l3 * hx, my + l3 * hy, q->ctx) + q->f2(mx + l3 * hx, my + l3 * hy, q->ctx);
+    const double s5 = q->f2(mx - l5 * hx, my - l5 * hy, q->ctx) + q->f2(mx + l5 * hx, my - l5 * hy, q->ctx) +
+                      q->f2(mx - l5 * hx, my + l5 * hy, q->ctx) + q->f2(mx + l5 * hx, my + l5 * hy, q->ctx);
+    const double s2 = two[0] + two[1];
+    const double s3 = three[0] + three[1];
     c->value = -424.0 / 2187.0 * f0 + 980.0 / 6561.0 * s2 + 340.0 / 6561.0 * s3 + 200.0 / 19683.0 * s4 + 6859.0 / 78732.0 * s5;
-    low = -971.0 / 729.0 * f0 + 245.0 / 486.0 * s2 + 65.0 / 1458.0 * s3 + 25.0 / 729.0 * s4;
+    const double low = -971.0 / 729.0 * f0 + 245.0 / 486.0 * s2 + 65.0 / 1458.0 * s3 + 25.0 / 729.0 * s4;
     c->error = fabs((c->value - low) * 4.0 * hx * hy);
     c->value *= 4.0 * hx * hy;
-    for (i = 0; i < 2; i++) fourth[i] = fabs(two[i] - 2.0 * f0 - (three[i] - 2.0 * f0) / 7.0); /* 1/7 = (9/70) / (9/10) */
+    double fourth[2];
+    for (int i = 0; i < 2; i++) fourth[i] = fabs(two[i] - 2.0 * f0 - (three[i] - 2.0 * f0) / 7.0); /* 1/7 = (9/70) / (9/10) */
     c->axis = fourth[1] > fourth[0];
     if (fabs(fourth[0] - fourth[1]) <= 1e-10 * (fourth[0] + fourth[1])) /* no preference: the relatively longer side */
         c->axis = c->cuts[1] < c->cuts[0];
@@ -217,11 +232,10 @@ static inline void quad_rule(const quad_of *q, quad_cell *c) {
  * the range, QUAD_GRADES times by 4: poles and horizons, where densities peak and break off, tend to lie there. */
 enum { QUAD_CELLS = 1024, QUAD_GRADES = 6 };
 static inline double quad_adapt(const quad_of *q, quad_cell box, int split, double rel_tol, double abs_tol, double *err) {
+    int n = 0;
+    const int nx = split < 1 ? 1 : split > 16 ? 16 : split;
+    const int ny = q->f2 ? nx : 1;
     quad_cell cell[QUAD_CELLS];
-    double value, error, mid;
-    int n = 0, nx, ny, i, worst;
-    nx = split < 1 ? 1 : split > 16 ? 16 : split;
-    ny = q->f2 ? nx : 1;
     for (n = 0; n < nx * ny; n++) {
         cell[n] = box;
         cell[n].x0 = box.x0 + (box.x1 - box.x0) * (n % nx) / nx;
@@ -229,25 +243,28 @@ static inline double quad_adapt(const quad_of *q, quad_cell box, int split, doub
         cell[n].y0 = box.y0 + (box.y1 - box.y0) * (n / nx) / ny;
         cell[n].y1 = n / nx + 1 == ny ? box.y1 : box.y0 + (box.y1 - box.y0) * (n / nx + 1) / ny;
     }
-    for (i = 0; nx > 1 && ny == 1 && i < QUAD_GRADES; i++) { /* cell 0 stays the one at x0, cell nx - 1 the one at x1 */
+    for (int i = 0; nx > 1 && ny == 1 && i < QUAD_GRADES; i++) { /* cell 0 stays the one at x0, cell nx - 1 the one at x1 */
         cell[n] = cell[0];
         cell[0].x1 = cell[n].x0 = cell[0].x0 + 0.25 * (cell[0].x1 - cell[0].x0);
         cell[n + 1] = cell[nx - 1];
         cell[nx - 1].x0 = cell[n + 1].x1 = cell[nx - 1].x1 - 0.25 * (cell[nx - 1].x1 - cell[nx - 1].x0);
         n += 2;
     }
+    int i;
     for (i = 0; i < n; i++) quad_rule(q, &cell[i]);
+    double value, error;
     for (;;) {
-        quad_cell *a, *b = &cell[n];
+        quad_cell *b = &cell[n];
         value = error = 0.0;
+        int worst;
         for (worst = i = 0; i < n; i++) {
             value += cell[i].value;
             error += cell[i].error;
             if (cell[i].error > cell[worst].error) worst = i;
         }
         if (!(error > fmax(abs_tol, rel_tol * fabs(value))) || n == QUAD_CELLS) break;
-        a = &cell[worst];
-        mid = a->axis ? 0.5 * (a->y0 + a->y1) : 0.5 * (a->x0 + a->x1);
+        quad_cell *a = &cell[worst];
+        const double mid = a->axis ? 0.5 * (a->y0 + a->y1) : 0.5 * (a->x0 + a->x1);
         if (a->axis ? mid == a->y0 || mid == a->y1 : mid == a->x0 || mid == a->x1) break; /* as fine as double goes */
         a->cuts[a->axis]++;
         *b = *a;
@@ -294,9 +311,9 @@ static inline double quad_row_at(double x, void *ctx) {
 }
 static inline double quad_row_sum(double y, void *ctx) {
     quad_row *r = (quad_row *)ctx;
-    double err, v;
     r->y = y;
-    v = quad1(quad_row_at, r, r->x0, r->x1, 0.0, r->tol, r->split, &err);
+    double err;
+    const double v = quad1(quad_row_at, r, r->x0, r->x1, 0.0, r->tol, r->split, &err);
     r->worst = fmax(r->worst, err);
     return v;
 }
@@ -311,24 +328,25 @@ static inline double quad2(quad2_fn f, void *ctx, double x0, double x1, double y
                            int split, double *err) {
     enum { ROUNDS = 6 };
     quad_of q;
-    quad_row row;
-    double value, last, e, e_rows, tol;
-    int i;
     q.f1 = NULL;
     q.f2 = f;
     q.ctx = ctx;
-    value = quad_adapt(&q, quad_box(x0, x1, y0, y1), split, split > 1 ? 0.01 : rel_tol, abs_tol, &e); /* at least the magnitude */
-    tol = fmax(abs_tol, rel_tol * fabs(value));
+    double e;
+    double value =
+        quad_adapt(&q, quad_box(x0, x1, y0, y1), split, split > 1 ? 0.01 : rel_tol, abs_tol, &e); /* at least the magnitude */
+    double tol = fmax(abs_tol, rel_tol * fabs(value));
     if (split > 1 || e > tol) {
+        quad_row row;
         row.f = f;
         row.ctx = ctx;
         row.x0 = x0;
         row.x1 = x1;
-        for (i = 0; i < ROUNDS; i++) {
+        for (int i = 0; i < ROUNDS; i++) {
             row.tol = 0.1 * tol / fabs(y1 - y0);
             row.worst = 0.0;
             row.split = split + i;
-            last = value;
+            const double last = value;
+            double e_rows;
             value = quad1(quad_row_sum, &row, y0, y1, 0.0, 0.4 * tol, split + i, &e_rows);
             e = e_rows + row.worst * fabs(y1 - y0) + (i ? fabs(value - last) : 0.0);
             tol = fmax(abs_tol, rel_tol * fabs(value));

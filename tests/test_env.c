@@ -33,21 +33,42 @@ typedef struct {
 
 static float hash01(uint32_t i) { return mcs_u01(mcs_philox(mcst.seed, i, 2).v[0]); }
 
-static float v_one(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)c, (void)r, (void)w, (void)h, 1.0f; }
-static float v_random(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)h, 0.1f + hash01(r * w + c); }
-static float v_checker(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)w, (void)h, (c + r) & 1 ? 1.0f : 0.0f; }
-static float v_poles(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return (void)w, r == 0 || r == h - 1 ? 1.0f + (float)(c % 3) : 0.0f;
+static float v_one(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)c;
+    (void)r;
+    (void)w;
+    (void)h;
+    return 1.0f;
 }
-static float v_equator(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)w, r == h / 2 && c % 5 ? 1.0f : 0.0f; }
+static float v_random(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)h;
+    return 0.1f + hash01(r * w + c);
+}
+static float v_checker(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)w;
+    (void)h;
+    return (c + r) & 1 ? 1.0f : 0.0f;
+}
+static float v_poles(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)w;
+    return r == 0 || r == h - 1 ? 1.0f + (float)(c % 3) : 0.0f;
+}
+static float v_equator(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)w;
+    return r == h / 2 && c % 5 ? 1.0f : 0.0f;
+}
 static float v_peak(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
     return c == w / 3 && r == h / 3 ? 1e30f : (c ^ r) & 3 ? hash01(r * w + c) : 0.0f;
 }
 static float v_huge(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return (void)w, (void)h, (c + r) % 3 ? FLT_MAX : FLT_MAX / 4;
+    (void)w;
+    (void)h;
+    return (c + r) % 3 ? FLT_MAX : FLT_MAX / 4;
 }
 static float v_tiny(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return (void)w, (void)h, (float)((c + r) % 4) * 1.4012984643e-45f;
+    (void)w;
+    (void)h;
+    return (float)((c + r) % 4) * 1.4012984643e-45f;
 }
 static float v_corner(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return c == w - 1 && r == h - 1 ? 2.0f : 0.0f; }
 /* A sky brighter towards its horizon, dark ground, and a sun of one texel in every 32 x 32 that is 1e5 times brighter. */
@@ -81,17 +102,16 @@ static float pixels[MAX_TEXELS];
 static ld prob[MAX_TEXELS], row_prob[8192], total;
 
 static void load(const map *m) {
-    uint32_t r, c;
     total = 0;
-    for (r = 0; r < m->h; r++)
-        for (c = 0; c < m->w; c++) {
+    for (uint32_t r = 0; r < m->h; r++)
+        for (uint32_t c = 0; c < m->w; c++) {
             const float v = m->value(c, r, m->w, m->h);
             pixels[r * m->w + c] = v;
             total += prob[r * m->w + c] = v * solid_angle(r, m->w, m->h);
         }
-    for (r = 0; r < m->h; r++) {
+    for (uint32_t r = 0; r < m->h; r++) {
         row_prob[r] = 0;
-        for (c = 0; c < m->w; c++) row_prob[r] += prob[r * m->w + c] /= total;
+        for (uint32_t c = 0; c < m->w; c++) row_prob[r] += prob[r * m->w + c] /= total;
     }
 }
 
@@ -104,10 +124,9 @@ static mcs_status build_from(mcs_env *e, size_t bytes, const float *p, uint32_t 
 }
 
 static arena build(const map *m) {
-    arena a = arena_make(mcs_env_bytes(m->w, m->h));
-    int rc;
+    const arena a = arena_make(mcs_env_bytes(m->w, m->h));
     load(m);
-    rc = build_from(env_in(&a), a.bytes, pixels, m->w, m->h, 1, 0);
+    const int rc = build_from(env_in(&a), a.bytes, pixels, m->w, m->h, 1, 0);
     CHECK(rc == MCS_OK, "build returns %d", rc);
     CHECK(arena_intact(&a), "build wrote outside its %zu bytes", a.bytes);
     CHECK(env_in(&a)->bad == 0, "%llu bad texels", (unsigned long long)env_in(&a)->bad);
@@ -122,18 +141,20 @@ static arena build(const map *m) {
 /* Probabilities of rows, and of columns within a row, are integers over 2^31 with at least one where there is light: each moves by
  * one of rounding, its own one, and its share of those for all. The bound is relative to the probability of the texel. */
 static double slack(const map *m, uint32_t col, uint32_t row) {
-    const double prow = (double)row_prob[row], pcol = (double)(prob[row * m->w + col] / row_prob[row]);
+    const double prow = (double)row_prob[row];
+    const double pcol = (double)(prob[row * m->w + col] / row_prob[row]);
     return (1 + (2 / prow + m->h) * quantum) * (1 + (2 / pcol + m->w) * quantum) - 1;
 }
 
 static void check_density(const map *m, const mcs_env *e) {
-    uint32_t r, c;
     double mass = 0;
     const uint32_t step = m->w > 1000 ? 61 : 1;
-    for (r = 0; r < m->h; r++)
-        for (c = 0; c < m->w; c++) {
+    for (uint32_t r = 0; r < m->h; r++)
+        for (uint32_t c = 0; c < m->w; c++) {
             const mcs_vec3 w = point(m->w, m->h, c, r, 0.5, 0.5);
-            const double omega = (double)solid_angle(r, m->w, m->h), p = mcs_env_pdf(e, w), want = (double)prob[r * m->w + c];
+            const double omega = (double)solid_angle(r, m->w, m->h);
+            const double p = mcs_env_pdf(e, w);
+            const double want = (double)prob[r * m->w + c];
             const mcs_texel at = mcs_env_texel(e, w);
             mass += p * omega;
             CHECK(at.col == c && at.row == r, "texel of the centre of (%u, %u): (%u, %u)", c, r, at.col, at.row);
@@ -151,9 +172,6 @@ static void check_density(const map *m, const mcs_env *e) {
 static void check_sample(const map *m, const mcs_env *e, float u1, float u2) {
     const mcs_texel s = mcs_env_sample(e, u1, u2);
     const double len = sqrt((double)s.w.x * s.w.x + (double)s.w.y * s.w.y + (double)s.w.z * s.w.z);
-    mcs_texel at;
-    double c, r, off;
-    mcs_vec2 back;
     const int inside = s.col < m->w && s.row < m->h;
     CHECK(inside, "u = %a, %a: texel (%u, %u)", (double)u1, (double)u2, s.col, s.row);
     if (!inside) return;
@@ -162,21 +180,24 @@ static void check_sample(const map *m, const mcs_env *e, float u1, float u2) {
     CHECK(s.pdf > 0 && s.pdf <= FLT_MAX, "u = %a, %a: pdf %g", (double)u1, (double)u2, (double)s.pdf);
     CHECK(mcs_env_pdf(e, s.w) == s.pdf, "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2, (double)mcs_env_pdf(e, s.w),
           (double)s.pdf);
-    at = mcs_env_texel(e, s.w);
+    mcs_texel at = mcs_env_texel(e, s.w);
     CHECK(at.pdf == s.pdf && at.col == s.col && at.row == s.row, "u = %a, %a: texel (%u, %u), returned (%u, %u)", (double)u1,
           (double)u2, at.col, at.row, s.col, s.row);
+    double c, r;
     texel_of(m->w, m->h, s.w, &c, &r);
-    off = fabs(c - s.col - 0.5);
+    double off = fabs(c - s.col - 0.5);
     if (off > m->w / 2.0) off = m->w - off;
     CHECK(off <= 0.5 + 4 * eps * m->w, "u = %a, %a: column %.9g, returned %u", (double)u1, (double)u2, c, s.col);
     CHECK(fabs(r - s.row - 0.5) <= 0.5 + 4 * eps * m->h, "u = %a, %a: row %.9g, returned %u", (double)u1, (double)u2, r, s.row);
-    back = mcs_env_invert(e, s.w);
+    mcs_vec2 back = mcs_env_invert(e, s.w);
     {
         /* In parts of a cell, the place is off by the margin of 4 eps cells times their number that samples keep from borders, by
          * the rounding of the azimuth (2 eps of a turn) or of z (2 eps), and once more that much in the inverse. */
-        const double prow = (double)row_prob[s.row], pcol = (double)(prob[s.row * m->w + s.col] / row_prob[s.row]);
+        const double prow = (double)row_prob[s.row];
+        const double pcol = (double)(prob[s.row * m->w + s.col] / row_prob[s.row]);
         const double dz = (double)solid_angle(s.row, m->w, m->h) * m->w / (2 * pi);
-        const double d1 = pcol * m->w * 8 * eps, d2 = prow * (m->h * 4 + 4 / dz) * eps;
+        const double d1 = pcol * m->w * 8 * eps;
+        const double d2 = prow * (m->h * 4 + 4 / dz) * eps;
         const int pole = s.w.x == 0 && s.w.y == 0; /* no azimuth there */
         CHECK(back.x >= 0 && back.x < 1 &&
                   (pole || fabs((double)back.x - u1) <= (d1 < pcol ? d1 : pcol) + 2 * quantum * m->w + 2 * eps),
@@ -193,10 +214,9 @@ enum { CORNERS = (int)(sizeof corner / sizeof *corner) };
 static void check_samples(const map *m, const mcs_env *e) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 41);
     const int draws = scaled(m->draws);
-    int i, j;
-    for (i = 0; i < CORNERS; i++)
-        for (j = 0; j < CORNERS; j++) check_sample(m, e, corner[i], corner[j]);
-    for (i = 0; i < draws; i++) {
+    for (int i = 0; i < CORNERS; i++)
+        for (int j = 0; j < CORNERS; j++) check_sample(m, e, corner[i], corner[j]);
+    for (int i = 0; i < draws; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         check_sample(m, e, u1, mcs_pcg32_float(&rng));
     }
@@ -209,21 +229,25 @@ static void check_monotone(const map *m, const mcs_env *e) {
     uint32_t last = 0;
     float z = 2;
     double turn = -1;
-    int i, j, falls = 0;
-    for (i = 0; i < STEPS; i++) {
+    int falls = 0;
+    for (int i = 0; i < STEPS; i++) {
         const mcs_texel s = mcs_env_sample(e, mcs_pcg32_float(&rng), ((float)i + 0.5f) / STEPS);
         falls += !(s.row >= last) || !(s.w.z <= z);
-        last = s.row, z = s.w.z;
+        last = s.row;
+        z = s.w.z;
     }
     CHECK(falls == 0, "row falls or z grows %d times with u2", falls);
-    for (j = 0; j < 3; j++) {
-        falls = 0, last = 0, turn = -1;
-        for (i = 0; i < STEPS; i++) {
+    for (int j = 0; j < 3; j++) {
+        falls = 0;
+        last = 0;
+        turn = -1;
+        for (int i = 0; i < STEPS; i++) {
             const mcs_texel s = mcs_env_sample(e, ((float)i + 0.5f) / STEPS, (float)(j + 1) * 0.2500001f);
             double c, r;
             texel_of(m->w, m->h, s.w, &c, &r);
             falls += !(s.col >= last) || !(c >= turn - 4 * eps * m->w);
-            last = s.col, turn = c;
+            last = s.col;
+            turn = c;
         }
         CHECK(falls == 0, "column or azimuth falls %d times with u1, u2 = %g", falls, (j + 1) * 0.25);
     }
@@ -233,14 +257,12 @@ static void check_monotone(const map *m, const mcs_env *e) {
 static void check_estimate(const map *m, const mcs_env *e) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 47);
     const int draws = scaled(20000);
-    int i;
-    for (i = 0; i < draws; i++) {
+    for (int i = 0; i < draws; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         const mcs_texel s = mcs_env_sample(e, u1, mcs_pcg32_float(&rng));
-        double ratio, tol;
         if (s.col >= m->w || s.row >= m->h) continue;
-        ratio = pixels[s.row * m->w + s.col] / (double)s.pdf / e->total;
-        tol = 4 * eps + slack(m, s.col, s.row);
+        const double ratio = pixels[s.row * m->w + s.col] / (double)s.pdf / e->total;
+        const double tol = 4 * eps + slack(m, s.col, s.row);
         CHECK(fabs(ratio - 1) <= tol, "texel (%u, %u): L / pdf is 1 + %g of the total", s.col, s.row, ratio - 1);
     }
 }
@@ -254,29 +276,29 @@ static void test_whole_map(void) {
     const int draws = scaled(10000000);
     const size_t texels = (size_t)m->w * m->h;
     arena a = build(m);
-    double *observed = (double *)calloc(2 * texels, sizeof *observed), *expected = observed ? observed + texels : NULL, cuts[129],
-           p;
+    double *observed = (double *)calloc(2 * texels, sizeof *observed);
+    double *expected = observed ? observed + texels : NULL;
     static float u1[BATCH], u2[BATCH], x[BATCH], y[BATCH], z[BATCH], pdf[BATCH];
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 53);
-    size_t i;
-    int done, stray = 0;
+    int stray = 0;
     if (!observed) {
         CHECK(0, "out of memory");
         arena_free(&a);
         return;
     }
-    for (i = 0; i < texels; i++) expected[i] = (double)prob[i] * draws;
-    for (i = 0; i <= m->h; i++) cuts[i] = cos(pi * (double)i / m->h);
-    for (done = 0; done < draws; done += BATCH) {
+    for (size_t i = 0; i < texels; i++) expected[i] = (double)prob[i] * draws;
+    double cuts[129];
+    for (size_t i = 0; i <= m->h; i++) cuts[i] = cos(pi * (double)i / m->h);
+    for (int done = 0; done < draws; done += BATCH) {
         const size_t n = draws - done < BATCH ? (size_t)(draws - done) : BATCH;
         mcs_pcg32_fill_n(&rng, n, u1);
         mcs_pcg32_fill_n(&rng, n, u2);
         mcs_env_sample_n(env_in(&a), n, u1, u2, x, y, z, pdf, NULL, NULL);
-        for (i = 0; i < n; i++) {
+        for (size_t i = 0; i < n; i++) {
             double turn = atan2(y[i], x[i]) / (2 * pi);
-            uint32_t row = (uint32_t)(acos(z[i]) / pi * m->h), col;
+            uint32_t row = (uint32_t)(acos(z[i]) / pi * m->h);
             if (turn < 0) turn += 1;
-            col = (uint32_t)(turn * m->w);
+            const uint32_t col = (uint32_t)(turn * m->w);
             if (row > m->h - 1) row = m->h - 1;
             while (row > 0 && z[i] > cuts[row]) row--;
             while (row < m->h - 1 && z[i] <= cuts[row + 1]) row++;
@@ -284,7 +306,7 @@ static void test_whole_map(void) {
             else stray++;
         }
     }
-    p = chi2_test(observed, expected, texels, NULL, NULL);
+    const double p = chi2_test(observed, expected, texels, NULL, NULL);
     CHECK(p >= level, "chi-square over %zu texels: p = %g", texels, p);
     CHECK(stray == 0, "%d draws without a texel", stray);
     free(observed);
@@ -299,21 +321,23 @@ static void test_inside_texels(void) {
     const int draws = scaled(2000000);
     arena a = build(m);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 59);
-    int i;
-    double p;
-    for (i = 0; i < CELLS; i++) observed[i] = 0, expected[i] = (double)prob[i / 64] * draws / 64;
-    for (i = 0; i < draws; i++) {
+    for (int i = 0; i < CELLS; i++) {
+        observed[i] = 0;
+        expected[i] = (double)prob[i / 64] * draws / 64;
+    }
+    for (int i = 0; i < draws; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         const mcs_texel s = mcs_env_sample(env_in(&a), u1, mcs_pcg32_float(&rng));
-        double turn = atan2(s.w.y, s.w.x) / (2 * pi), down = (1 - s.w.z) * 8; /* two rows of eight: cos(pi/2) is 0 */
-        int c, r;
+        double turn = atan2(s.w.y, s.w.x) / (2 * pi);
+        const double down = (1 - s.w.z) * 8; /* two rows of eight: cos(pi/2) is 0 */
         if (turn < 0) turn += 1;
-        c = (int)(turn * 32), r = (int)down;
+        int c = (int)(turn * 32);
+        int r = (int)down;
         if (c > 31) c = 31;
         if (r > 15) r = 15;
         if (c >= 0 && r >= 0) observed[((r / 8) * 4 + c / 8) * 64 + (r % 8) * 8 + c % 8] += 1;
     }
-    p = chi2_test(observed, expected, CELLS, NULL, NULL);
+    const double p = chi2_test(observed, expected, CELLS, NULL, NULL);
     CHECK(p >= level, "chi-square: p = %g", p);
     arena_free(&a);
 }
@@ -326,10 +350,11 @@ static void test_caps(void) {
     const double cap = pow(sin(pi / 2 / m->h), 2);
     arena a = build(m);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 61);
-    int i;
-    double p;
-    for (i = 0; i < 64; i++) observed[i] = 0, expected[i] = draws / 64.0;
-    for (i = 0; i < draws; i++) {
+    for (int i = 0; i < 64; i++) {
+        observed[i] = 0;
+        expected[i] = draws / 64.0;
+    }
+    for (int i = 0; i < draws; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         const mcs_texel s = mcs_env_sample(env_in(&a), u1, mcs_pcg32_float(&rng));
         const double half = atan2(hypot((double)s.w.x, (double)s.w.y), fabs((double)s.w.z)) / 2;
@@ -337,7 +362,7 @@ static void test_caps(void) {
         if (cell > 31) cell = 31;
         observed[(s.w.z < 0) * 32 + cell] += 1;
     }
-    p = chi2_test(observed, expected, 64, NULL, NULL);
+    const double p = chi2_test(observed, expected, 64, NULL, NULL);
     CHECK(p >= level, "chi-square: p = %g", p);
     arena_free(&a);
 }
@@ -349,32 +374,32 @@ static void test_channels(void) {
     enum { W = 37, H = 19, STRIDE = W * 4 + 5 };
     static float in[H * STRIDE];
     static const map m = {"channels", W, H, v_random, 0};
-    uint32_t channels;
-    for (channels = 1; channels <= 4; channels++) {
-        int padded;
+    for (uint32_t channels = 1; channels <= 4; channels++) {
         if (channels == 2) continue;
-        for (padded = 0; padded < 2; padded++) {
+        for (int padded = 0; padded < 2; padded++) {
             const size_t stride = padded ? STRIDE : W * channels;
             arena a = arena_make(mcs_env_bytes(W, H));
-            uint32_t r, c;
-            int rc;
             ld sum = 0;
-            for (r = 0; r < H * STRIDE; r++) in[r] = NAN; /* padding and further channels must not be read as light */
-            for (r = 0; r < H; r++)
-                for (c = 0; c < W; c++) {
+            for (uint32_t r = 0; r < H * STRIDE; r++) in[r] = NAN; /* padding and further channels must not be read as light */
+            for (uint32_t r = 0; r < H; r++)
+                for (uint32_t c = 0; c < W; c++) {
                     float *px = in + r * stride + c * channels;
                     const uint32_t i = (r * W + c) * 3;
-                    ld lum;
                     px[0] = hash01(i);
-                    if (channels > 2) px[1] = hash01(i + 1), px[2] = hash01(i + 2);
+                    if (channels > 2) {
+                        px[1] = hash01(i + 1);
+                        px[2] = hash01(i + 2);
+                    }
                     if (channels > 3) px[3] = 1e6f * hash01(i);
-                    lum = channels == 1 ? px[0] : 0.2126L * px[0] + 0.7152L * px[1] + 0.0722L * px[2];
+                    const ld lum = channels == 1 ? px[0] : 0.2126L * px[0] + 0.7152L * px[1] + 0.0722L * px[2];
                     pixels[r * W + c] = (float)lum;
                     sum += prob[r * W + c] = lum * solid_angle(r, W, H);
                 }
-            for (r = 0; r < H; r++)
-                for (c = 0, row_prob[r] = 0; c < W; c++) row_prob[r] += prob[r * W + c] /= sum;
-            rc = build_from(env_in(&a), a.bytes, in, W, H, channels, padded ? STRIDE : 0);
+            for (uint32_t r = 0; r < H; r++) {
+                row_prob[r] = 0;
+                for (uint32_t c = 0; c < W; c++) row_prob[r] += prob[r * W + c] /= sum;
+            }
+            const int rc = build_from(env_in(&a), a.bytes, in, W, H, channels, padded ? STRIDE : 0);
             CHECK(rc == MCS_OK && env_in(&a)->bad == 0, "%u channels, stride %zu: returns %d, %llu bad", channels, stride, rc,
                   (unsigned long long)env_in(&a)->bad);
             CHECK(fabs((double)(env_in(&a)->total / sum - 1)) <= 4 * eps, "%u channels, stride %zu: total %g, not %g", channels,
@@ -395,35 +420,34 @@ static void test_strides(void) {
     } way[] = {{1, 0, 0}, {1, 1, 0},  {1, 1, 3}, {1, 4, 0}, {1, 4, 5}, {1, 3, -1}, {1, 0, -1}, {1, 1, -4},
                {3, 0, 0}, {3, 0, -1}, {3, 3, 7}, {3, 4, 0}, {3, 9, 2}, {3, 5, -3}, {4, 0, -1}, {4, 6, 1}};
     static float plain[W * H * 3];
-    size_t k;
-    for (k = 0; k < sizeof way / sizeof *way; k++) {
+    for (size_t k = 0; k < sizeof way / sizeof *way; k++) {
         const uint32_t used = way[k].channels < 3 ? 1 : 3;
         const ptrdiff_t step = way[k].pixel ? way[k].pixel : (ptrdiff_t)way[k].channels;
-        const ptrdiff_t apart = way[k].row < 0 ? -way[k].row - 1 : way[k].row, row = (W + apart) * step;
+        const ptrdiff_t apart = way[k].row < 0 ? -way[k].row - 1 : way[k].row;
+        const ptrdiff_t row = (W + apart) * step;
         const size_t floats = (size_t)((H - 1) * row + (W - 1) * step) + way[k].channels;
-        float *in = (float *)malloc(floats * sizeof *in), *top = in;
-        arena a = arena_make(mcs_env_bytes(W, H)), b = arena_make(mcs_env_bytes(W, H));
-        mcs_image image;
-        uint32_t r, c, j;
-        size_t i;
-        int rc;
+        float *in = (float *)malloc(floats * sizeof *in);
+        float *top = in;
+        arena a = arena_make(mcs_env_bytes(W, H));
+        arena b = arena_make(mcs_env_bytes(W, H));
         if (!in) {
             CHECK(0, "out of memory");
             return;
         }
-        for (i = 0; i < floats; i++) in[i] = NAN;
+        for (size_t i = 0; i < floats; i++) in[i] = NAN;
         if (way[k].row < 0) top += (H - 1) * row;
-        for (r = 0; r < H; r++)
-            for (c = 0; c < W; c++)
-                for (j = 0; j < used; j++) {
+        for (uint32_t r = 0; r < H; r++)
+            for (uint32_t c = 0; c < W; c++)
+                for (uint32_t j = 0; j < used; j++) {
                     const ptrdiff_t down = way[k].row < 0 ? -(ptrdiff_t)r : (ptrdiff_t)r;
                     plain[(r * W + c) * used + j] = top[down * row + (ptrdiff_t)c * step + (ptrdiff_t)j] =
                         hash01((r * W + c) * 3 + j);
                 }
-        rc = build_from(env_in(&a), a.bytes, plain, W, H, used, 0);
+        int rc = build_from(env_in(&a), a.bytes, plain, W, H, used, 0);
         CHECK(rc == MCS_OK, "packed: returns %d", rc);
-        image = mcs_image_make(top, W, H, way[k].channels);
-        image.pixel_stride = way[k].pixel, image.row_stride = way[k].row < 0 ? -row : way[k].row || k % 2 ? row : 0;
+        mcs_image image = mcs_image_make(top, W, H, way[k].channels);
+        image.pixel_stride = way[k].pixel;
+        image.row_stride = way[k].row < 0 ? -row : way[k].row || k % 2 ? row : 0;
         rc = mcs_env_build(env_in(&b), b.bytes, &image);
         CHECK(rc == MCS_OK && arena_intact(&b) && memcmp(a.at, b.at, a.bytes) == 0,
               "%u channels, pixels %td apart, rows %td: returns %d, %u bad, or another table", way[k].channels, image.pixel_stride,
@@ -436,7 +460,8 @@ static void test_strides(void) {
 
 static void test_refused_strides(void) {
     enum { W = 20, H = 10, C = 3 };
-    const ptrdiff_t most = PTRDIFF_MAX, least = -PTRDIFF_MAX - 1;
+    const ptrdiff_t most = PTRDIFF_MAX;
+    const ptrdiff_t least = -PTRDIFF_MAX - 1;
     const struct {
         ptrdiff_t pixel, row;
         mcs_status status;
@@ -466,17 +491,18 @@ static void test_refused_strides(void) {
                {0, -(most / 4 / H) - 1, MCS_ERR_SIZE}};
     static float in[2 * H * (W * 5)];
     const size_t need = mcs_env_bytes(W, H);
-    size_t k, i;
-    for (i = 0; i < sizeof in / sizeof *in; i++) in[i] = hash01((uint32_t)i);
-    for (k = 0; k < sizeof way / sizeof *way; k++) {
+    for (size_t i = 0; i < sizeof in / sizeof *in; i++) in[i] = hash01((uint32_t)i);
+    for (size_t k = 0; k < sizeof way / sizeof *way; k++) {
         arena a = arena_make(need);
         mcs_image image = mcs_image_make(in + sizeof in / sizeof *in / 2, W, H, C);
-        float mean;
+        image.pixel_stride = way[k].pixel;
+        image.row_stride = way[k].row;
         int rc[3];
-        image.pixel_stride = way[k].pixel, image.row_stride = way[k].row;
-        rc[0] = mcs_env_build(env_in(&a), need, &image), mean = mcs_env_mean(&image);
+        rc[0] = mcs_env_build(env_in(&a), need, &image);
+        const float mean = mcs_env_mean(&image);
         if (way[k].status) {
-            rc[1] = mcs_env_build_rows(env_in(&a), need, &image, 0, 1), rc[2] = mcs_env_finish(env_in(&a), need, &image);
+            rc[1] = mcs_env_build_rows(env_in(&a), need, &image, 0, 1);
+            rc[2] = mcs_env_finish(env_in(&a), need, &image);
             CHECK(rc[0] == way[k].status && rc[1] == way[k].status && rc[2] == way[k].status && mean == 0,
                   "pixels %td, rows %td apart: %d, %d, %d, mean %g", way[k].pixel, way[k].row, rc[0], rc[1], rc[2], (double)mean);
             CHECK(untouched(a.at, need), "pixels %td, rows %td apart: refused, yet written", way[k].pixel, way[k].row);
@@ -495,16 +521,18 @@ static void check_bad_pixels(uint32_t channels, int way, int mode) {
     enum { W = 24, H = 12 };
     const float bad[5] = {NAN, -1.0f, -INFINITY, -FLT_MAX, -FLT_MIN};
     static float in[W * H * 3], clean[W * H * 3];
-    arena a = arena_make(mcs_env_bytes(W, H)), b = arena_make(mcs_env_bytes(W, H));
-    mcs_image broken = mcs_image_make(in, W, H, channels), right = mcs_image_make(clean, W, H, channels);
+    arena a = arena_make(mcs_env_bytes(W, H));
+    arena b = arena_make(mcs_env_bytes(W, H));
+    mcs_image broken = mcs_image_make(in, W, H, channels);
+    mcs_image right = mcs_image_make(clean, W, H, channels);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 67);
-    uint32_t i, j, count = 0;
-    int rc;
-    for (i = 0; i < W * H; i++) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < W * H; i++) {
         int some = 0;
-        for (j = 0; j < channels; j++) {
+        for (uint32_t j = 0; j < channels; j++) {
             const uint32_t k = i * channels + j;
-            const int here = i % 3 == 1 && (way == 0 || channels == 1 || (i / 3 + j) % 2), sun = way == 2 && here && i % 5 == 0;
+            const int here = i % 3 == 1 && (way == 0 || channels == 1 || (i / 3 + j) % 2);
+            const int sun = way == 2 && here && i % 5 == 0;
             in[k] = sun ? INFINITY : here ? bad[i / 3 % 5] : 0.1f + hash01(k);
             clean[k] = sun ? FLT_MAX : here ? 0.0f : 0.1f + hash01(k);
             some |= here;
@@ -512,30 +540,34 @@ static void check_bad_pixels(uint32_t channels, int way, int mode) {
         count += (uint32_t)some;
     }
     broken.bilinear = right.bilinear = mode == 1;
-    if (mode == 2) broken.floor = mcs_env_mean(&broken), right.floor = mcs_env_mean(&right);
+    if (mode == 2) {
+        broken.floor = mcs_env_mean(&broken);
+        right.floor = mcs_env_mean(&right);
+    }
     CHECK(mcs_env_mean(&broken) == mcs_env_mean(&right) && mcs_env_mean(&right) <= FLT_MAX, "mean %g, not %g",
           (double)mcs_env_mean(&broken), (double)mcs_env_mean(&right));
-    rc = mcs_env_build(env_in(&a), a.bytes, &broken);
+    int rc = mcs_env_build(env_in(&a), a.bytes, &broken);
     CHECK(rc == MCS_OK && env_in(&a)->bad == count && arena_intact(&a), "%u channels: returns %d, %llu bad, not %u", channels, rc,
           (unsigned long long)env_in(&a)->bad, count);
     rc = mcs_env_build(env_in(&b), b.bytes, &right);
     CHECK(rc == MCS_OK && env_in(&b)->bad == 0 && env_in(&a)->total == env_in(&b)->total && env_in(&b)->total <= DBL_MAX,
           "%u channels: total %g, not %g", channels, env_in(&a)->total, env_in(&b)->total);
     CHECK(mcs_env_check(env_in(&a), a.bytes) == MCS_OK, "no table");
-    for (i = 0; i < 20000; i++) {
-        const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
-        const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2), t = mcs_env_sample(env_in(&b), u1, u2);
+    for (uint32_t i = 0; i < 20000; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const float u2 = mcs_pcg32_float(&rng);
+        const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2);
+        const mcs_texel t = mcs_env_sample(env_in(&b), u1, u2);
         CHECK(s.w.x == t.w.x && s.w.y == t.w.y && s.w.z == t.w.z && s.pdf == t.pdf && s.col == t.col && s.row == t.row,
               "u = %a, %a: not as with clean pixels", (double)u1, (double)u2);
     }
-    arena_free(&a), arena_free(&b);
+    arena_free(&a);
+    arena_free(&b);
 }
 static void test_bad_pixels(void) {
-    uint32_t channels;
-    int way, mode;
-    for (channels = 1; channels <= 3; channels += 2)
-        for (way = 0; way < 3; way++)
-            for (mode = 0; mode < 3; mode++) check_bad_pixels(channels, way, mode);
+    for (uint32_t channels = 1; channels <= 3; channels += 2)
+        for (int way = 0; way < 3; way++)
+            for (int mode = 0; mode < 3; mode++) check_bad_pixels(channels, way, mode);
 }
 
 /* Texels of one row, so that probability is luminance: what bad channels leave of it, by hand. */
@@ -549,30 +581,32 @@ static void test_bad_channels(void) {
     arena a = arena_make(mcs_env_bytes(W, 1));
     mcs_image image = mcs_image_make(&in[0][0], W, 1, 3);
     double sum = 0;
-    uint32_t i;
-    int mode;
-    for (i = 0; i < W; i++) sum += want[i];
+    for (uint32_t i = 0; i < W; i++) sum += want[i];
     CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == 7, "%u bad", env_in(&a)->bad);
     CHECK(fabs(env_in(&a)->total / (sum * 4 * pi / W) - 1) <= 4 * eps, "total %g, not %g", env_in(&a)->total, sum * 4 * pi / W);
     CHECK(fabs(mcs_env_mean(&image) / (sum / W) - 1) <= 4 * eps, "mean %g, not %g", (double)mcs_env_mean(&image), sum / W);
-    for (i = 0; i < W; i++) {
-        const double p = mcs_env_pdf(env_in(&a), point(W, 1, i, 0, 0.5, 0.5)) * 4 * pi / W, due = want[i] / sum;
+    for (uint32_t i = 0; i < W; i++) {
+        const double p = mcs_env_pdf(env_in(&a), point(W, 1, i, 0, 0.5, 0.5)) * 4 * pi / W;
+        const double due = want[i] / sum;
         CHECK((p > 0) == (due > 0) && fabs(p - due) <= 5 * eps * due + (2 + W * due) * quantum, "texel %u: probability %g, not %g",
               i, p, due);
     }
     /* an overflowed half is a sun; nothing overflows with it */
     image = mcs_image_make(&suns[0][0], 4, 1, 3);
-    for (i = 0, sum = 0; i < 4; i++) sum += sun_want[i];
-    for (mode = 0; mode < 2; mode++) {
+    sum = 0;
+    for (uint32_t i = 0; i < 4; i++) sum += sun_want[i];
+    for (int mode = 0; mode < 2; mode++) {
         const double whole = sum * FLT_MAX * pi;
         image.bilinear = mode;
         CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == 2, "suns: %u bad", env_in(&a)->bad);
         CHECK(fabs(env_in(&a)->total / whole - 1) <= 5 * eps, "suns: total %g, not %g", env_in(&a)->total, whole);
         CHECK(fabs(mcs_env_mean(&image) / (whole / (4 * pi)) - 1) <= 5 * eps, "suns: mean %g", (double)mcs_env_mean(&image));
-        for (i = 0; i < 4; i++) {
-            const double p = mcs_env_pdf(env_in(&a), point(4, 1, i, 0, 0.5, 0.5)) * pi, before = sun_want[(i + 3) % 4],
-                         here = sun_want[i], after = sun_want[(i + 1) % 4],
-                         due = (mode ? 0.25 * before + 0.5 * here + 0.25 * after : here) / sum;
+        for (uint32_t i = 0; i < 4; i++) {
+            const double p = mcs_env_pdf(env_in(&a), point(4, 1, i, 0, 0.5, 0.5)) * pi;
+            const double before = sun_want[(i + 3) % 4];
+            const double here = sun_want[i];
+            const double after = sun_want[(i + 1) % 4];
+            const double due = (mode ? 0.25 * before + 0.5 * here + 0.25 * after : here) / sum;
             CHECK(p > 0 && fabs(p - due) <= 8 * eps * due + (2 + 4 * due) * quantum, "suns, texel %u: probability %g, not %g", i, p,
                   due);
         }
@@ -583,14 +617,12 @@ static void test_bad_channels(void) {
 static void test_all_infinite(void) {
     enum { W = 37, H = 19 };
     static float in[W * H * 3];
-    int k, mode;
-    for (k = 0; k < 4; k++)
-        for (mode = 0; mode < 2; mode++) {
+    for (int k = 0; k < 4; k++)
+        for (int mode = 0; mode < 2; mode++) {
             const float fill = k & 1 ? INFINITY : FLT_MAX;
             arena a = arena_make(mcs_env_bytes(W, H));
             mcs_image image = mcs_image_make(in, W, H, k & 2 ? 3 : 1);
-            int i;
-            for (i = 0; i < W * H * 3; i++) in[i] = fill;
+            for (int i = 0; i < W * H * 3; i++) in[i] = fill;
             image.bilinear = mode;
             CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == (k & 1 ? W * H : 0), "%u bad",
                   env_in(&a)->bad);
@@ -608,19 +640,18 @@ static void test_black(void) {
     static const map m = {"black", W, H, v_one, 0};
     static float in[W * H];
     const float fill[3] = {0.0f, -0.0f, NAN};
-    int k;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         arena a = arena_make(mcs_env_bytes(W, H));
         mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 71);
-        int i, rc;
-        for (i = 0; i < W * H; i++) in[i] = fill[k];
+        for (int i = 0; i < W * H; i++) in[i] = fill[k];
         load(&m);
-        rc = build_from(env_in(&a), a.bytes, in, W, H, 1, 0);
+        const int rc = build_from(env_in(&a), a.bytes, in, W, H, 1, 0);
         CHECK(rc == MCS_UNIFORM && arena_intact(&a), "all %g: returns %d", (double)fill[k], rc);
         CHECK(env_in(&a)->total == 0 && env_in(&a)->bad == (k == 2 ? W * H : 0), "all %g: total %g, %llu bad", (double)fill[k],
               env_in(&a)->total, (unsigned long long)env_in(&a)->bad);
-        for (i = 0; i < 20000; i++) {
-            const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+        for (int i = 0; i < 20000; i++) {
+            const float u1 = mcs_pcg32_float(&rng);
+            const float u2 = mcs_pcg32_float(&rng);
             const float pdf = mcs_env_sample(env_in(&a), u1, u2).pdf;
             CHECK(fabs(pdf * 4 * pi - 1) <= 4 * eps + 2 * W * H * quantum, "u = %a, %a: density %g", (double)u1, (double)u2,
                   (double)pdf);
@@ -631,11 +662,12 @@ static void test_black(void) {
 }
 
 static void test_refused(void) {
-    const uint32_t w = 20, h = 10, big = 0xffffffffu;
+    const uint32_t w = 20;
+    const uint32_t h = 10;
+    const uint32_t big = 0xffffffffu;
     const size_t need = mcs_env_bytes(w, h);
     arena a = arena_make(need + 8);
     unsigned char *at = a.at;
-    size_t i;
     load(&maps[15]);
     CHECK(build_from(NULL, need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "no memory");
     CHECK(build_from(env_in(&a), need, NULL, w, h, 1, 0) == MCS_ERR_ARG, "no pixels");
@@ -645,7 +677,7 @@ static void test_refused(void) {
     CHECK(build_from(env_in(&a), need, pixels, w, h, 2, 0) == MCS_ERR_ARG, "two channels");
     CHECK(build_from(env_in(&a), need, pixels, w, h, 1, w - 1) == MCS_ERR_SIZE, "stride below a row");
     CHECK(build_from((mcs_env *)(void *)(at + 2), need, pixels, w, h, 1, 0) == MCS_ERR_ARG, "misaligned memory");
-    for (i = 0; i < need; i++) {
+    for (size_t i = 0; i < need; i++) {
         const int rc = build_from(env_in(&a), i, pixels, w, h, 1, 0);
         CHECK(rc == MCS_ERR_MEMORY, "%zu of %zu bytes: %d", i, need, rc);
     }
@@ -664,30 +696,27 @@ static void test_bad_sampler_input(void) {
     const size_t n = sizeof odd / sizeof *odd;
     const map *m = &maps[4];
     arena a = build(m);
-    size_t i, j, k;
-    for (i = 0; i < n; i++)
-        for (k = 0; k < 3; k++) {
-            const float u1 = k == 1 ? 0.3f : odd[i], u2 = k == 0 ? 0.3f : odd[i];
+    for (size_t i = 0; i < n; i++)
+        for (size_t k = 0; k < 3; k++) {
+            const float u1 = k == 1 ? 0.3f : odd[i];
+            const float u2 = k == 0 ? 0.3f : odd[i];
             const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2);
             CHECK(s.pdf == 0 && fabsf(s.w.x) <= 2 && fabsf(s.w.y) <= 2 && fabsf(s.w.z) <= 2 && s.col < m->w && s.row < m->h,
                   "u = %g, %g: pdf %g at (%g, %g, %g)", (double)u1, (double)u2, (double)s.pdf, (double)s.w.x, (double)s.w.y,
                   (double)s.w.z);
         }
-    for (i = 4; i < n; i++)
-        for (j = 0; j < 3; j++) {
+    for (size_t i = 4; i < n; i++)
+        for (size_t j = 0; j < 3; j++) {
             mcs_vec3 w = {0.5f, 0.5f, 0.5f};
-            mcs_vec2 u;
-            mcs_texel at;
-            float pdf;
             if (i == 4) w.x = w.y = w.z = 0;
             else if (j == 0) w.x = odd[i];
             else if (j == 1) w.y = odd[i];
             else w.z = odd[i];
-            pdf = mcs_env_pdf(env_in(&a), w);
-            u = mcs_env_invert(env_in(&a), w);
+            const float pdf = mcs_env_pdf(env_in(&a), w);
+            mcs_vec2 u = mcs_env_invert(env_in(&a), w);
             CHECK(pdf == 0, "w = (%g, %g, %g): pdf %g", (double)w.x, (double)w.y, (double)w.z, (double)pdf);
             CHECK(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1, "w = (%g, %g, %g): invert", (double)w.x, (double)w.y, (double)w.z);
-            at = mcs_env_texel(env_in(&a), w);
+            mcs_texel at = mcs_env_texel(env_in(&a), w);
             CHECK(at.pdf == 0 && at.col < m->w && at.row < m->h && at.w.z == 1, "w = (%g, %g, %g): texel (%u, %u)", (double)w.x,
                   (double)w.y, (double)w.z, at.col, at.row);
         }
@@ -699,8 +728,7 @@ static void test_axes(void) {
     const float v[] = {0.0f, -0.0f, 1.0f, -1.0f};
     const map *m = &maps[4];
     arena a = build(m);
-    int i;
-    for (i = 0; i < 64; i++) {
+    for (int i = 0; i < 64; i++) {
         const mcs_vec3 w = {v[i & 3], v[i >> 2 & 3], v[i >> 4]};
         const mcs_texel at = mcs_env_texel(env_in(&a), w);
         const float pdf = mcs_env_pdf(env_in(&a), w);
@@ -723,38 +751,43 @@ static void test_frame(void) {
     const map *m = &maps[SKY];
     const int draws = scaled(200000);
     const mcs_vec3 up[4] = {{0, 0, -1}, {1, 0, 0}, {0.6f, 0, 0.8f}, {-0.48f, 0.6f, -0.64f}};
-    arena a = build(m), b = build(m);
+    arena a = build(m);
+    arena b = build(m);
     mcs_env *turned = env_in(&b);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 83);
-    int k, i;
-    for (k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; k++) {
         int near = 0;
-        uint32_t r, c;
         double mass = 0;
         turned->frame = mcs_frame_make(up[k]);
         if (k == 3) { /* and turned about its axis, and mirrored */
             const mcs_vec3 s = turned->frame.s;
-            turned->frame.s = turned->frame.t, turned->frame.t = s;
+            turned->frame.s = turned->frame.t;
+            turned->frame.t = s;
         }
         CHECK(mcs_env_check(turned, b.bytes) == MCS_OK, "axis %d: not a table any more", k);
-        for (i = 0; i < draws; i++) {
-            const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
-            const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2), t = mcs_env_sample(turned, u1, u2);
+        for (int i = 0; i < draws; i++) {
+            const float u1 = mcs_pcg32_float(&rng);
+            const float u2 = mcs_pcg32_float(&rng);
+            const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2);
+            const mcs_texel t = mcs_env_sample(turned, u1, u2);
             const mcs_frame *f = &turned->frame;
-            const double x = (double)f->s.x * s.w.x + (double)f->t.x * s.w.y + (double)f->n.x * s.w.z,
-                         y = (double)f->s.y * s.w.x + (double)f->t.y * s.w.y + (double)f->n.y * s.w.z,
-                         z = (double)f->s.z * s.w.x + (double)f->t.z * s.w.y + (double)f->n.z * s.w.z;
-            double col, row, margin_col, margin_row;
-            mcs_texel at;
-            mcs_vec3 local;
+            const double x = (double)f->s.x * s.w.x + (double)f->t.x * s.w.y + (double)f->n.x * s.w.z;
+            const double y = (double)f->s.y * s.w.x + (double)f->t.y * s.w.y + (double)f->n.y * s.w.z;
+            const double z = (double)f->s.z * s.w.x + (double)f->t.z * s.w.y + (double)f->n.z * s.w.z;
             CHECK(t.col == s.col && t.row == s.row && t.pdf == s.pdf, "axis %d: another texel or density", k);
             CHECK(fabs(t.w.x - x) <= 4 * eps && fabs(t.w.y - y) <= 4 * eps && fabs(t.w.z - z) <= 4 * eps,
                   "axis %d: (%g, %g, %g) turned the wrong way", k, (double)t.w.x, (double)t.w.y, (double)t.w.z);
-            local.x = (float)dot(f->s, t.w), local.y = (float)dot(f->t, t.w), local.z = (float)dot(f->n, t.w);
+            mcs_vec3 local;
+            local.x = (float)dot(f->s, t.w);
+            local.y = (float)dot(f->t, t.w);
+            local.z = (float)dot(f->n, t.w);
+            double col, row;
             texel_of(m->w, m->h, local, &col, &row);
-            margin_row = 8 * eps * m->h, margin_col = 8 * eps * m->w / hypot((double)local.x, (double)local.y);
-            col -= floor(col), row -= floor(row);
-            at = mcs_env_texel(turned, t.w);
+            const double margin_row = 8 * eps * m->h;
+            const double margin_col = 8 * eps * m->w / hypot((double)local.x, (double)local.y);
+            col -= floor(col);
+            row -= floor(row);
+            mcs_texel at = mcs_env_texel(turned, t.w);
             CHECK(mcs_env_pdf(turned, t.w) == at.pdf &&
                       at.pdf == mcs_env_pdf(env_in(&a), point(m->w, m->h, at.col, at.row, 0.5, 0.5)),
                   "axis %d: pdf %g is not the texel's", k, (double)at.pdf);
@@ -766,9 +799,10 @@ static void test_frame(void) {
         }
         /* at both borders of a column 8 eps w / sin(theta), 1.3 in the mean, at those of a row 8 eps h, twice as much allowed */
         CHECK(near <= draws * 64 * eps * m->w + 10, "axis %d: %d of %d draws found in a neighbour", k, near, draws);
-        for (r = 0; r < m->h; r++)
-            for (c = 0; c < m->w; c++) {
-                const mcs_vec3 p = point(m->w, m->h, c, r, 0.5, 0.5), w = mcs_to_world(&turned->frame, p);
+        for (uint32_t r = 0; r < m->h; r++)
+            for (uint32_t c = 0; c < m->w; c++) {
+                const mcs_vec3 p = point(m->w, m->h, c, r, 0.5, 0.5);
+                const mcs_vec3 w = mcs_to_world(&turned->frame, p);
                 float pdf = 0;
                 mcs_env_pdf_n(turned, 1, &w.x, &w.y, &w.z, &pdf);
                 CHECK(pdf == mcs_env_pdf(turned, w), "axis %d: pdf_n %g", k, (double)pdf);
@@ -786,13 +820,12 @@ static void check_texels(const mcs_env *e, size_t n, float *x, const float *y, c
     static uint32_t col[ROOM], row[ROOM];
     static float pdf[ROOM];
     const float kept = n ? x[n - 1] : 0;
-    size_t i, skip;
     if (n > ROOM) return;
     if (n) x[n - 1] = NAN;
-    for (skip = 0; skip < 8; skip++) {
+    for (size_t skip = 0; skip < 8; skip++) {
         int same = 1;
         mcs_env_texel_n(e, n, x, y, z, skip & 1 ? NULL : col, skip & 2 ? NULL : row, skip & 4 ? NULL : pdf);
-        for (i = 0; i < n; i++) {
+        for (size_t i = 0; i < n; i++) {
             const mcs_vec3 w = {x[i], y[i], z[i]};
             const mcs_texel t = mcs_env_texel(e, w);
             same &= (skip & 1 || col[i] == t.col) && (skip & 2 || row[i] == t.row) && (skip & 4 || pdf[i] == t.pdf);
@@ -811,40 +844,40 @@ static void test_batch(void) {
     const map *m = &maps[SKY];
     arena a = build(m);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 73);
-    size_t n, shift, i;
-    for (n = 0; n <= MAX + 1; n++) {
+    for (size_t n = 0; n <= MAX + 1; n++) {
         const size_t count = n <= MAX ? n : 2053;
-        for (shift = 0; shift < 4; shift++) {
-            uint32_t skip;
+        for (size_t shift = 0; shift < 4; shift++) {
             const size_t at = shift + 1;
             mcs_pcg32_fill_n(&rng, ROOM, u1);
             mcs_pcg32_fill_n(&rng, ROOM, u2);
-            for (skip = 0; skip < 16; skip += n <= MAX ? 1 : 15) {
+            for (uint32_t skip = 0; skip < 16; skip += n <= MAX ? 1 : 15) {
+                int same = 1;
+                int kept = 1;
                 float *p[4];
-                int k, same = 1, kept = 1;
-                for (k = 0; k < 4; k++) {
-                    for (i = 0; i < count + 8; i++) out[k][i] = -7.0f;
+                for (int k = 0; k < 4; k++) {
+                    for (size_t i = 0; i < count + 8; i++) out[k][i] = -7.0f;
                     p[k] = skip >> k & 1 ? NULL : out[k] + at;
                 }
-                for (i = 0; i < count + 8; i++) col[i] = row[i] = 77777;
+                for (size_t i = 0; i < count + 8; i++) col[i] = row[i] = 77777;
                 mcs_env_sample_n(env_in(&a), count, u1 + shift, u2 + at, p[0], p[1], p[2], p[3], skip & 4 ? NULL : col + at,
                                  skip & 8 ? NULL : row + at);
-                for (i = 0; i < count; i++) {
+                for (size_t i = 0; i < count; i++) {
                     const mcs_texel s = mcs_env_sample(env_in(&a), u1[shift + i], u2[at + i]);
                     const float want[4] = {s.w.x, s.w.y, s.w.z, s.pdf};
-                    for (k = 0; k < 4; k++) same &= !p[k] || p[k][i] == want[k];
+                    for (int k = 0; k < 4; k++) same &= !p[k] || p[k][i] == want[k];
                     same &= (skip & 4 || col[at + i] == s.col) && (skip & 8 || row[at + i] == s.row);
                 }
-                for (k = 0; k < 4; k++) kept &= out[k][at - 1] == -7.0f && out[k][at + count] == -7.0f;
-                for (i = 0; i < count + 8; i++)
+                for (int k = 0; k < 4; k++) kept &= out[k][at - 1] == -7.0f && out[k][at + count] == -7.0f;
+                for (size_t i = 0; i < count + 8; i++)
                     if (i < at || i >= at + count) kept &= col[i] == 77777 && row[i] == 77777;
                 CHECK(same, "n = %zu, shift %zu, without %x: differs from scalar", count, shift, skip);
                 CHECK(kept, "n = %zu, shift %zu, without %x: written outside", count, shift, skip);
                 if (skip == 0) {
                     static float pdf[ROOM];
-                    for (i = 0; i < count + 8; i++) pdf[i] = -7.0f;
+                    for (size_t i = 0; i < count + 8; i++) pdf[i] = -7.0f;
                     mcs_env_pdf_n(env_in(&a), count, out[0] + at, out[1] + at, out[2] + at, pdf + at);
-                    for (i = 0; i < count; i++) CHECK(pdf[at + i] == out[3][at + i], "n = %zu: pdf_n of sample %zu", count, i);
+                    for (size_t i = 0; i < count; i++)
+                        CHECK(pdf[at + i] == out[3][at + i], "n = %zu: pdf_n of sample %zu", count, i);
                     CHECK(pdf[at - 1] == -7.0f && pdf[at + count] == -7.0f, "n = %zu: pdf_n wrote outside", count);
                     mcs_env_pdf_n(env_in(&a), count, out[0] + at, out[1] + at, out[2] + at, NULL);
                     check_texels(env_in(&a), count, out[0] + at, out[1] + at, out[2] + at);
@@ -861,18 +894,20 @@ static void test_batch(void) {
 static void test_relocation(void) {
     enum { N = 20000 };
     static mcs_texel before[N];
-    arena a = build(&maps[SKY]), b = arena_make(a.bytes);
-    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 79), again = rng;
-    int i;
-    for (i = 0; i < N; i++) {
+    arena a = build(&maps[SKY]);
+    arena b = arena_make(a.bytes);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 79);
+    mcs_pcg32 again = rng;
+    for (int i = 0; i < N; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         before[i] = mcs_env_sample(env_in(&a), u1, mcs_pcg32_float(&rng));
     }
     memcpy(env_in(&b), env_in(&a), a.bytes);
     memset(env_in(&a), 0xff, a.bytes);
-    for (i = 0; i < N; i++) {
+    for (int i = 0; i < N; i++) {
         const float u1 = mcs_pcg32_float(&again);
-        const mcs_texel s = mcs_env_sample(env_in(&b), u1, mcs_pcg32_float(&again)), t = before[i];
+        const mcs_texel s = mcs_env_sample(env_in(&b), u1, mcs_pcg32_float(&again));
+        const mcs_texel t = before[i];
         CHECK(s.w.x == t.w.x && s.w.y == t.w.y && s.w.z == t.w.z && s.pdf == t.pdf && s.col == t.col && s.row == t.row,
               "sample %d differs", i);
         CHECK(mcs_env_pdf(env_in(&b), s.w) == s.pdf, "sample %d: pdf", i);
@@ -883,8 +918,7 @@ static void test_relocation(void) {
 
 static void test_size(void) {
     const uint32_t w[2] = {1024, 8192};
-    int i;
-    for (i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; i++) {
         const double each = (double)mcs_env_bytes(w[i], w[i] / 2) / ((double)w[i] * w[i] / 2);
         mcst_note("     %u x %u: %.3f bytes a texel\n", w[i], w[i] / 2, each);
         CHECK(each >= 4 && each <= 16, "%u x %u: %g bytes a texel", w[i], w[i] / 2, each); /* at most what the largest peer takes */
@@ -896,26 +930,25 @@ static void test_size(void) {
 static void test_seam(void) {
     const float light[8] = {1, 1e-15f, 1, 1e-15f, 1, 1e-15f, 1, 1e-15f};
     const mcs_image image = mcs_image_make(light, 2, 4, 1);
-    arena a = arena_make(mcs_env_bytes(2, 4)), b = arena_make(mcs_env_window_bytes(4));
+    arena a = arena_make(mcs_env_bytes(2, 4));
+    arena b = arena_make(mcs_env_window_bytes(4));
     mcs_env_window *const m = (mcs_env_window *)(void *)b.at;
-    int i;
     CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK, "map");
     CHECK(mcs_env_window_build(m, b.bytes, env_in(&a), 0, 4, 1, 2) == MCS_OK, "window");
-    for (i = -36; i < -24; i++) {
+    for (int i = -36; i < -24; i++) {
         const mcs_texel t = mcs_env_window_sample(m, env_in(&a), (float)ldexp(0x0.ffffffp0, i), 0.853553414f);
         CHECK(t.col < 2 && t.pdf > 0, "u below 2^%d: column %u, pdf %g", i, t.col, (double)t.pdf);
     }
-    arena_free(&a), arena_free(&b);
+    arena_free(&a);
+    arena_free(&b);
 }
 
 int main(int argc, char **argv) {
-    int i;
     mcst_start(argc, argv);
     mcst_group("env maps");
-    for (i = 0; i < MAPS; i++) {
-        arena a;
+    for (int i = 0; i < MAPS; i++) {
         if (!mcst_case("%s", maps[i].name)) continue;
-        a = build(&maps[i]);
+        arena a = build(&maps[i]);
         check_density(&maps[i], env_in(&a));
         check_samples(&maps[i], env_in(&a));
         check_monotone(&maps[i], env_in(&a));

@@ -33,18 +33,42 @@ typedef struct {
 
 static float hash01(uint32_t i) { return mcs_u01(mcs_philox(mcst.seed, i, 3).v[0]); }
 
-static float v_random(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)h, 0.1f + hash01(r * w + c); }
-static float v_constant(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)c, (void)r, (void)w, (void)h, 0.7f; }
-static float v_black(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)c, (void)r, (void)w, (void)h, 0.0f; }
-static float v_checker(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)w, (void)h, (c + r) & 1 ? 1.0f : 0.0f; }
+static float v_random(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)h;
+    return 0.1f + hash01(r * w + c);
+}
+static float v_constant(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)c;
+    (void)r;
+    (void)w;
+    (void)h;
+    return 0.7f;
+}
+static float v_black(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)c;
+    (void)r;
+    (void)w;
+    (void)h;
+    return 0.0f;
+}
+static float v_checker(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)w;
+    (void)h;
+    return (c + r) & 1 ? 1.0f : 0.0f;
+}
 static float v_tiny(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return (void)w, (void)h, (float)((c + r) % 4) * 1.4012984643e-45f;
+    (void)w;
+    (void)h;
+    return (float)((c + r) % 4) * 1.4012984643e-45f;
 }
 static float v_huge(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return (void)w, (void)h, (c + r) % 3 ? FLT_MAX : FLT_MAX / 4;
+    (void)w;
+    (void)h;
+    return (c + r) % 3 ? FLT_MAX : FLT_MAX / 4;
 }
 static float v_wide(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return (void)h, (c * 7 + r) % 5 ? powf(10.0f, 76.0f * hash01(r * w + c) - 38.0f) : 0.0f;
+    (void)h;
+    return (c * 7 + r) % 5 ? powf(10.0f, 76.0f * hash01(r * w + c) - 38.0f) : 0.0f;
 }
 /* In a row next to a sun, every texel but one is a single integer of a row that is a single integer. */
 static float v_suns(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
@@ -63,25 +87,31 @@ static float v_region(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
     return in && (c + r) % 7 ? 0.5f + hash01(r * w + c) : 0.0f;
 }
 /* Rows black but for every third one. */
-static float v_thirds(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)h, r % 3 == 1 ? hash01(r * w + c) : 0.0f; }
+static float v_thirds(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)h;
+    return r % 3 == 1 ? hash01(r * w + c) : 0.0f;
+}
 /* One texel per row 1e8 times brighter than the others, which differ by up to 3. */
 static float v_sun_rows(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return (void)h, c == (r * 977 + 5) % w ? 1e8f : 0.5f + hash01(r * w + c);
+    (void)h;
+    return c == (r * 977 + 5) % w ? 1e8f : 0.5f + hash01(r * w + c);
 }
 
 static void draw(picture *p) {
-    uint32_t r, c;
     p->lum = (float *)malloc((size_t)p->w * p->h * sizeof *p->lum);
     if (!p->lum) {
         fprintf(stderr, "out of memory\n");
         exit(2);
     }
-    for (r = 0; r < p->h; r++)
-        for (c = 0; c < p->w; c++) p->lum[(size_t)r * p->w + c] = p->value(c, r, p->w, p->h);
+    for (uint32_t r = 0; r < p->h; r++)
+        for (uint32_t c = 0; c < p->w; c++) p->lum[(size_t)r * p->w + c] = p->value(c, r, p->w, p->h);
 }
 static picture make(const char *name, uint32_t w, uint32_t h, shade value) {
     picture p;
-    p.name = name, p.w = w, p.h = h, p.value = value;
+    p.name = name;
+    p.w = w;
+    p.h = h;
+    p.value = value;
     draw(&p);
     return p;
 }
@@ -96,7 +126,7 @@ static unsigned char *guide_of(const arena *a, uint32_t row) {
 }
 
 static arena build(const picture *p, mcs_status want) {
-    arena a = arena_make(mcs_env_bytes(p->w, p->h));
+    const arena a = arena_make(mcs_env_bytes(p->w, p->h));
     const mcs_image image = mcs_image_make(p->lum, p->w, p->h, 1);
     const mcs_status rc = mcs_env_build(env_in(&a), a.bytes, &image);
     CHECK(rc == want && arena_intact(&a), "%s: build returns %d", p->name, rc);
@@ -118,9 +148,13 @@ static void check_list(const picture *p, const uint32_t *cdf, const ld *weight, 
                        uint32_t at) {
     uint64_t sum = 0;
     ld total = 0;
-    uint32_t i, lit = 0, falls = 0;
-    for (i = 0; i < n; i++) total += weight[i], lit += weight[i] > 0;
-    for (i = 0; i < n; i++) {
+    uint32_t lit = 0;
+    uint32_t falls = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        total += weight[i];
+        lit += weight[i] > 0;
+    }
+    for (uint32_t i = 0; i < n; i++) {
         const uint32_t share = cdf[i + 1] - cdf[i];
         const double want = (double)(weight[i] / total * one);
         falls += cdf[i + 1] < cdf[i];
@@ -138,22 +172,27 @@ static void check_list(const picture *p, const uint32_t *cdf, const ld *weight, 
  * be an integer to the eye, whatever lies in memory. Returns how many small ones there were. */
 static size_t check_integers(const picture *p, const arena *a) {
     const mcs_env *e = env_in(a);
-    ld *weight = (ld *)malloc((p->w + p->h) * sizeof *weight), *row_weight = weight + p->w, mass = 0;
+    ld *weight = (ld *)malloc((p->w + p->h) * sizeof *weight);
+    ld *row_weight = weight + p->w;
+    ld mass = 0;
     const double loose = eps + 1e-12 + 0x1p-51 / (1 - cos(pi / p->h));
     const uint32_t *rows = rows_of(a);
     size_t small = 0;
-    uint32_t r, c;
     if (!weight) exit(2);
-    for (r = 0; r < p->h; r++) {
+    for (uint32_t r = 0; r < p->h; r++) {
         const ld omega = solid_angle(r, p->w, p->h);
         ld sum = 0;
         uint32_t lit = 0;
-        for (c = 0; c < p->w; c++) sum += weight[c] = p->lum[(size_t)r * p->w + c], lit += weight[c] > 0;
+        for (uint32_t c = 0; c < p->w; c++) {
+            sum += weight[c] = p->lum[(size_t)r * p->w + c];
+            lit += weight[c] > 0;
+        }
         row_weight[r] = sum * omega;
         if (lit) check_list(p, cdf_of(a, r), weight, p->w, 0, "row", r);
-        for (c = 0; c < p->w; c++) {
+        for (uint32_t c = 0; c < p->w; c++) {
             const float pdf = mcs_env_pdf(e, point(p->w, p->h, c, r, 0.5, 0.5));
-            const ld found = pdf * omega * 0x1p62L, nearest = roundl(found);
+            const ld found = pdf * omega * 0x1p62L;
+            const ld nearest = roundl(found);
             const ld want = lit ? (ld)(rows[r + 1] - rows[r]) * (cdf_of(a, r)[c + 1] - cdf_of(a, r)[c]) : 0;
             mass += pdf * omega;
             CHECK(fabsl(found - want) <= loose * want, "%s: texel (%u, %u) has probability %Lg / 2^62, not %Lg", p->name, c, r,
@@ -175,15 +214,14 @@ static void check_lit(const picture *p, const arena *a) {
     const uint32_t *rows = rows_of(a);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 89);
     const int draws = env_in(a)->uniform ? 0 : scaled(100000);
-    uint32_t r, k;
-    int i;
-    for (r = 0; r < p->h; r++)
-        for (k = 0; k < 2 && rows[r] < rows[r + 1]; k++) {
+    for (uint32_t r = 0; r < p->h; r++)
+        for (uint32_t k = 0; k < 2 && rows[r] < rows[r + 1]; k++) {
             const mcs_texel s = mcs_env_sample_bits(env_in(a), mcs_pcg32_next(&rng), k ? 2 * (rows[r + 1] - 1) + 1 : 2 * rows[r]);
             CHECK(s.row == r, "%s: %s of row %u draws row %u", p->name, k ? "end" : "begin", r, s.row);
         }
-    for (i = 0; i < draws; i++) {
-        const uint32_t b1 = mcs_pcg32_next(&rng), b2 = mcs_pcg32_next(&rng);
+    for (int i = 0; i < draws; i++) {
+        const uint32_t b1 = mcs_pcg32_next(&rng);
+        const uint32_t b2 = mcs_pcg32_next(&rng);
         const mcs_texel s = mcs_env_sample_bits(env_in(a), b1, b2);
         const int in = s.col < p->w && s.row < p->h;
         const uint32_t *cdf = cdf_of(a, in ? s.row : 0) + (in ? s.col : 0);
@@ -207,50 +245,51 @@ static void test_integers(void) {
                                   {"sun in every row", 4096, 16, v_sun_rows, NULL}};
     const shade any[4] = {v_random, v_wide, v_region, v_thirds};
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 97);
-    size_t k;
-    int i;
-    for (k = 0; k < sizeof all / sizeof *all; k++) {
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         picture p = all[k];
-        arena a;
         draw(&p);
-        a = build(&p, MCS_OK);
-        check_integers(&p, &a), check_lit(&p, &a);
-        arena_free(&a), free(p.lum);
-    }
-    for (i = 0; i < 12; i++) {
-        const uint32_t w = 15 + mcs_pcg32_next(&rng) % 200;
-        picture p = make("random shape", w, 12 + mcs_pcg32_next(&rng) % 100, any[i % 4]);
         arena a = build(&p, MCS_OK);
-        check_integers(&p, &a), check_lit(&p, &a);
-        arena_free(&a), free(p.lum);
+        check_integers(&p, &a);
+        check_lit(&p, &a);
+        arena_free(&a);
+        free(p.lum);
+    }
+    for (int i = 0; i < 12; i++) {
+        const uint32_t w = 15 + mcs_pcg32_next(&rng) % 200;
+        const picture p = make("random shape", w, 12 + mcs_pcg32_next(&rng) % 100, any[i % 4]);
+        arena a = build(&p, MCS_OK);
+        check_integers(&p, &a);
+        check_lit(&p, &a);
+        arena_free(&a);
+        free(p.lum);
     }
     {
-        picture p = make("suns", 64, 32, v_suns);
+        const picture p = make("suns", 64, 32, v_suns);
         arena a = build(&p, MCS_OK);
         const size_t small = check_integers(&p, &a);
         CHECK(small >= p.w - 1, "%zu texels of a few 2^-62", small);
         check_lit(&p, &a);
-        arena_free(&a), free(p.lum);
+        arena_free(&a);
+        free(p.lum);
     }
 }
 
 /* Texels 1e8 times darker than one of their row: 15 to 30 integers each, to within 2, and bits that reach each of them. */
 static void test_contrast(void) {
-    picture p = make("sun in every row", 4096, 16, v_sun_rows);
+    const picture p = make("sun in every row", 4096, 16, v_sun_rows);
     arena a = build(&p, MCS_OK);
     const mcs_env *e = env_in(&a);
-    uint32_t r, c;
     ld total = 0;
-    for (r = 0; r < p.h; r++)
-        for (c = 0; c < p.w; c++) total += p.lum[r * p.w + c] * solid_angle(r, p.w, p.h);
-    for (r = 0; r < p.h; r++) {
-        ld sum = 0, row;
-        for (c = 0; c < p.w; c++) sum += p.lum[r * p.w + c];
-        row = sum * solid_angle(r, p.w, p.h) / total;
-        for (c = 0; c < p.w; c++) {
+    for (uint32_t r = 0; r < p.h; r++)
+        for (uint32_t c = 0; c < p.w; c++) total += p.lum[r * p.w + c] * solid_angle(r, p.w, p.h);
+    for (uint32_t r = 0; r < p.h; r++) {
+        ld sum = 0;
+        for (uint32_t c = 0; c < p.w; c++) sum += p.lum[r * p.w + c];
+        const ld row = sum * solid_angle(r, p.w, p.h) / total;
+        for (uint32_t c = 0; c < p.w; c++) {
             const mcs_texel s = mcs_env_sample_bits(e, middle(cdf_of(&a, r), c), middle(rows_of(&a), r));
-            const double found = (double)(s.pdf * solid_angle(r, p.w, p.h) / row) * one,
-                         want = (double)(p.lum[r * p.w + c] / sum) * one;
+            const double found = (double)(s.pdf * solid_angle(r, p.w, p.h) / row) * one;
+            const double want = (double)(p.lum[r * p.w + c] / sum) * one;
             CHECK(s.row == r && s.col == c, "texel (%u, %u) reached by none: (%u, %u)", c, r, s.col, s.row);
             /* the row's own integer: 2 and its part of 16, of at least 2^31/128 */
             CHECK(fabs(found - want) <= 2 + p.w * (want / one) + want * (18 * 128 / (double)one + 6 * eps),
@@ -258,7 +297,8 @@ static void test_contrast(void) {
             CHECK(mcs_env_pdf(e, s.w) == s.pdf, "texel (%u, %u): pdf", c, r);
         }
     }
-    arena_free(&a), free(p.lum);
+    arena_free(&a);
+    free(p.lum);
 }
 
 /* ---- in parts ---- */
@@ -267,20 +307,26 @@ static void test_contrast(void) {
 static void test_parts(void) {
     const shade any[5] = {v_random, v_wide, v_region, v_thirds, v_black};
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 101);
-    int i;
-    for (i = 0; i < 60; i++) {
-        uint32_t first[160], end[160], n = 0, y = 0, k;
-        picture p = make("parts", 1 + mcs_pcg32_next(&rng) % 150, 1 + mcs_pcg32_next(&rng) % 120, any[i % 5]);
+    for (int i = 0; i < 60; i++) {
+        uint32_t n = 0;
+        uint32_t y = 0;
+        const picture p = make("parts", 1 + mcs_pcg32_next(&rng) % 150, 1 + mcs_pcg32_next(&rng) % 120, any[i % 5]);
         mcs_image image = mcs_image_make(p.lum, p.w, p.h, 1);
-        arena a = arena_make(mcs_env_bytes(p.w, p.h)), b = arena_make(a.bytes);
-        mcs_status whole, rc = MCS_OK;
-        image.bilinear = i % 3 == 1, image.floor = i % 4 == 2 ? mcs_env_mean(&image) : 0;
+        arena a = arena_make(mcs_env_bytes(p.w, p.h));
+        arena b = arena_make(a.bytes);
+        mcs_status rc = MCS_OK;
+        image.bilinear = i % 3 == 1;
+        image.floor = i % 4 == 2 ? mcs_env_mean(&image) : 0;
         arena_past(&b, i % ARENA_PASTS);
-        whole = mcs_env_build(env_in(&a), a.bytes, &image);
+        const mcs_status whole = mcs_env_build(env_in(&a), a.bytes, &image);
+        uint32_t first[160], end[160];
         while (y < p.h) {
-            const uint32_t rest = p.h - y, to = y + (i % 2 ? 1 + mcs_pcg32_next(&rng) % rest : 1);
-            first[n] = y, end[n++] = y = to;
+            const uint32_t rest = p.h - y;
+            const uint32_t to = y + (i % 2 ? 1 + mcs_pcg32_next(&rng) % rest : 1);
+            first[n] = y;
+            end[n++] = y = to;
         }
+        uint32_t k;
         for (k = 0; k < 3; k++, n++) {
             first[n] = mcs_pcg32_next(&rng) % p.h;
             end[n] = first[n] + (k ? 0 : mcs_pcg32_next(&rng) % (p.h - first[n] + 1));
@@ -288,18 +334,21 @@ static void test_parts(void) {
         while (n > 0) {
             k = mcs_pcg32_next(&rng) % n--;
             rc = rc ? rc : mcs_env_build_rows(env_in(&b), b.bytes, &image, first[k], end[k]);
-            first[k] = first[n], end[k] = end[n];
+            first[k] = first[n];
+            end[k] = end[n];
         }
         CHECK(rc == MCS_OK && mcs_env_finish(env_in(&b), b.bytes, &image) == whole && arena_intact(&b), "%u x %u: returns %d", p.w,
               p.h, rc);
         CHECK(memcmp(a.at, b.at, a.bytes) == 0, "%u x %u: another table than at once", p.w, p.h);
         CHECK(mcs_env_check(env_in(&b), b.bytes) == MCS_OK, "%u x %u: no table", p.w, p.h);
-        arena_free(&a), arena_free(&b), free(p.lum);
+        arena_free(&a);
+        arena_free(&b);
+        free(p.lum);
     }
 }
 
 static void test_refused_parts(void) {
-    picture p = make("refused", 12, 9, v_random);
+    const picture p = make("refused", 12, 9, v_random);
     const mcs_image image = mcs_image_make(p.lum, p.w, p.h, 1);
     arena a = arena_make(mcs_env_bytes(p.w, p.h));
     mcs_env *e = env_in(&a);
@@ -314,11 +363,11 @@ static void test_refused_parts(void) {
                               mcs_env_finish(e, a.bytes, NULL)};
     const mcs_status want[9] = {MCS_ERR_SIZE,   MCS_ERR_SIZE, MCS_ERR_SIZE,   MCS_ERR_SIZE, MCS_ERR_ARG,
                                 MCS_ERR_MEMORY, MCS_ERR_ARG,  MCS_ERR_MEMORY, MCS_ERR_ARG};
-    int i;
-    for (i = 0; i < 9; i++) CHECK(rc[i] == want[i], "refusal %d: %d, not %d", i, rc[i], want[i]);
+    for (int i = 0; i < 9; i++) CHECK(rc[i] == want[i], "refusal %d: %d, not %d", i, rc[i], want[i]);
     CHECK(mcs_env_build(e, a.bytes, NULL) == MCS_ERR_ARG, "build without an image");
     CHECK(untouched(a.at, a.bytes) && arena_intact(&a), "a refused build wrote");
-    arena_free(&a), free(p.lum);
+    arena_free(&a);
+    free(p.lum);
 }
 
 /* ---- what is skipped ---- */
@@ -329,8 +378,8 @@ static void poison(const arena *a, uint32_t r) {
     memset(guide_of(a, r), 0xff, env_in(a)->at.guides * 2);
 }
 static size_t zeros(const unsigned char *p, size_t n) {
-    size_t i, count = 0;
-    for (i = 0; i < n; i++) count += p[i] == 0;
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++) count += p[i] == 0;
     return count;
 }
 static size_t row_bytes(const mcs_env *e) { return (e->w + (size_t)1) * sizeof(uint32_t) + e->at.guides * (size_t)2; }
@@ -341,23 +390,21 @@ static float u1[DRAWS], u2[DRAWS], x[4][DRAWS], again[4][DRAWS];
 /* Draws and densities of all texels, for a table before and after its memory was spoilt. */
 static double record(const mcs_env *e, float *pdf) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 103);
-    uint32_t r, c;
     double sum = 0;
-    int i;
-    for (i = 0; i < scaled(250); i++) {
-        int k;
-        mcs_pcg32_fill_n(&rng, DRAWS, u1), mcs_pcg32_fill_n(&rng, DRAWS, u2);
+    for (int i = 0; i < scaled(250); i++) {
+        mcs_pcg32_fill_n(&rng, DRAWS, u1);
+        mcs_pcg32_fill_n(&rng, DRAWS, u2);
         mcs_env_sample_n(e, DRAWS, u1, u2, x[0], x[1], x[2], x[3], NULL, NULL);
         mcs_env_pdf_n(e, DRAWS, x[0], x[1], x[2], again[3]);
-        for (k = 0; k < DRAWS; k++) sum += x[0][k] + 2 * x[1][k] + 4 * x[2][k] + x[3][k] + again[3][k];
-        for (k = 0; k < DRAWS; k += 16) {
+        for (int k = 0; k < DRAWS; k++) sum += x[0][k] + 2 * x[1][k] + 4 * x[2][k] + x[3][k] + again[3][k];
+        for (int k = 0; k < DRAWS; k += 16) {
             const mcs_texel s = mcs_env_sample(e, u1[k], u2[k]);
             const mcs_vec2 u = mcs_env_invert(e, s.w);
             sum += (double)s.pdf + mcs_env_pdf(e, s.w) + u.x + u.y + s.col + s.row;
         }
     }
-    for (r = 0; r < e->h; r++)
-        for (c = 0; c < e->w; c++) {
+    for (uint32_t r = 0; r < e->h; r++)
+        for (uint32_t c = 0; c < e->w; c++) {
             const mcs_vec3 v = point(e->w, e->h, c, r, 0.5, 0.5);
             const mcs_vec2 u = mcs_env_invert(e, v);
             *pdf++ = mcs_env_pdf(e, v);
@@ -371,31 +418,36 @@ static void check_skips(picture p, mcs_status status, uint32_t lit, int uniform)
     arena a = build(&p, status);
     const mcs_env *e = env_in(&a);
     const size_t texels = (size_t)p.w * p.h;
-    float *before = (float *)malloc(2 * texels * sizeof *before), *after = before + texels;
+    float *before = (float *)malloc(2 * texels * sizeof *before);
+    float *after = before + texels;
     uint32_t unread = 0;
-    double first, second;
-    uint32_t r, c;
     if (!before) exit(2);
     CHECK(!e->uniform == !uniform, "%s: uniform is %u", p.name, e->uniform);
-    first = record(e, before);
-    for (r = 0; r < p.h; r++) {
+    const double first = record(e, before);
+    for (uint32_t r = 0; r < p.h; r++) {
         int black = 1;
-        size_t none;
-        for (c = 0; c < p.w; c++) black &= p.lum[(size_t)r * p.w + c] == 0;
-        none = zeros((unsigned char *)cdf_of(&a, r), (p.w + (size_t)1) * 4) + zeros(guide_of(&a, r), e->at.guides * (size_t)2);
+        for (uint32_t c = 0; c < p.w; c++) black &= p.lum[(size_t)r * p.w + c] == 0;
+        const size_t none =
+            zeros((unsigned char *)cdf_of(&a, r), (p.w + (size_t)1) * 4) + zeros(guide_of(&a, r), e->at.guides * (size_t)2);
         CHECK(!black || none == row_bytes(e), "%s: %zu of %zu bytes of black row %u are not 0", p.name, row_bytes(e) - none,
               row_bytes(e), r);
-        if (black || uniform) poison(&a, r), unread++;
+        if (black || uniform) {
+            poison(&a, r);
+            unread++;
+        }
     }
     CHECK(unread == (uniform ? p.h : p.h - lit), "%s: %u rows spoilt", p.name, unread);
     if (uniform) memset(rows_of(&a), 0xff, e->at.cdf - e->at.rows);
-    second = record(e, after);
+    const double second = record(e, after);
     CHECK(first == second && memcmp(before, after, texels * sizeof *before) == 0, "%s: draws or densities read what was spoilt",
           p.name);
     CHECK(unread == 0 || mcs_env_check(e, a.bytes) == MCS_ERR_FORMAT, "%s: spoilt, and accepted", p.name);
     if (uniform)
-        for (r = 0; r < texels; r++) CHECK(fabs(after[r] * 4 * pi - 1) <= 2 * eps, "%s: density %g", p.name, (double)after[r]);
-    free(before), free(p.lum), arena_free(&a);
+        for (uint32_t r = 0; r < texels; r++)
+            CHECK(fabs(after[r] * 4 * pi - 1) <= 2 * eps, "%s: density %g", p.name, (double)after[r]);
+    free(before);
+    free(p.lum);
+    arena_free(&a);
 }
 
 static void test_skips(void) {
@@ -409,25 +461,32 @@ static void test_skips(void) {
 
 /* Outside [row0, row1) x [col0, col1), the smallest rectangle of light, densities are found without reading the sums. */
 static void test_region(void) {
-    picture p = make("region", 200, 96, v_region);
+    const picture p = make("region", 200, 96, v_region);
     arena a = build(&p, MCS_OK);
     const mcs_env *e = env_in(&a);
-    uint32_t r, c, row0 = p.h, row1 = 0, col0 = p.w, col1 = 0, zero = 0;
-    for (r = 0; r < p.h; r++)
-        for (c = 0; c < p.w; c++) {
+    uint32_t row0 = p.h;
+    uint32_t row1 = 0;
+    uint32_t col0 = p.w;
+    uint32_t col1 = 0;
+    uint32_t zero = 0;
+    for (uint32_t r = 0; r < p.h; r++)
+        for (uint32_t c = 0; c < p.w; c++) {
             if (!(p.lum[r * p.w + c] > 0)) continue;
-            row0 = r < row0 ? r : row0, row1 = r + 1, col0 = c < col0 ? c : col0, col1 = c + 1 > col1 ? c + 1 : col1;
+            row0 = r < row0 ? r : row0;
+            row1 = r + 1;
+            col0 = c < col0 ? c : col0;
+            col1 = c + 1 > col1 ? c + 1 : col1;
         }
     CHECK(e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1, "light in [%u, %u) x [%u, %u)", e->row0,
           e->row1, e->col0, e->col1);
-    for (r = 0; r < p.h; r++) {
+    for (uint32_t r = 0; r < p.h; r++) {
         uint32_t *cdf = cdf_of(&a, r);
-        for (c = 0; c < col0; c++) cdf[c] = 0x9e3779b9u * (c + 1);
-        for (c = col1 + 1; c <= p.w; c++) cdf[c] = 0x9e3779b9u * (c + 1);
+        for (uint32_t c = 0; c < col0; c++) cdf[c] = 0x9e3779b9u * (c + 1);
+        for (uint32_t c = col1 + 1; c <= p.w; c++) cdf[c] = 0x9e3779b9u * (c + 1);
         if (r < row0 || r >= row1) poison(&a, r);
     }
-    for (r = 0; r < p.h; r++)
-        for (c = 0; c < p.w; c++) {
+    for (uint32_t r = 0; r < p.h; r++)
+        for (uint32_t c = 0; c < p.w; c++) {
             const mcs_vec3 v = point(p.w, p.h, c, r, 0.5, 0.5);
             const float pdf = mcs_env_pdf(e, v);
             float batch = -1;
@@ -437,7 +496,8 @@ static void test_region(void) {
                   (double)pdf, (double)batch);
         }
     CHECK(zero >= p.w * p.h - (row1 - row0) * (col1 - col0), "%u texels without density", zero);
-    arena_free(&a), free(p.lum);
+    arena_free(&a);
+    free(p.lum);
 }
 
 /* ---- bits, and the largest maps ---- */
@@ -447,16 +507,16 @@ static void test_region(void) {
 static void check_every(const picture *p, const arena *a, int places) {
     const mcs_env *e = env_in(a);
     const uint32_t *rows = rows_of(a);
-    uint32_t r, c, missed = 0, strayed = 0;
-    int k;
-    for (r = 0; r < p->h; r++) {
+    uint32_t missed = 0;
+    uint32_t strayed = 0;
+    for (uint32_t r = 0; r < p->h; r++) {
         const uint32_t *cdf = cdf_of(a, r);
         const uint32_t down[3] = {middle(rows, r), 2 * rows[r], 2 * (rows[r + 1] - 1) + 1};
         if (rows[r] == rows[r + 1]) continue;
-        for (c = 0; c < p->w; c++) {
+        for (uint32_t c = 0; c < p->w; c++) {
             const uint32_t along[3] = {middle(cdf, c), 2 * cdf[c], 2 * (cdf[c + 1] - 1) + 1};
             if (!(p->lum[(size_t)r * p->w + c] > 0)) continue;
-            for (k = 0; k < places; k++) {
+            for (int k = 0; k < places; k++) {
                 const mcs_texel s = mcs_env_sample_bits(e, along[k % 3], down[k / 3]);
                 missed += s.col != c || s.row != r;
                 if (places > 1) {
@@ -475,9 +535,10 @@ static void check_every(const picture *p, const arena *a, int places) {
 /* Columns by bisection alone: the least bits that draw column c or a later one draw c itself. */
 static void check_bisected(const picture *p, const mcs_env *e, uint32_t b2) {
     const uint32_t row = mcs_env_sample_bits(e, 0, b2).row;
-    uint32_t c, unreached = 0;
-    for (c = 0; c < p->w; c++) {
-        uint32_t lo = 0, hi = 0xffffffffu;
+    uint32_t unreached = 0;
+    for (uint32_t c = 0; c < p->w; c++) {
+        uint32_t lo = 0;
+        uint32_t hi = 0xffffffffu;
         if (!(p->lum[(size_t)row * p->w + c] > 0)) continue;
         while (lo < hi) {
             const uint32_t mid = lo + (hi - lo) / 2;
@@ -492,23 +553,29 @@ static void check_bisected(const picture *p, const mcs_env *e, uint32_t b2) {
 static void check_bits(const picture *p, const mcs_env *e) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 107);
     const int draws = scaled(1000000);
-    uint64_t b;
-    uint32_t last_col = 0, last_row = 0, falls = 0;
+    uint32_t last_col = 0;
+    uint32_t last_row = 0;
+    uint32_t falls = 0;
     float z = 2;
-    int i;
-    for (b = 0; b <= 0xffffffffu; b += mcs_pcg32_next(&rng) >> 15) {
-        const mcs_texel s = mcs_env_sample_bits(e, (uint32_t)b, 0x9e3779b9u),
-                        t = mcs_env_sample_bits(e, mcs_pcg32_next(&rng), (uint32_t)b);
+    for (uint64_t b = 0; b <= 0xffffffffu; b += mcs_pcg32_next(&rng) >> 15) {
+        const mcs_texel s = mcs_env_sample_bits(e, (uint32_t)b, 0x9e3779b9u);
+        const mcs_texel t = mcs_env_sample_bits(e, mcs_pcg32_next(&rng), (uint32_t)b);
         falls += s.col < last_col || t.row < last_row || !(t.w.z <= z);
-        last_col = s.col, last_row = t.row, z = t.w.z;
+        last_col = s.col;
+        last_row = t.row;
+        z = t.w.z;
     }
     CHECK(falls == 0, "%s: %u falls", p->name, falls);
-    for (i = 0; i < draws; i++) {
+    for (int i = 0; i < draws; i++) {
         /* at most 24 bits that count, so that a float holds b 2^-32: any of the 24-bit grid, and small ones */
-        const uint32_t x1 = mcs_pcg32_next(&rng), x2 = mcs_pcg32_next(&rng);
-        const uint32_t b1 = i & 1 ? x1 & 0xffffff00u : x1 >> 8 >> (x1 & 15), b2 = i & 2 ? x2 & 0xffffff00u : x2 >> 8 >> (x2 & 15);
-        const float f1 = (float)b1 * 0x1p-32f, f2 = (float)b2 * 0x1p-32f;
-        const mcs_texel s = mcs_env_sample_bits(e, b1, b2), t = mcs_env_sample(e, f1, f2);
+        const uint32_t x1 = mcs_pcg32_next(&rng);
+        const uint32_t x2 = mcs_pcg32_next(&rng);
+        const uint32_t b1 = i & 1 ? x1 & 0xffffff00u : x1 >> 8 >> (x1 & 15);
+        const uint32_t b2 = i & 2 ? x2 & 0xffffff00u : x2 >> 8 >> (x2 & 15);
+        const float f1 = (float)b1 * 0x1p-32f;
+        const float f2 = (float)b2 * 0x1p-32f;
+        const mcs_texel s = mcs_env_sample_bits(e, b1, b2);
+        const mcs_texel t = mcs_env_sample(e, f1, f2);
         CHECK(same(s, t), "%s: u = %a, %a: (%u, %u), by bits (%u, %u)", p->name, (double)f1, (double)f2, t.col, t.row, s.col,
               s.row);
     }
@@ -518,27 +585,30 @@ static void check_bits(const picture *p, const mcs_env *e) {
 static void check_found(const picture *p, const mcs_env *e) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 109);
     const int draws = scaled(1000000);
-    int i, off = 0, strayed = 0;
-    for (i = 0; i < draws; i++) {
+    int off = 0;
+    int strayed = 0;
+    for (int i = 0; i < draws; i++) {
         const float v = mcs_pcg32_float(&rng);
-        const mcs_texel s = mcs_env_sample(e, v, mcs_pcg32_float(&rng)), t = mcs_env_texel(e, s.w);
+        const mcs_texel s = mcs_env_sample(e, v, mcs_pcg32_float(&rng));
+        const mcs_texel t = mcs_env_texel(e, s.w);
         double col, row;
         texel_of(p->w, p->h, s.w, &col, &row);
-        off += !(t.col == s.col && t.row == s.row && t.pdf == s.pdf && s.pdf > 0),
-            strayed += floor(col) != s.col || floor(row) != s.row;
+        off += !(t.col == s.col && t.row == s.row && t.pdf == s.pdf && s.pdf > 0);
+        strayed += floor(col) != s.col || floor(row) != s.row;
     }
     CHECK(off == 0 && strayed == 0, "%s: of %d draws the header finds %d in another texel, a double arctangent %d", p->name, draws,
           off, strayed);
 }
 
 static void test_long(uint32_t w, uint32_t h, shade value) {
-    picture p = make(w > h ? "wide" : "tall", w, h, value);
+    const picture p = make(w > h ? "wide" : "tall", w, h, value);
     arena a = build(&p, MCS_OK);
     check_every(&p, &a, 9);
     check_bits(&p, env_in(&a));
     check_found(&p, env_in(&a));
     if (w > h) check_bisected(&p, env_in(&a), 0x55555555u);
-    arena_free(&a), free(p.lum);
+    arena_free(&a);
+    free(p.lum);
 }
 
 /* ---- from a file ---- */
@@ -556,14 +626,21 @@ static mcs_env *copy_of(const void *from, size_t bytes) {
 static void check_harmless(const mcs_env *e, const char *what, size_t at) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 113);
     enum { N = 68 };
-    float a[N], b[N], out[4][N], pdf[N];
-    int i, outside = 0, no_density = 0, no_direction = 0, no_inverse = 0;
-    for (i = 0; i < N; i++) a[i] = i < 4 ? (float)(i & 1) * 0x0.ffffffp0f : mcs_pcg32_float(&rng);
-    for (i = 0; i < N; i++) b[i] = i < 4 ? (float)(i >> 1) * 0x0.ffffffp0f : mcs_pcg32_float(&rng);
+    int outside = 0;
+    int no_density = 0;
+    int no_direction = 0;
+    int no_inverse = 0;
+    float a[N];
+    for (int i = 0; i < N; i++) a[i] = i < 4 ? (float)(i & 1) * 0x0.ffffffp0f : mcs_pcg32_float(&rng);
+    float b[N];
+    for (int i = 0; i < N; i++) b[i] = i < 4 ? (float)(i >> 1) * 0x0.ffffffp0f : mcs_pcg32_float(&rng);
+    float out[4][N];
     mcs_env_sample_n(e, N, a, b, out[0], out[1], out[2], out[3], NULL, NULL);
+    float pdf[N];
     mcs_env_pdf_n(e, N, out[0], out[1], out[2], pdf);
-    for (i = 0; i < N; i++) {
-        const mcs_texel s = mcs_env_sample(e, a[i], b[i]), t = mcs_env_texel(e, s.w);
+    for (int i = 0; i < N; i++) {
+        const mcs_texel s = mcs_env_sample(e, a[i], b[i]);
+        const mcs_texel t = mcs_env_texel(e, s.w);
         const mcs_vec2 u = mcs_env_invert(e, s.w);
         const double length = sqrt((double)s.w.x * s.w.x + (double)s.w.y * s.w.y + (double)s.w.z * s.w.z);
         outside += !(s.col < e->w && s.row < e->h && t.col < e->w && t.row < e->h);
@@ -586,7 +663,8 @@ static int check_damaged(mcs_env *e, const arena *was, const char *what, size_t 
     mcs_status rc = mcs_env_check(e, was->bytes);
     CHECK(rc == MCS_ERR_FORMAT || rc == MCS_ERR_MEMORY || (rc == MCS_OK && in_frame(at)), "%s %zu changed: %d", what, at, rc);
     if (e->w == good->w && e->h == good->h && memcmp(&e->at, &good->at, sizeof e->at) == 0) {
-        seal(e), rc = mcs_env_check(e, was->bytes);
+        seal(e);
+        rc = mcs_env_check(e, was->bytes);
         CHECK(rc == MCS_OK || rc == MCS_ERR_FORMAT, "%s %zu forged: %d", what, at, rc);
         if (rc == MCS_OK) check_harmless(e, what, at);
     }
@@ -601,21 +679,21 @@ static void check_file(picture p, mcs_status status) {
     unsigned char *byte = (unsigned char *)e;
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 127);
     const int all_lit = p.value == v_random && !e->uniform;
-    size_t i, k, guides_tried = 0;
+    size_t guides_tried = 0;
     CHECK(mcs_env_check(e, bytes) == MCS_OK && mcs_env_check(e, bytes + 8) == MCS_OK, "a good table");
     check_harmless(e, "nothing", 0);
-    for (i = 0; i < sizeof *e; i++) { /* every bit of the header, then whole bytes */
+    for (size_t i = 0; i < sizeof *e; i++) { /* every bit of the header, then whole bytes */
         const unsigned char was = byte[i];
-        for (k = 0; k < 11; k++) {
+        for (size_t k = 0; k < 11; k++) {
             byte[i] = (unsigned char)(k < 8 ? was ^ 1u << k : k == 8 ? 0 : k == 9 ? 0xff : 0x7f);
             if (byte[i] != was) check_damaged(e, &a, "header byte", i);
         }
     }
-    for (i = 0; i < sizeof *e; i += 4) { /* words to what numbers break at */
+    for (size_t i = 0; i < sizeof *e; i += 4) { /* words to what numbers break at */
         const uint32_t odd[8] = {0, 1, 65535, 65536, 65537, 0x7f800000u, 0x80000000u, 0xffffffffu};
         uint32_t was;
         memcpy(&was, byte + i, 4);
-        for (k = 0; k < 10; k++) {
+        for (size_t k = 0; k < 10; k++) {
             const uint32_t now = k < 8 ? odd[k] : k == 8 ? was + 1 : was - 1;
             memcpy(byte + i, &now, 4);
             if (now != was) {
@@ -633,46 +711,56 @@ static void check_file(picture p, mcs_status status) {
             }
         }
     }
-    for (i = 0; i < (size_t)scaled(4000); i++) {
-        const size_t at = sizeof *e + mcs_pcg32_next(&rng) % (bytes - sizeof *e), n = 1 + mcs_pcg32_next(&rng) % 8;
-        for (k = at; k < at + n && k < bytes; k++) byte[k] = (unsigned char)(i % 3 ? mcs_pcg32_next(&rng) : i % 2 ? 0xff : 0);
+    for (size_t i = 0; i < (size_t)scaled(4000); i++) {
+        const size_t at = sizeof *e + mcs_pcg32_next(&rng) % (bytes - sizeof *e);
+        const size_t n = 1 + mcs_pcg32_next(&rng) % 8;
+        for (size_t k = at; k < at + n && k < bytes; k++)
+            byte[k] = (unsigned char)(i % 3 ? mcs_pcg32_next(&rng) : i % 2 ? 0xff : 0);
         {
             const size_t guides = env_in(&a)->at.col_guide;
-            const int changed = memcmp(e, a.at, bytes) != 0, no = changed && check_damaged(e, &a, "table byte", at);
+            const int changed = memcmp(e, a.at, bytes) != 0;
+            const int no = changed && check_damaged(e, &a, "table byte", at);
             /* guides follow from the sums: none but the right one passes, forged or not */
-            if (all_lit && changed && at >= guides && at + n <= guides + (size_t)p.h * env_in(&a)->at.guides * 2)
-                guides_tried++, CHECK(no, "guide byte %zu changed, accepted", at);
+            if (all_lit && changed && at >= guides && at + n <= guides + (size_t)p.h * env_in(&a)->at.guides * 2) {
+                guides_tried++;
+                CHECK(no, "guide byte %zu changed, accepted", at);
+            }
         }
     }
     CHECK(!all_lit || guides_tried > 0, "no guide tried");
-    for (i = 0; i < bytes; i += i < sizeof *e || i + 64 >= bytes ? 1 : 1 + mcs_pcg32_next(&rng) % (bytes / 64 + 1)) {
+    for (size_t i = 0; i < bytes; i += i < sizeof *e || i + 64 >= bytes ? 1 : 1 + mcs_pcg32_next(&rng) % (bytes / 64 + 1)) {
         mcs_env *cut = copy_of(a.at, i);
         CHECK(mcs_env_check(cut, i) == MCS_ERR_MEMORY, "%zu of %zu bytes: %d", i, bytes, mcs_env_check(cut, i));
         free(cut);
     }
-    for (i = 4; i <= 8; i += 4) { /* another byte order: of the words, of the whole header */
-        for (k = 0; k < sizeof *e; k++) byte[k] = a.at[i == 4 ? k ^ 3 : k ^ 7];
+    for (size_t i = 4; i <= 8; i += 4) { /* another byte order: of the words, of the whole header */
+        for (size_t k = 0; k < sizeof *e; k++) byte[k] = a.at[i == 4 ? k ^ 3 : k ^ 7];
         CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "bytes swapped by %zu: %d", i, mcs_env_check(e, bytes));
     }
     memcpy(e, a.at, bytes);
-    e->magic ^= 0x20202020u, seal(e);
+    e->magic ^= 0x20202020u;
+    seal(e);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "magic");
     memcpy(e, a.at, bytes);
-    e->version++, seal(e);
+    e->version++;
+    seal(e);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "a later version");
     memcpy(e, a.at, bytes);
-    e->total = -1, seal(e);
+    e->total = -1;
+    seal(e);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "negative light");
     memset(e, 0, bytes);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "zeros");
     memset(e, 0xff, bytes);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "ones");
-    for (i = 0; i < bytes; i++) byte[i] = (unsigned char)mcs_pcg32_next(&rng);
+    for (size_t i = 0; i < bytes; i++) byte[i] = (unsigned char)mcs_pcg32_next(&rng);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "noise");
     CHECK(mcs_env_check(NULL, bytes) == MCS_ERR_ARG, "no memory");
-    for (i = 1; i < 8; i += 2)
+    for (size_t i = 1; i < 8; i += 2)
         CHECK(mcs_env_check((const mcs_env *)(const void *)(a.at + i), bytes - 8) == MCS_ERR_ARG, "off by %zu", i);
-    free(e), free(p.lum), arena_free(&a);
+    free(e);
+    free(p.lum);
+    arena_free(&a);
 }
 
 static void test_damage(void) {
@@ -688,9 +776,9 @@ static void test_damage(void) {
 
 static int orthonormal(const mcs_frame *f) {
     const mcs_vec3 *const v[3] = {&f->s, &f->t, &f->n};
-    int i, j, ok = 1;
-    for (i = 0; i < 3; i++)
-        for (j = 0; j <= i; j++) {
+    int ok = 1;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j <= i; j++) {
             const ld dot = (ld)v[i]->x * v[j]->x + (ld)v[i]->y * v[j]->y + (ld)v[i]->z * v[j]->z;
             ok &= fabsl(dot - (i == j)) <= 1e-4L;
         }
@@ -700,17 +788,18 @@ static int orthonormal(const mcs_frame *f) {
 /* Every bit of a table: none but those of the frame may be another, and the frame only as long as it is orthonormal. */
 static void check_every_bit(picture p, mcs_status status) {
     arena a = build(&p, status);
-    size_t bit, passed = 0;
-    for (bit = 0; bit < 8 * a.bytes; bit++) {
-        mcs_status rc;
+    size_t passed = 0;
+    for (size_t bit = 0; bit < 8 * a.bytes; bit++) {
         a.at[bit / 8] ^= (unsigned char)(1u << bit % 8);
-        rc = mcs_env_check(env_in(&a), a.bytes), passed += rc == MCS_OK;
+        const mcs_status rc = mcs_env_check(env_in(&a), a.bytes);
+        passed += rc == MCS_OK;
         CHECK((rc == MCS_OK) == (in_frame(bit / 8) && orthonormal(&env_in(&a)->frame)), "%s: bit %zu of byte %zu of %zu: %d",
               p.name, bit % 8, bit / 8, a.bytes, rc);
         a.at[bit / 8] ^= (unsigned char)(1u << bit % 8);
     }
     CHECK(passed > 0 && mcs_env_check(env_in(&a), a.bytes) == MCS_OK, "%s: %zu frames pass", p.name, passed);
-    arena_free(&a), free(p.lum);
+    arena_free(&a);
+    free(p.lum);
 }
 static void test_every_bit(void) {
     check_every_bit(make("7 x 5", 7, 5, v_random), MCS_OK);
@@ -725,70 +814,88 @@ static void test_every_bit(void) {
 /* Damage of any kind outside the frame: single bits, two and three of them, runs of bytes, zeroed or exchanged blocks; of a row,
  * two words exchanged, or one bit of both changed, 64 bytes or a multiple apart as sums take words together that are. */
 static void test_random_damage(void) {
-    picture p = make("sky", 64, 32, v_sky);
+    const picture p = make("sky", 64, 32, v_sky);
     arena a = build(&p, MCS_OK);
     mcs_env *e = copy_of(a.at, a.bytes);
     unsigned char *byte = (unsigned char *)e;
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 137);
-    const size_t begin = offsetof(mcs_env, frame), end = begin + sizeof(mcs_frame);
-    int i, k;
-    for (i = 0; i < scaled(60000); i++) {
+    const size_t begin = offsetof(mcs_env, frame);
+    const size_t end = begin + sizeof(mcs_frame);
+    for (int i = 0; i < scaled(60000); i++) {
         const int kind = i % 8;
-        mcs_status rc;
         if (kind < 3) {
-            for (k = 0; k <= kind; k++) {
+            for (int k = 0; k <= kind; k++) {
                 const size_t bit = mcs_pcg32_next(&rng) % (8 * a.bytes);
                 byte[bit / 8] ^= (unsigned char)(1u << bit % 8);
             }
         } else if (kind > 5) {
             unsigned char *const row = byte + e->at.cdf + mcs_pcg32_next(&rng) % 32 * (65 * sizeof(uint32_t));
             const size_t lane = mcs_pcg32_next(&rng) % 8 * 8;
-            const uint32_t first = mcs_pcg32_next(&rng) % 4, second = mcs_pcg32_next(&rng) % 4, bit = mcs_pcg32_next(&rng) % 64;
-            for (k = 0; k < 8; k++) {
-                unsigned char *const x1 = row + first * 64 + lane + k, *const x2 = row + second * 64 + lane + k, was = *x1;
-                if (kind == 6) *x1 = *x2, *x2 = was;
-                else if ((int)bit / 8 == k) *x1 ^= (unsigned char)(1u << bit % 8), *x2 ^= (unsigned char)(1u << bit % 8);
+            const uint32_t first = mcs_pcg32_next(&rng) % 4;
+            const uint32_t second = mcs_pcg32_next(&rng) % 4;
+            const uint32_t bit = mcs_pcg32_next(&rng) % 64;
+            for (int k = 0; k < 8; k++) {
+                unsigned char *const x1 = row + first * 64 + lane + k;
+                unsigned char *const x2 = row + second * 64 + lane + k;
+                const unsigned char was = *x1;
+                if (kind == 6) {
+                    *x1 = *x2;
+                    *x2 = was;
+                } else if ((int)bit / 8 == k) {
+                    *x1 ^= (unsigned char)(1u << bit % 8);
+                    *x2 ^= (unsigned char)(1u << bit % 8);
+                }
             }
         } else {
-            const size_t n = 1 + mcs_pcg32_next(&rng) % 256, from = mcs_pcg32_next(&rng) % (a.bytes - n),
-                         to = mcs_pcg32_next(&rng) % (a.bytes - n);
+            const size_t n = 1 + mcs_pcg32_next(&rng) % 256;
+            const size_t from = mcs_pcg32_next(&rng) % (a.bytes - n);
+            const size_t to = mcs_pcg32_next(&rng) % (a.bytes - n);
             if (kind == 3) memset(byte + to, 0, n);
-            if (kind == 4) memcpy(byte + from, a.at + to, n), memcpy(byte + to, a.at + from, n);
-            for (k = 0; kind == 5 && k < (int)n; k++) byte[to + (size_t)k] = (unsigned char)mcs_pcg32_next(&rng);
+            if (kind == 4) {
+                memcpy(byte + from, a.at + to, n);
+                memcpy(byte + to, a.at + from, n);
+            }
+            for (int k = 0; kind == 5 && k < (int)n; k++) byte[to + (size_t)k] = (unsigned char)mcs_pcg32_next(&rng);
         }
         memcpy(byte + begin, a.at + begin, end - begin);
-        rc = mcs_env_check(e, a.bytes);
+        const mcs_status rc = mcs_env_check(e, a.bytes);
         CHECK((rc == MCS_OK) == (memcmp(e, a.at, a.bytes) == 0), "damage %d of kind %d: %d", i, kind, rc);
         memcpy(e, a.at, a.bytes);
     }
-    free(e), free(p.lum), arena_free(&a);
+    free(e);
+    free(p.lum);
+    arena_free(&a);
 }
 
 static mcs_frame turned(const mcs_frame *f, const mcs_frame *by) { /* in float, as a scene graph would */
     mcs_frame r;
-    r.s = mcs_to_world(by, f->s), r.t = mcs_to_world(by, f->t), r.n = mcs_to_world(by, f->n);
+    r.s = mcs_to_world(by, f->s);
+    r.t = mcs_to_world(by, f->t);
+    r.n = mcs_to_world(by, f->n);
     return r;
 }
 /* Frames that a user may set: those of mcs_frame_make, mirrored, and products of 100 rotations; and that are none. */
 static void test_frames(void) {
-    picture p = make("7 x 5", 7, 5, v_random);
+    const picture p = make("7 x 5", 7, 5, v_random);
     arena a = build(&p, MCS_OK);
     mcs_env *e = env_in(&a);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 139);
-    int i, k;
-    for (i = 0; i < 2000; i++) {
+    for (int i = 0; i < 2000; i++) {
         const float off[6] = {1e-3f, -1e-3f, 1.0f, -0.2f, 1e30f, NAN};
         float u = mcs_pcg32_float(&rng);
-        mcs_frame f = mcs_frame_make(mcs_sphere_sample(u, mcs_pcg32_float(&rng)).w), g;
+        mcs_frame f = mcs_frame_make(mcs_sphere_sample(u, mcs_pcg32_float(&rng)).w);
         float *number = &f.s.x + (i % 3) * 3 + i / 3 % 3;
         e->frame = f;
         CHECK(mcs_env_check(e, a.bytes) == MCS_OK, "a frame of mcs_frame_make is refused");
-        e->frame.t.x = -f.t.x, e->frame.t.y = -f.t.y, e->frame.t.z = -f.t.z;
+        e->frame.t.x = -f.t.x;
+        e->frame.t.y = -f.t.y;
+        e->frame.t.z = -f.t.z;
         CHECK(mcs_env_check(e, a.bytes) == MCS_OK, "a mirrored frame is refused");
-        for (k = 0, g = f; k < 100; k++) {
-            mcs_frame by;
+        mcs_frame g = f;
+        for (int k = 0; k < 100; k++) {
             u = mcs_pcg32_float(&rng);
-            by = mcs_frame_make(mcs_sphere_sample(u, mcs_pcg32_float(&rng)).w), g = turned(&g, &by);
+            const mcs_frame by = mcs_frame_make(mcs_sphere_sample(u, mcs_pcg32_float(&rng)).w);
+            g = turned(&g, &by);
         }
         e->frame = g;
         CHECK(mcs_env_check(e, a.bytes) == MCS_OK, "a product of 100 rotations is refused");
@@ -796,17 +903,24 @@ static void test_frames(void) {
         e->frame = f;
         CHECK((mcs_env_check(e, a.bytes) == MCS_OK) == orthonormal(&f), "a frame with %g added: %d", (double)off[i % 6],
               mcs_env_check(e, a.bytes));
-        f = g, f.n.x *= 0.8f, f.n.y *= 0.8f, f.n.z *= 0.8f, e->frame = f;
+        f = g;
+        f.n.x *= 0.8f;
+        f.n.y *= 0.8f;
+        f.n.z *= 0.8f;
+        e->frame = f;
         CHECK(mcs_env_check(e, a.bytes) == MCS_ERR_FORMAT, "a short normal is accepted");
-        for (k = 0; k < 3; k++) { /* skewed, so that one dot product alone is 1e-3 */
+        for (int k = 0; k < 3; k++) { /* skewed, so that one dot product alone is 1e-3 */
             mcs_vec3 *const skewed = k == 0 ? &e->frame.s : k == 1 ? &e->frame.t : &e->frame.n;
             const mcs_vec3 to = k == 0 ? g.t : k == 1 ? g.n : g.s;
             e->frame = g;
-            skewed->x += 1e-3f * to.x, skewed->y += 1e-3f * to.y, skewed->z += 1e-3f * to.z;
+            skewed->x += 1e-3f * to.x;
+            skewed->y += 1e-3f * to.y;
+            skewed->z += 1e-3f * to.z;
             CHECK(mcs_env_check(e, a.bytes) == MCS_ERR_FORMAT, "axis %d is skewed and accepted", k);
         }
     }
-    arena_free(&a), free(p.lum);
+    arena_free(&a);
+    free(p.lum);
 }
 
 /* ---- the same bytes whatever the memory held ---- */
@@ -814,15 +928,16 @@ static void test_frames(void) {
 typedef int (*builder)(void *to, size_t bytes, const void *from);
 static void check_same(size_t bytes, builder f, const void *from, const char *what, uint32_t i, uint32_t j) {
     arena a[ARENA_PASTS];
-    int past, rc[ARENA_PASTS];
-    for (past = 0; past < ARENA_PASTS; past++) {
-        a[past] = arena_make(bytes), arena_past(&a[past], past);
+    int rc[ARENA_PASTS];
+    for (int past = 0; past < ARENA_PASTS; past++) {
+        a[past] = arena_make(bytes);
+        arena_past(&a[past], past);
         rc[past] = f(a[past].at, bytes, from);
         CHECK(rc[past] >= 0 && rc[past] == rc[0] && arena_intact(&a[past]), "%s (%u, %u): returns %d", what, i, j, rc[past]);
         CHECK(arena_differ(&a[0], &a[past]) == bytes, "%s (%u, %u): byte %zu of %zu is another one", what, i, j,
               arena_differ(&a[0], &a[past]), bytes);
     }
-    for (past = 0; past < ARENA_PASTS; past++) arena_free(&a[past]);
+    for (int past = 0; past < ARENA_PASTS; past++) arena_free(&a[past]);
 }
 static int image_builds(void *to, size_t bytes, const void *from) {
     return mcs_env_build((mcs_env *)to, bytes, (const mcs_image *)from);
@@ -855,13 +970,13 @@ static int product_builds(void *to, size_t bytes, const void *from) {
 
 static void test_same_maps(void) {
     const shade any[6] = {v_random, v_region, v_thirds, v_black, v_constant, v_suns};
-    uint32_t w, h, i;
-    for (w = 1; w < 40; w += w < 12 ? 1 : 9)
-        for (h = 1; h < 40; h += h < 12 ? 1 : 9)
-            for (i = 0; i < 6; i++) {
+    for (uint32_t w = 1; w < 40; w += w < 12 ? 1 : 9)
+        for (uint32_t h = 1; h < 40; h += h < 12 ? 1 : 9)
+            for (uint32_t i = 0; i < 6; i++) {
                 picture p = make("map", w, h, any[i]);
                 mcs_image image = mcs_image_make(p.lum, w, h, 1);
-                image.bilinear = (w + h) % 2, image.floor = w % 3 ? 0 : mcs_env_mean(&image);
+                image.bilinear = (w + h) % 2;
+                image.floor = w % 3 ? 0 : mcs_env_mean(&image);
                 if ((w * h) % 5 == 0) p.lum[w * h / 2] = NAN;
                 check_same(mcs_env_bytes(w, h), image_builds, &image, "map", w, h);
                 check_same(mcs_env_bytes(w, h), rows_build, &image, "map in parts", w, h);
@@ -870,17 +985,20 @@ static void test_same_maps(void) {
 }
 static void test_same_windows(void) {
     const shade any[4] = {v_random, v_thirds, v_black, v_constant};
-    uint32_t i;
-    for (i = 0; i < 4; i++) {
-        picture p = make("window", 19, 23, any[i]);
+    for (uint32_t i = 0; i < 4; i++) {
+        const picture p = make("window", 19, 23, any[i]);
         arena a = build(&p, i == 2 ? MCS_UNIFORM : MCS_OK);
         source s;
-        memset(&s, 0, sizeof s), s.e = env_in(&a);
+        memset(&s, 0, sizeof s);
+        s.e = env_in(&a);
         for (s.rows = 1; s.rows <= 23; s.rows++) {
-            s.row = (5 * s.rows) % (24 - s.rows), s.col = (7 * s.rows) % 19, s.cols = 1 + (11 * s.rows) % 19;
+            s.row = (5 * s.rows) % (24 - s.rows);
+            s.col = (7 * s.rows) % 19;
+            s.cols = 1 + (11 * s.rows) % 19;
             check_same(mcs_env_window_bytes(s.rows), window_builds, &s, p.name, s.row, s.rows);
         }
-        arena_free(&a), free(p.lum);
+        arena_free(&a);
+        free(p.lum);
     }
 }
 /* Maps that rows of tiles divide and do not divide, or that have fewer rows than tiles; surfaces that are matte, rough, glossy
@@ -891,55 +1009,66 @@ static void test_same_products(void) {
         shade value;
     } maps[] = {{64, 32, v_sky}, {50, 37, v_random}, {7, 5, v_thirds}, {40, 70, v_region}, {33, 30, v_black}, {32, 16, v_constant}};
     static float weight[2 * 32 * 32];
-    mcs_status rc;
-    size_t k, i;
-    uint32_t rows;
-    for (k = 0; k < sizeof maps / sizeof *maps; k++)
-        for (rows = 16; rows <= 32; rows *= 2) {
-            picture p = make("product", maps[k].w, maps[k].h, maps[k].value);
-            arena a = build(&p, maps[k].value == v_black ? MCS_UNIFORM : MCS_OK), b = arena_make(mcs_tiles_bytes(env_in(&a), rows));
+    for (size_t k = 0; k < sizeof maps / sizeof *maps; k++)
+        for (uint32_t rows = 16; rows <= 32; rows *= 2) {
+            const picture p = make("product", maps[k].w, maps[k].h, maps[k].value);
+            arena a = build(&p, maps[k].value == v_black ? MCS_UNIFORM : MCS_OK);
+            arena b = arena_make(mcs_tiles_bytes(env_in(&a), rows));
             source s;
-            memset(&s, 0, sizeof s), s.e = env_in(&a), s.rows = rows, s.t = (const mcs_tiles *)(void *)b.at;
+            memset(&s, 0, sizeof s);
+            s.e = env_in(&a);
+            s.rows = rows;
+            s.t = (const mcs_tiles *)(void *)b.at;
             check_same(b.bytes, tiles_build, &s, "tiles", p.w, rows);
-            rc = mcs_tiles_build((mcs_tiles *)(void *)b.at, b.bytes, s.e, rows);
+            const mcs_status rc = mcs_tiles_build((mcs_tiles *)(void *)b.at, b.bytes, s.e, rows);
             CHECK(rc == MCS_OK || rc == MCS_UNIFORM, "tiles: %d", rc);
-            for (i = 0; i < 6; i++) {
+            for (size_t i = 0; i < 6; i++) {
                 mcs_reflection r;
                 memset(&r, 0, sizeof r);
-                r.frame = mcs_frame_make(mcs_sphere_sample(0.3f, i == 3 ? 0.999f : 0.2f).w), r.wo.z = i == 4 ? -1.0f : 1.0f;
-                r.alpha_x = i == 2 ? 0.03f : i == 5 ? 1e-3f : 0.4f, r.alpha_y = r.alpha_x, r.matte = i == 0 ? 1.0f : 0.2f;
+                r.frame = mcs_frame_make(mcs_sphere_sample(0.3f, i == 3 ? 0.999f : 0.2f).w);
+                r.wo.z = i == 4 ? -1.0f : 1.0f;
+                r.alpha_x = i == 2 ? 0.03f : i == 5 ? 1e-3f : 0.4f;
+                r.alpha_y = r.alpha_x;
+                r.matte = i == 0 ? 1.0f : 0.2f;
                 r.profile = i == 1 ? MCS_PROFILE_PHONG : i == 2 ? MCS_PROFILE_GGX : MCS_PROFILE_GAUSS;
                 s.r = &r;
                 check_same(mcs_product_bytes(rows), product_builds, &s, "product", p.w, (uint32_t)i);
             }
-            for (i = 0; i < 2 * rows * rows; i++) weight[i] = i % 3 ? hash01((uint32_t)i) : 0;
+            for (size_t i = 0; i < 2 * rows * rows; i++) weight[i] = i % 3 ? hash01((uint32_t)i) : 0;
             s.weight = weight;
             check_same(mcs_product_bytes(rows), product_builds, &s, "product of weights", p.w, rows);
-            arena_free(&a), arena_free(&b), free(p.lum);
+            arena_free(&a);
+            arena_free(&b);
+            free(p.lum);
         }
 }
 
 static void test_file(void) {
-    picture p = make("sky", 256, 128, v_sky);
-    arena a = build(&p, MCS_OK), b = arena_make(a.bytes), m = arena_make(mcs_env_window_bytes(20));
+    const picture p = make("sky", 256, 128, v_sky);
+    arena a = build(&p, MCS_OK);
+    arena b = arena_make(a.bytes);
+    arena m = arena_make(mcs_env_window_bytes(20));
     mcs_env_window *window = (mcs_env_window *)(void *)m.at;
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 131);
     FILE *f = tmpfile();
-    int i;
     CHECK(f && fwrite(a.at, 1, a.bytes, f) == a.bytes, "the table cannot be written");
     if (f) rewind(f);
     CHECK(f && fread(b.at, 1, b.bytes, f) == b.bytes && fgetc(f) == EOF && fclose(f) == 0, "the table cannot be read");
     CHECK(a.at != b.at && mcs_env_check(env_in(&b), b.bytes) == MCS_OK, "refused after it was read: %d",
           mcs_env_check(env_in(&b), b.bytes));
     CHECK(mcs_env_window_build(window, m.bytes, env_in(&a), 30, 20, 250, 17) == MCS_OK, "window");
-    for (i = 0; i < 20000; i++) {
-        const float f1 = mcs_pcg32_float(&rng), f2 = mcs_pcg32_float(&rng);
+    for (int i = 0; i < 20000; i++) {
+        const float f1 = mcs_pcg32_float(&rng);
+        const float f2 = mcs_pcg32_float(&rng);
         const mcs_texel s = mcs_env_sample(env_in(&b), f1, f2);
         CHECK(same(s, mcs_env_sample(env_in(&a), f1, f2)), "draw %d differs", i);
         CHECK(same(mcs_env_window_sample(window, env_in(&a), f1, f2), mcs_env_window_sample(window, env_in(&b), f1, f2)),
               "draw %d through the window differs", i);
     }
-    arena_free(&a), arena_free(&b), arena_free(&m), free(p.lum);
+    arena_free(&a);
+    arena_free(&b);
+    arena_free(&m);
+    free(p.lum);
 }
 
 int main(int argc, char **argv) {
@@ -959,10 +1088,11 @@ int main(int argc, char **argv) {
     if (mcst_case("65536 x 4, 1e-38 to 1e38")) test_long(65536, 4, v_wide);
     if (mcst_case("4 x 65536, 1e-38 to 1e38")) test_long(4, 65536, v_wide);
     if (getenv("MCS_TEST_BIG") && mcst_case("16384 x 8192")) {
-        picture p = make("16384 x 8192", 16384, 8192, v_random);
+        const picture p = make("16384 x 8192", 16384, 8192, v_random);
         arena a = build(&p, MCS_OK);
         check_every(&p, &a, 1);
-        arena_free(&a), free(p.lum);
+        arena_free(&a);
+        free(p.lum);
     }
     mcst_group("env memory of before");
     if (mcst_case("maps")) test_same_maps();

@@ -51,10 +51,29 @@ typedef float (*shade)(uint32_t col, uint32_t row, uint32_t w, uint32_t h);
 
 static float hash01(uint32_t i) { return mcs_u01(mcs_philox(mcst.seed, i, 4).v[0]); }
 
-static float v_random(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)h, 0.1f + hash01(r * w + c); }
-static float v_constant(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)c, (void)r, (void)w, (void)h, 0.7f; }
-static float v_black(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)c, (void)r, (void)w, (void)h, 0.0f; }
-static float v_checker(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (void)w, (void)h, (c + r) & 1 ? 1.0f : 0.0f; }
+static float v_random(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)h;
+    return 0.1f + hash01(r * w + c);
+}
+static float v_constant(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)c;
+    (void)r;
+    (void)w;
+    (void)h;
+    return 0.7f;
+}
+static float v_black(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)c;
+    (void)r;
+    (void)w;
+    (void)h;
+    return 0.0f;
+}
+static float v_checker(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    (void)w;
+    (void)h;
+    return (c + r) & 1 ? 1.0f : 0.0f;
+}
 /* A sky brighter towards its horizon, dark ground, and a sun of one texel that is 1e5 times brighter. */
 static float v_sky(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
     const float up = 1.0f - 2.0f * ((float)r + 0.5f) / (float)h;
@@ -76,42 +95,47 @@ static float v_smooth(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (
 
 static picture blank(const char *name, uint32_t w, uint32_t h) {
     picture p;
-    p.name = name, p.w = w, p.h = h, p.total = 0;
+    p.name = name;
+    p.w = w;
+    p.h = h;
+    p.total = 0;
     p.lum = (float *)get((size_t)w * h * sizeof *p.lum);
-    p.prob = (ld *)get((size_t)w * h * sizeof *p.prob), p.row_prob = (ld *)get(h * sizeof *p.row_prob);
+    p.prob = (ld *)get((size_t)w * h * sizeof *p.prob);
+    p.row_prob = (ld *)get(h * sizeof *p.row_prob);
     return p;
 }
-static void discard(picture *p) { free(p->lum), free(p->prob), free(p->row_prob); }
+static void discard(picture *p) {
+    free(p->lum);
+    free(p->prob);
+    free(p->row_prob);
+}
 /* prob[] holds weights per solid angle. */
 static void normalise(picture *p) {
-    uint32_t r, c;
     p->total = 0;
-    for (r = 0; r < p->h; r++) {
+    for (uint32_t r = 0; r < p->h; r++) {
         const ld omega = solid_angle(r, p->w, p->h);
-        for (c = 0; c < p->w; c++) p->total += p->prob[(size_t)r * p->w + c] *= omega;
+        for (uint32_t c = 0; c < p->w; c++) p->total += p->prob[(size_t)r * p->w + c] *= omega;
     }
-    for (r = 0; r < p->h && p->total > 0; r++) {
+    for (uint32_t r = 0; r < p->h && p->total > 0; r++) {
         p->row_prob[r] = 0;
-        for (c = 0; c < p->w; c++) p->row_prob[r] += p->prob[(size_t)r * p->w + c] /= p->total;
+        for (uint32_t c = 0; c < p->w; c++) p->row_prob[r] += p->prob[(size_t)r * p->w + c] /= p->total;
     }
 }
 static void weigh(picture *p) {
-    size_t i;
-    for (i = 0; i < (size_t)p->w * p->h; i++) p->prob[i] = p->lum[i];
+    for (size_t i = 0; i < (size_t)p->w * p->h; i++) p->prob[i] = p->lum[i];
     normalise(p);
 }
 static picture make(const char *name, uint32_t w, uint32_t h, shade value) {
     picture p = blank(name, w, h);
-    uint32_t r, c;
-    for (r = 0; r < h; r++)
-        for (c = 0; c < w; c++) p.lum[(size_t)r * w + c] = value(c, r, w, h);
+    for (uint32_t r = 0; r < h; r++)
+        for (uint32_t c = 0; c < w; c++) p.lum[(size_t)r * w + c] = value(c, r, w, h);
     weigh(&p);
     return p;
 }
 
 static mcs_env *env_in(const arena *a) { return (mcs_env *)(void *)a->at; }
 static arena build_image(const char *name, const mcs_image *image, mcs_status want) {
-    arena a = arena_make(mcs_env_bytes(image->w, image->h));
+    const arena a = arena_make(mcs_env_bytes(image->w, image->h));
     const mcs_status rc = mcs_env_build(env_in(&a), a.bytes, image);
     CHECK(rc == want && arena_intact(&a), "%s: build returns %d", name, rc);
     return a;
@@ -125,7 +149,8 @@ static arena build(const picture *p, mcs_status want) {
 /* Probabilities of rows, and of columns within a row, are integers over 2^31 with at least one where there is light: each moves by
  * one of rounding, its own one, and its share of those for all. Relative to the probability of the texel. */
 static double slack(const picture *p, uint32_t col, uint32_t row) {
-    const double prow = (double)p->row_prob[row], pcol = (double)(p->prob[(size_t)row * p->w + col] / p->row_prob[row]);
+    const double prow = (double)p->row_prob[row];
+    const double pcol = (double)(p->prob[(size_t)row * p->w + col] / p->row_prob[row]);
     return (1 + (2 / prow + p->h) * quantum) * (1 + (2 / pcol + p->w) * quantum) - 1;
 }
 
@@ -135,7 +160,10 @@ typedef struct {
 } moments;
 static void add(moments *m, double x) {
     const double off = x - m->mean;
-    m->n++, m->mean += off / m->n, m->squares += off * (x - m->mean), m->worst = fmax(m->worst, x);
+    m->n++;
+    m->mean += off / m->n;
+    m->squares += off * (x - m->mean);
+    m->worst = fmax(m->worst, x);
 }
 static double variance_of(const moments *m) { return m->squares / (m->n - 1); }
 static double error_of(const moments *m) { return sqrt(variance_of(m) / m->n); }
@@ -150,21 +178,19 @@ static void each_map(void (*check)(const picture *p, const mcs_image *image)) {
     for (; at && sscanf(at, "%1023s%n", name, &used) == 1; at += used) {
         hdr_picture in;
         const int ok = hdr_read(&in, name);
-        picture p;
-        mcs_image image;
-        float *rgb;
-        size_t i;
         CHECK(ok, "%s: %s", name, in.fault);
         if (!ok) continue;
-        p = blank(name, in.w, in.h);
+        picture p = blank(name, in.w, in.h);
+        float *rgb;
         rgb = (float *)get((size_t)in.w * in.h * 3 * sizeof *rgb);
-        for (i = 0; i < (size_t)in.w * in.h; i++) {
+        for (size_t i = 0; i < (size_t)in.w * in.h; i++) {
             float *c = rgb + 3 * i;
             hdr_color(&in, i, c);
-            p.prob[i] = 0.2126L * c[0] + 0.7152L * c[1] + 0.0722L * c[2], p.lum[i] = (float)p.prob[i];
+            p.prob[i] = 0.2126L * c[0] + 0.7152L * c[1] + 0.0722L * c[2];
+            p.lum[i] = (float)p.prob[i];
         }
         normalise(&p);
-        image = mcs_image_make(rgb, in.w, in.h, 3);
+        mcs_image image = mcs_image_make(rgb, in.w, in.h, 3);
         check(&p, &image);
         discard(&p);
         free(rgb);
@@ -176,15 +202,17 @@ static void each_map(void (*check)(const picture *p, const mcs_image *image)) {
  * many texels add up. The numbers are 32-bit integers: with floats, a step of u would be a part of the darkest texels' share. */
 static void count_hits(const picture *p, const mcs_image *image, int draws) {
     const size_t texels = (size_t)p->w * p->h;
-    double *observed = (double *)get(texels * sizeof *observed), *expected = (double *)get(texels * sizeof *expected), prob;
-    double *line[4];
+    double *observed = (double *)get(texels * sizeof *observed);
+    double *expected = (double *)get(texels * sizeof *expected);
     arena a = build_image(p->name, image, MCS_OK);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 137);
-    size_t i, black = 0;
-    int k, stray = 0, dof = 0;
-    for (k = 0; k < 4; k++) line[k] = (double *)get((k < 2 ? p->w : p->h) * sizeof(double));
-    for (i = 0; i < texels; i++) expected[i] = (double)p->prob[i] * draws;
-    for (k = 0; k < draws; k++) {
+    size_t black = 0;
+    int stray = 0;
+    int dof = 0;
+    double *line[4];
+    for (int k = 0; k < 4; k++) line[k] = (double *)get((k < 2 ? p->w : p->h) * sizeof(double));
+    for (size_t i = 0; i < texels; i++) expected[i] = (double)p->prob[i] * draws;
+    for (int k = 0; k < draws; k++) {
         const uint32_t b1 = mcs_pcg32_next(&rng);
         const mcs_texel s = mcs_env_sample_bits(env_in(&a), b1, mcs_pcg32_next(&rng));
         double col, row;
@@ -192,20 +220,25 @@ static void count_hits(const picture *p, const mcs_image *image, int draws) {
         if (col < p->w && row < p->h) observed[(size_t)row * p->w + (uint32_t)col]++;
         else stray++;
     }
-    for (i = 0; i < texels; i++) black += expected[i] == 0 && observed[i] > 0;
-    for (i = 0; i < texels; i++) {
-        line[0][i % p->w] += observed[i], line[1][i % p->w] += expected[i];
-        line[2][i / p->w] += observed[i], line[3][i / p->w] += expected[i];
+    for (size_t i = 0; i < texels; i++) black += expected[i] == 0 && observed[i] > 0;
+    for (size_t i = 0; i < texels; i++) {
+        line[0][i % p->w] += observed[i];
+        line[1][i % p->w] += expected[i];
+        line[2][i / p->w] += observed[i];
+        line[3][i / p->w] += expected[i];
     }
-    for (k = 0; k < 4; k += 2) {
+    double prob;
+    for (int k = 0; k < 4; k += 2) {
         prob = chi2_test(line[k], line[k + 1], k ? p->h : p->w, NULL, &dof);
         CHECK(prob >= level, "%s: %d draws, %s, %d degrees of freedom: p = %g", p->name, draws, k ? "rows" : "columns", dof, prob);
     }
     prob = chi2_test(observed, expected, texels, NULL, &dof);
     CHECK(prob >= level && black == 0 && stray == 0,
           "%s: %d draws, %d degrees of freedom: p = %g; %zu black texels hit, %d strayed", p->name, draws, dof, prob, black, stray);
-    for (k = 0; k < 4; k++) free(line[k]);
-    free(observed), free(expected), arena_free(&a);
+    for (int k = 0; k < 4; k++) free(line[k]);
+    free(observed);
+    free(expected);
+    arena_free(&a);
 }
 static void count_hits_of_map(const picture *p, const mcs_image *image) { count_hits(p, image, scaled(100000000)); }
 
@@ -221,21 +254,25 @@ static void test_hits(void) {
 
 /* The look-up of the radiance: texels are values at their centres in (phi, theta), columns wrap, rows end at the poles. */
 static double look_up(const picture *p, double col, double row) {
-    const double x = floor(col - 0.5), y = floor(row - 0.5), fx = col - 0.5 - x, fy = row - 0.5 - y;
-    const uint32_t c0 = x < 0 ? p->w - 1 : (uint32_t)x, c1 = c0 + 1 < p->w ? c0 + 1 : 0;
-    const uint32_t r0 = y < 0 ? 0 : (uint32_t)y, r1 = y < 0 ? 0 : r0 + 1 < p->h ? r0 + 1 : r0;
-    const float *a = p->lum + (size_t)r0 * p->w, *b = p->lum + (size_t)r1 * p->w;
+    const double x = floor(col - 0.5);
+    const double y = floor(row - 0.5);
+    const double fx = col - 0.5 - x;
+    const double fy = row - 0.5 - y;
+    const uint32_t c0 = x < 0 ? p->w - 1 : (uint32_t)x;
+    const uint32_t c1 = c0 + 1 < p->w ? c0 + 1 : 0;
+    const uint32_t r0 = y < 0 ? 0 : (uint32_t)y;
+    const uint32_t r1 = y < 0 ? 0 : r0 + 1 < p->h ? r0 + 1 : r0;
+    const float *a = p->lum + (size_t)r0 * p->w;
+    const float *b = p->lum + (size_t)r1 * p->w;
     return (1 - fy) * ((1 - fx) * a[c0] + fx * a[c1]) + fy * ((1 - fx) * b[c0] + fx * b[c1]);
 }
 /* The documented weights: (1 2 1)/4 along rows and along columns. */
 static void weigh_filtered(picture *p) {
-    uint32_t r, c;
-    int i, j;
-    for (r = 0; r < p->h; r++)
-        for (c = 0; c < p->w; c++) {
+    for (uint32_t r = 0; r < p->h; r++)
+        for (uint32_t c = 0; c < p->w; c++) {
             ld sum = 0;
-            for (i = -1; i <= 1; i++)
-                for (j = -1; j <= 1; j++) {
+            for (int i = -1; i <= 1; i++)
+                for (int j = -1; j <= 1; j++) {
                     const uint32_t y = i < 0 && r == 0 ? 0 : i > 0 && r + 1 == p->h ? r : r + (uint32_t)i;
                     const uint32_t x = (c + p->w + (uint32_t)j) % p->w;
                     sum += (ld)p->lum[(size_t)y * p->w + x] * (2 - abs(i)) * (2 - abs(j)) / 16;
@@ -251,10 +288,9 @@ static double lit_part(double col, double row, void *ctx) {
 }
 /* Integral of the look-up over the sphere, by quarters of texels, where it is smooth. */
 static double integral(picture *p) {
-    uint32_t r, c;
     double sum = 0;
-    for (r = 0; r < 2 * p->h; r++)
-        for (c = 0; c < 2 * p->w; c++)
+    for (uint32_t r = 0; r < 2 * p->h; r++)
+        for (uint32_t c = 0; c < 2 * p->w; c++)
             if (p->prob[(size_t)(r / 2) * p->w + c / 2] > 0)
                 sum += quad2(lit_part, p, c / 2.0, (c + 1) / 2.0, r / 2.0, (r + 1) / 2.0, 1e-8, 0, 1, NULL);
     return sum;
@@ -265,13 +301,12 @@ static double integral(picture *p) {
 static moments check_draws(const picture *p, const mcs_env *e, int draws) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 139);
     moments m = {0, 0, 0, 0};
-    int i;
-    for (i = 0; i < draws; i++) {
+    for (int i = 0; i < draws; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         const mcs_texel s = mcs_env_sample(e, u1, mcs_pcg32_float(&rng));
-        double col, row, weight;
+        double col, row;
         texel_of(p->w, p->h, s.w, &col, &row);
-        weight = look_up(p, fmin(col, p->w - 1e-9), fmin(row, p->h - 1e-9)) / s.pdf / (double)p->total;
+        const double weight = look_up(p, fmin(col, p->w - 1e-9), fmin(row, p->h - 1e-9)) / s.pdf / (double)p->total;
         add(&m, weight);
         CHECK(s.pdf > 0 && weight <= 4 * (1 + slack(p, s.col, s.row) + 8 * eps), "%s: texel (%u, %u): L / pdf is %g of the total",
               p->name, s.col, s.row, weight);
@@ -284,25 +319,22 @@ static void check_one_lit(uint32_t w, uint32_t h, uint32_t col, uint32_t row, fl
     picture p = blank("one lit texel", w, h);
     mcs_image image = image_of(&p);
     static const double at[10] = {0.002, 0.1, 0.3, 0.45, 0.499, 0.501, 0.6, 0.75, 0.9, 0.998};
-    double worst = 0, truth;
-    arena a;
-    moments m;
-    uint32_t r, c, i, j;
+    double worst = 0;
     p.lum[row * w + col] = value;
     weigh_filtered(&p);
     image.bilinear = 1;
-    a = build_image(p.name, &image, MCS_OK);
+    arena a = build_image(p.name, &image, MCS_OK);
     CHECK(fabs((double)(env_in(&a)->total / p.total - 1)) <= 8 * eps, "%u x %u, (%u, %u): total %g, not %Lg", w, h, col, row,
           env_in(&a)->total, p.total);
-    for (r = 0; r < h; r++)
-        for (c = 0; c < w; c++)
-            for (i = 0; i < 10; i++)
-                for (j = 0; j < 10; j++) {
+    for (uint32_t r = 0; r < h; r++)
+        for (uint32_t c = 0; c < w; c++)
+            for (uint32_t i = 0; i < 10; i++)
+                for (uint32_t j = 0; j < 10; j++) {
                     const mcs_vec3 v = point(w, h, c, r, at[i], at[j]);
                     const double pdf = mcs_env_pdf(env_in(&a), v);
-                    double x, y, light;
+                    double x, y;
                     texel_of(w, h, v, &x, &y);
-                    light = look_up(&p, x, y);
+                    const double light = look_up(&p, x, y);
                     CHECK(light <= 0 || pdf > 0, "%u x %u, (%u, %u) lit: no density at (%g, %g), light %g", w, h, col, row, x, y,
                           light);
                     CHECK((pdf > 0) == (p.prob[r * w + c] > 0), "%u x %u, (%u, %u) lit: density %g in (%u, %u)", w, h, col, row,
@@ -311,20 +343,21 @@ static void check_one_lit(uint32_t w, uint32_t h, uint32_t col, uint32_t row, fl
                     worst = fmax(worst, light / pdf / (double)p.total / (1 + slack(&p, c, r) + 8 * eps));
                 }
     CHECK(worst > 0 && worst <= 4, "%u x %u, (%u, %u) lit: weights up to %g of the total", w, h, col, row, worst);
-    m = check_draws(&p, env_in(&a), scaled(20000));
-    truth = integral(&p) / (double)p.total;
+    const moments m = check_draws(&p, env_in(&a), scaled(20000));
+    const double truth = integral(&p) / (double)p.total;
     CHECK(fabs(m.mean - truth) <= sigmas * error_of(&m) + 8 * eps, "%u x %u, (%u, %u) lit: mean %g +- %g, not %g", w, h, col, row,
           m.mean, error_of(&m), truth);
-    arena_free(&a), discard(&p);
+    arena_free(&a);
+    discard(&p);
 }
 
 static void test_one_lit(void) {
     static const uint32_t size[6][2] = {{24, 12}, {7, 5}, {1, 9}, {9, 1}, {2, 2}, {1, 1}};
     static const float value[3] = {1, 3e38f, 1e-30f};
-    uint32_t k, r, c, n = 0;
-    for (k = 0; k < 6; k++)
-        for (r = 0; r < size[k][1]; r++)
-            for (c = 0; c < size[k][0]; c++) {
+    uint32_t n = 0;
+    for (uint32_t k = 0; k < 6; k++)
+        for (uint32_t r = 0; r < size[k][1]; r++)
+            for (uint32_t c = 0; c < size[k][0]; c++) {
                 const int seam = c == 0 || c == size[k][0] - 1 || c == size[k][0] / 2;
                 const int pole = r == 0 || r == size[k][1] - 1 || r == size[k][1] / 2;
                 if (seam && pole) check_one_lit(size[k][0], size[k][1], c, r, value[n++ % 3]);
@@ -335,23 +368,21 @@ static void test_one_lit(void) {
 static void report_weights(const picture *from, const mcs_image *plain) {
     picture p = blank(from->name, from->w, from->h);
     mcs_image image = *plain;
-    arena a;
-    moments m;
     memcpy(p.lum, from->lum, (size_t)p.w * p.h * sizeof *p.lum);
     weigh_filtered(&p);
     image.bilinear = 1;
-    a = build_image(p.name, &image, MCS_OK);
-    m = check_draws(&p, env_in(&a), scaled(1000000));
+    arena a = build_image(p.name, &image, MCS_OK);
+    const moments m = check_draws(&p, env_in(&a), scaled(1000000));
     mcst_note("     %s: weights up to %.4f of the total, mean %.6f, rms deviation %.4f\n", p.name, m.worst, m.mean,
               sqrt(variance_of(&m)));
-    arena_free(&a), discard(&p);
+    arena_free(&a);
+    discard(&p);
 }
 
 static void test_largest_weight(void) {
     const shade all[3] = {v_sky, v_region, v_checker};
     const char *const name[3] = {"sky 512 x 256", "region 512 x 256", "checkerboard 512 x 256"};
-    int k;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         picture p = make(name[k], 512, 256, all[k]);
         const mcs_image image = image_of(&p);
         report_weights(&p, &image);
@@ -365,32 +396,32 @@ static void test_largest_weight(void) {
 /* Mean, weights and densities with the mean taken off, plain and filtered. */
 static void check_compensated(picture p, int bilinear) {
     mcs_image image = image_of(&p);
-    arena a;
-    ld mean, lowest = 4;
-    size_t i, lit = 0;
-    uint32_t r, c;
+    ld lowest = 4;
+    size_t lit = 0;
     image.bilinear = bilinear;
     if (bilinear) weigh_filtered(&p);
-    mean = p.total / (4 * acosl(-1.0L));
+    const ld mean = p.total / (4 * acosl(-1.0L));
     image.floor = 0.5f; /* must not matter to the mean */
     image.floor = mcs_env_mean(&image);
     CHECK(fabs((double)(image.floor / mean - 1)) <= 6 * eps, "%s: mean %.9g, not %.9Lg", p.name, (double)image.floor, mean);
-    for (r = 0; r < p.h; r++)
-        for (c = 0; c < p.w; c++) {
-            ld *w = &p.prob[(size_t)r * p.w + c], v = *w * p.total / solid_angle(r, p.w, p.h);
+    for (uint32_t r = 0; r < p.h; r++)
+        for (uint32_t c = 0; c < p.w; c++) {
+            ld *w = &p.prob[(size_t)r * p.w + c];
+            const ld v = *w * p.total / solid_angle(r, p.w, p.h);
             *w = v - image.floor;
             if (*w < 0) *w = 0;
             if (fabsl(v / image.floor - 1) < lowest) lowest = fabsl(v / image.floor - 1);
         }
     CHECK(lowest > 1e-5L, "%s: a texel at the mean, unfit for this test", p.name);
     normalise(&p);
-    a = build_image(p.name, &image, MCS_OK);
+    arena a = build_image(p.name, &image, MCS_OK);
     CHECK(env_in(&a)->incomplete == 1, "%s: not marked as incomplete", p.name);
     CHECK(fabs((double)(env_in(&a)->total / p.total - 1)) <= 6 * eps / (double)lowest, "%s: total %g, not %Lg", p.name,
           env_in(&a)->total, p.total);
-    for (r = 0; r < p.h; r++)
-        for (c = 0; c < p.w; c++) {
-            const double want = (double)p.prob[(size_t)r * p.w + c], omega = (double)solid_angle(r, p.w, p.h);
+    for (uint32_t r = 0; r < p.h; r++)
+        for (uint32_t c = 0; c < p.w; c++) {
+            const double want = (double)p.prob[(size_t)r * p.w + c];
+            const double omega = (double)solid_angle(r, p.w, p.h);
             const double found = mcs_env_pdf(env_in(&a), point(p.w, p.h, c, r, 0.5, 0.5)) * omega;
             lit += want > 0;
             CHECK((found > 0) == (want > 0), "%s: texel (%u, %u): probability %g, not %g", p.name, c, r, found, want);
@@ -401,13 +432,14 @@ static void check_compensated(picture p, int bilinear) {
         }
     CHECK(lit > 0 && lit < (size_t)p.w * p.h, "%s: %zu texels above the mean", p.name, lit);
     asserted = 0;
-    for (i = 0; i < 10; i++) {
+    for (size_t i = 0; i < 10; i++) {
         const mcs_texel s = mcs_env_sample(env_in(&a), hash01((uint32_t)i), 0.5f);
         CHECK(mcs_env_weight(env_in(&a), s.pdf) == 0, "%s: a weight without the other strategy", p.name);
     }
     CHECK(asserted == 10, "%s: %d of 10 uses alone reported", p.name, asserted);
     asserted = 0;
-    arena_free(&a), discard(&p);
+    arena_free(&a);
+    discard(&p);
 }
 
 static void test_compensation(void) {
@@ -427,7 +459,8 @@ static void test_complete_weight(void) {
     CHECK(mcs_env_weight(env_in(&a), 0.0f) == 0 && mcs_env_weight(env_in(&a), -1.0f) == 0 && mcs_env_weight(env_in(&a), NAN) == 0,
           "no density, no weight");
     CHECK(asserted == 0, "asserted %d times", asserted);
-    arena_free(&a), discard(&p);
+    arena_free(&a);
+    discard(&p);
 }
 
 /* Uniform and map together by the balance heuristic, one draw of each: light times 1 + cos(theta)/2, summed over the texels. */
@@ -437,30 +470,32 @@ static void test_mis(void) {
     const int draws = scaled(400000);
     moments m[2] = {{0, 0, 0, 0}, {0, 0, 0, 0}};
     ld truth = 0;
-    uint32_t r, c;
-    int k, i;
-    for (r = 0; r < p.h; r++)
-        for (c = 0; c < p.w; c++) { /* the mean of cos(theta) in a row is that of its borders */
+    for (uint32_t r = 0; r < p.h; r++)
+        for (uint32_t c = 0; c < p.w; c++) { /* the mean of cos(theta) in a row is that of its borders */
             const ld z = (cosl(acosl(-1.0L) * r / p.h) + cosl(acosl(-1.0L) * (r + 1) / p.h)) / 2;
             truth += p.lum[r * p.w + c] * solid_angle(r, p.w, p.h) * (1 + z / 2);
         }
-    for (k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k++) {
         mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 149);
-        arena a;
         image.floor = k ? mcs_env_mean(&image) : 0;
-        a = build_image(p.name, &image, MCS_OK);
-        for (i = 0; i < draws; i++) {
-            const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
-            const double z = 1 - 2 * (double)mcs_pcg32_float(&rng), phi = 2 * pi * mcs_pcg32_float(&rng), s = sqrt(1 - z * z);
-            mcs_vec3 w[2];
+        arena a = build_image(p.name, &image, MCS_OK);
+        for (int i = 0; i < draws; i++) {
+            const float u1 = mcs_pcg32_float(&rng);
+            const float u2 = mcs_pcg32_float(&rng);
+            const double z = 1 - 2 * (double)mcs_pcg32_float(&rng);
+            const double phi = 2 * pi * mcs_pcg32_float(&rng);
+            const double s = sqrt(1 - z * z);
             double sum = 0;
-            int j;
+            mcs_vec3 w[2];
             w[0] = mcs_env_sample(env_in(&a), u1, u2).w;
-            w[1].x = (float)(s * cos(phi)), w[1].y = (float)(s * sin(phi)), w[1].z = (float)z;
-            for (j = 0; j < 2; j++) {
+            w[1].x = (float)(s * cos(phi));
+            w[1].y = (float)(s * sin(phi));
+            w[1].z = (float)z;
+            for (int j = 0; j < 2; j++) {
                 double col, row;
                 texel_of(p.w, p.h, w[j], &col, &row);
-                col = fmin(col, p.w - 1.0), row = fmin(row, p.h - 1.0);
+                col = fmin(col, p.w - 1.0);
+                row = fmin(row, p.h - 1.0);
                 sum += p.lum[(uint32_t)row * p.w + (uint32_t)col] * (1 + 0.5 * w[j].z) /
                        (mcs_env_pdf(env_in(&a), w[j]) + 1 / (4 * pi));
             }
@@ -499,38 +534,44 @@ static void check_window(const picture *p, const mcs_env *e, rectangle t, int dr
     const size_t texels = (size_t)p->w * p->h;
     arena a = arena_make(mcs_env_window_bytes(t.rows));
     mcs_env_window *m = (mcs_env_window *)(void *)a.at;
-    double *observed = (double *)get(texels * sizeof *observed), *expected = (double *)get(texels * sizeof *expected);
+    double *observed = (double *)get(texels * sizeof *observed);
+    double *expected = (double *)get(texels * sizeof *expected);
     static float u1[BATCH], u2[BATCH], out[4][BATCH];
     static uint32_t cols[BATCH], rows[BATCH];
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 151);
-    ld all = 0, omega = 0, mass = 0, moved = 0;
-    uint32_t r, c, last_row = 0, last_col = 0, falls = 0;
-    mcs_status rc;
-    int i, k, uniform, stray = 0, unequal = 0;
+    ld all = 0;
+    ld omega = 0;
+    ld mass = 0;
+    ld moved = 0;
+    uint32_t last_row = 0;
+    uint32_t last_col = 0;
+    uint32_t falls = 0;
+    int stray = 0;
+    int unequal = 0;
     char what[120];
     snprintf(what, sizeof what, "%s, rows %u + %u, columns %u + %u", p->name, t.row, t.rows, t.col, t.cols);
-    for (r = 0; r < p->h; r++)
-        for (c = 0; c < p->w; c++) {
+    for (uint32_t r = 0; r < p->h; r++)
+        for (uint32_t c = 0; c < p->w; c++) {
             const ld prob = p->prob[(size_t)r * p->w + c];
             if (!inside(p, &t, c, r)) continue;
-            omega += solid_angle(r, p->w, p->h), all += prob;
+            omega += solid_angle(r, p->w, p->h);
+            all += prob;
             if (prob > 0) moved += prob * slack(p, c, r);
         }
-    uniform = !(all > 0) || e->uniform;
-    rc = mcs_env_window_build(m, a.bytes, e, t.row, t.rows, t.col, t.cols);
+    const int uniform = !(all > 0) || e->uniform;
+    const mcs_status rc = mcs_env_window_build(m, a.bytes, e, t.row, t.rows, t.col, t.cols);
     CHECK(rc == (all > 0 ? MCS_OK : MCS_UNIFORM) || (e->uniform && rc == MCS_OK), "%s: returns %d", what, rc);
     CHECK(arena_intact(&a), "%s: written outside", what);
-    for (r = 0; r < p->h; r++) {
+    for (uint32_t r = 0; r < p->h; r++) {
         const ld each = solid_angle(r, p->w, p->h);
         ld in_row = 0;
-        for (c = 0; c < p->w; c++) in_row += inside(p, &t, c, r) && all > 0 ? p->prob[(size_t)r * p->w + c] / all : 0;
-        for (c = 0; c < p->w; c++) {
+        for (uint32_t c = 0; c < p->w; c++) in_row += inside(p, &t, c, r) && all > 0 ? p->prob[(size_t)r * p->w + c] / all : 0;
+        for (uint32_t c = 0; c < p->w; c++) {
             const int in = inside(p, &t, c, r);
-            const double found = (double)(mcs_env_window_pdf(m, e, point(p->w, p->h, c, r, 0.5, 0.5)) * each),
-                         want = (double)(!in       ? 0
-                                         : uniform ? each / omega
-                                                   : p->prob[(size_t)r * p->w + c] / all);
-            mass += found, expected[(size_t)r * p->w + c] = want * draws;
+            const double found = (double)(mcs_env_window_pdf(m, e, point(p->w, p->h, c, r, 0.5, 0.5)) * each);
+            const double want = (double)(!in ? 0 : uniform ? each / omega : p->prob[(size_t)r * p->w + c] / all);
+            mass += found;
+            expected[(size_t)r * p->w + c] = want * draws;
             CHECK((found > 0) == (want > 0), "%s: texel (%u, %u): probability %g, not %g", what, c, r, found, want);
             /* the integers of the texel in the map, of the window's part of the map, of the row in the window; four roundings */
             if (want > 0)
@@ -541,14 +582,15 @@ static void check_window(const picture *p, const mcs_env *e, rectangle t, int dr
         }
     }
     CHECK(fabsl(mass - 1) <= 2 * eps, "%s: the density integrates to 1 + %Lg", what, mass - 1);
-    for (i = 0; i < draws + CORNERS * CORNERS; i++) {
+    int k;
+    for (int i = 0; i < draws + CORNERS * CORNERS; i++) {
         const int at = i % BATCH;
-        mcs_texel s;
-        double col, row;
         numbers(i, &rng, &u1[at], &u2[at]);
-        s = mcs_env_window_sample(m, e, u1[at], u2[at]);
+        mcs_texel s = mcs_env_window_sample(m, e, u1[at], u2[at]);
+        double col, row;
         texel_of(p->w, p->h, s.w, &col, &row);
-        col = fmin(floor(col), p->w - 1.0), row = fmin(floor(row), p->h - 1.0);
+        col = fmin(floor(col), p->w - 1.0);
+        row = fmin(floor(row), p->h - 1.0);
         stray += !(inside(p, &t, s.col, s.row) && inside(p, &t, (uint32_t)col, (uint32_t)row));
         unequal += !(mcs_env_window_pdf(m, e, s.w) == s.pdf && s.pdf > 0);
         if (!uniform) CHECK(p->lum[(size_t)s.row * p->w + s.col] > 0, "%s: black texel (%u, %u)", what, s.col, s.row);
@@ -567,34 +609,53 @@ static void check_window(const picture *p, const mcs_env *e, rectangle t, int dr
         const double prob = chi2_test(observed, expected, texels, NULL, &k);
         CHECK(prob >= level || k == 0, "%s: chi-square of %d degrees of freedom: p = %g", what, k, prob);
     }
-    for (i = 0; i < 512; i++) {
+    for (int i = 0; i < 512; i++) {
         const mcs_texel down = mcs_env_window_sample(m, e, hash01((uint32_t)i), ((float)i + 0.5f) / 512);
         const mcs_texel along = mcs_env_window_sample(m, e, ((float)i + 0.5f) / 512, 0.4f);
         const uint32_t col = (along.col + p->w - t.col) % p->w;
         falls += down.row < last_row || col < last_col;
-        last_row = down.row, last_col = col;
+        last_row = down.row;
+        last_col = col;
     }
     CHECK(falls == 0, "%s: rows fall with u2 or columns with u1 %u times", what, falls);
-    free(observed), free(expected), arena_free(&a);
+    free(observed);
+    free(expected);
+    arena_free(&a);
 }
 
 static void check_windows(picture p, mcs_status status) {
     arena a = build(&p, status);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 157);
     const int draws = scaled(20000);
-    int i;
-    for (i = 0; i < 14; i++) {
+    for (int i = 0; i < 14; i++) {
         rectangle t = {0, p.h, 0, p.w};
-        if (i > 1) t.row = mcs_pcg32_next(&rng) % p.h, t.rows = 1 + mcs_pcg32_next(&rng) % (p.h - t.row);
-        if (i > 0) t.col = mcs_pcg32_next(&rng) % p.w, t.cols = 1 + mcs_pcg32_next(&rng) % p.w;
+        if (i > 1) {
+            t.row = mcs_pcg32_next(&rng) % p.h;
+            t.rows = 1 + mcs_pcg32_next(&rng) % (p.h - t.row);
+        }
+        if (i > 0) {
+            t.col = mcs_pcg32_next(&rng) % p.w;
+            t.cols = 1 + mcs_pcg32_next(&rng) % p.w;
+        }
         if (i == 1) t.cols = p.w; /* all of it, from elsewhere on */
-        if (i == 2) t.col = p.w - 1, t.cols = p.w > 1 ? 2 : 1;
+        if (i == 2) {
+            t.col = p.w - 1;
+            t.cols = p.w > 1 ? 2 : 1;
+        }
         if (i == 3 || i == 4) t.rows = t.cols = 1;
-        if (i == 5) t.row = 0, t.rows = 1;
-        if (i == 6) t.row = p.h - 1, t.rows = 1, t.cols = 1;
+        if (i == 5) {
+            t.row = 0;
+            t.rows = 1;
+        }
+        if (i == 6) {
+            t.row = p.h - 1;
+            t.rows = 1;
+            t.cols = 1;
+        }
         check_window(&p, env_in(&a), t, draws);
     }
-    arena_free(&a), discard(&p);
+    arena_free(&a);
+    discard(&p);
 }
 
 /* Windows a texel wide or high in tall and wide maps, where a rounding of a direction is a part of it. */
@@ -608,10 +669,10 @@ static void check_narrow(picture p) {
                              {p.h / 2 - 1, 2, p.w - 1, p.w > 1 ? 2 : 1},
                              {p.h - p.h / 5, 1, 0, p.w},
                              {p.h - 1, 1, p.w / 3, 1}};
-    size_t i;
-    for (i = 0; i < sizeof all / sizeof *all; i++)
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (all[i].row + all[i].rows <= p.h) check_window(&p, env_in(&a), all[i], scaled(20000));
-    arena_free(&a), discard(&p);
+    arena_free(&a);
+    discard(&p);
 }
 
 static void test_windows(void) {
@@ -638,7 +699,8 @@ static void test_narrow_windows(void) {
 
 static void test_refused_windows(void) {
     picture p = make("random", 20, 10, v_random);
-    arena a = build(&p, MCS_OK), b = arena_make(mcs_env_window_bytes(4) + 8);
+    arena a = build(&p, MCS_OK);
+    arena b = arena_make(mcs_env_window_bytes(4) + 8);
     mcs_env_window *m = (mcs_env_window *)(void *)b.at;
     const size_t need = mcs_env_window_bytes(4);
     static const struct {
@@ -646,13 +708,12 @@ static void test_refused_windows(void) {
     } bad[] = {{{0, 0, 0, 5}},           {{0, 4, 0, 0}},           {{7, 4, 0, 5}},          {{10, 1, 0, 5}},
                {{0, 11, 0, 5}},          {{0, 4, 20, 1}},          {{0, 4, 0, 21}},         {{0xffffffffu, 4, 0, 5}},
                {{1, 0xffffffffu, 0, 5}}, {{0, 4, 0xffffffffu, 2}}, {{0, 4, 5, 0xffffffffu}}};
-    size_t i;
-    for (i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         const rectangle t = bad[i].t;
         const mcs_status rc = mcs_env_window_build(m, need, env_in(&a), t.row, t.rows, t.col, t.cols);
         CHECK(rc == MCS_ERR_SIZE, "rows %u + %u, columns %u + %u: %d", t.row, t.rows, t.col, t.cols, rc);
     }
-    for (i = 0; i < need; i++)
+    for (size_t i = 0; i < need; i++)
         CHECK(mcs_env_window_build(m, i, env_in(&a), 3, 4, 18, 5) == MCS_ERR_MEMORY, "%zu of %zu bytes", i, need);
     CHECK(mcs_env_window_build(NULL, need, env_in(&a), 3, 4, 18, 5) == MCS_ERR_ARG, "no memory");
     CHECK(mcs_env_window_build(m, need, NULL, 3, 4, 18, 5) == MCS_ERR_ARG, "no map");
@@ -662,7 +723,9 @@ static void test_refused_windows(void) {
           "bytes");
     CHECK(untouched(b.at, b.bytes) && arena_intact(&b), "a refused build wrote");
     CHECK(mcs_env_window_build(m, need, env_in(&a), 3, 4, 18, 5) == MCS_OK, "a good one");
-    arena_free(&a), arena_free(&b), discard(&p);
+    arena_free(&a);
+    arena_free(&b);
+    discard(&p);
 }
 
 /* ---- well-spread points ---- */
@@ -676,21 +739,24 @@ static void test_spread(void) {
     const int rounds = scaled(256) < 64 ? 64 : scaled(256);
     const char *const name[3] = {"independent", "stratified", "Sobol"};
     double rms[3];
-    int k, i;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 163);
         double squares = 0;
-        for (i = 0; i < rounds; i++) {
+        for (int i = 0; i < rounds; i++) {
             const uint32_t seed = mcs_pcg32_next(&rng);
             double sum = 0;
-            uint32_t j;
-            for (j = 0; j < POINTS; j++) {
+            for (uint32_t j = 0; j < POINTS; j++) {
                 mcs_vec2 u;
-                mcs_texel s;
-                if (k == 0) u.x = mcs_pcg32_float(&rng), u.y = mcs_pcg32_float(&rng);
-                else if (k == 1) u = mcs_stratified(j, SIDE, SIDE, seed);
-                else u.x = mcs_sobol(j, 0, seed), u.y = mcs_sobol(j, 1, seed);
-                s = mcs_env_sample(env_in(&a), u.x, u.y);
+                if (k == 0) {
+                    u.x = mcs_pcg32_float(&rng);
+                    u.y = mcs_pcg32_float(&rng);
+                } else if (k == 1) {
+                    u = mcs_stratified(j, SIDE, SIDE, seed);
+                } else {
+                    u.x = mcs_sobol(j, 0, seed);
+                    u.y = mcs_sobol(j, 1, seed);
+                }
+                mcs_texel s = mcs_env_sample(env_in(&a), u.x, u.y);
                 sum += smooth(s.w) * (s.w.z > 0 ? (double)s.w.z : 0) / s.pdf;
             }
             squares += pow(sum / POINTS - 1.2 * pi, 2);
@@ -699,7 +765,8 @@ static void test_spread(void) {
         mcst_note("     %s points: rms error %.3g, %.1f times less\n", name[k], rms[k], rms[0] / rms[k]);
         CHECK(k == 0 || rms[k] <= rms[0] / 5, "%s points: rms error %g, independent %g", name[k], rms[k], rms[0]);
     }
-    arena_free(&a), discard(&p);
+    arena_free(&a);
+    discard(&p);
 }
 
 /* A window whose share of a row is a few units of 2^31, far from the row's beginning: begin + u mass must not round up to its
@@ -707,18 +774,19 @@ static void test_spread(void) {
 static void test_few_units(void) {
     const float px[3] = {1e30f, 1e-20f, 1};
     const mcs_image image = mcs_image_make(px, 3, 1, 1);
-    arena a = arena_make(mcs_env_bytes(3, 1)), b = arena_make(mcs_env_window_bytes(1));
+    arena a = arena_make(mcs_env_bytes(3, 1));
+    arena b = arena_make(mcs_env_window_bytes(1));
     mcs_env *e = (mcs_env *)(void *)a.at;
     mcs_env_window *m = (mcs_env_window *)(void *)b.at;
-    int i;
     CHECK(mcs_env_build(e, a.bytes, &image) == MCS_OK && mcs_env_window_build(m, b.bytes, e, 0, 1, 1, 1) == MCS_OK, "build");
-    for (i = 1; i < 256; i++) {
+    for (int i = 1; i < 256; i++) {
         const float u = 1 - (float)i * 0x1p-24f;
         const mcs_texel s = mcs_env_window_sample(m, e, u, 0.5f);
         CHECK(s.col == 1 && s.pdf > 0 && mcs_env_window_pdf(m, e, s.w) == s.pdf, "u1 = %a: column %u, pdf %g, %g", (double)u, s.col,
               (double)s.pdf, (double)mcs_env_window_pdf(m, e, s.w));
     }
-    arena_free(&a), arena_free(&b);
+    arena_free(&a);
+    arena_free(&b);
 }
 
 int main(int argc, char **argv) {

@@ -110,13 +110,20 @@ static void test_bias(void) {
     for (int exponent = -100; exponent <= 60; exponent += 40) {
         if (!mcst_case("brightest channel below 2^%d", exponent)) continue;
         mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, (uint64_t)(exponent + 200));
-        double off = 0, light = 0, read = 0, dark = 0, dark_read = 0, dark_n = 0;
-        const double sigma = sqrt(1 / 12.0 / (3.0 * n)), step = ldexp(1, exponent - 8);
+        double off = 0;
+        double light = 0;
+        double read = 0;
+        double dark = 0;
+        double dark_read = 0;
+        double dark_n = 0;
+        const double sigma = sqrt(1 / 12.0 / (3.0 * n));
+        const double step = ldexp(1, exponent - 8);
         for (int i = 0; i < n; i++) {
             const int top = i % 3;
-            float c[3], back[3];
+            float c[3];
             for (int k = 0; k < 3; k++) c[k] = ldexpf(mcs_pcg32_float(&rng), exponent);
             c[top] = ldexpf(0.5f + 0.5f * mcs_pcg32_float(&rng), exponent);
+            float back[3];
             decode(hdr_encode(c), back);
             for (int k = 0; k < 3; k++) {
                 const double error = ((double)back[k] - (double)c[k]) / step;
@@ -141,8 +148,8 @@ static void test_bias(void) {
 static void test_pixels(void) {
     static const float nothing[][3] = {{0, 0, 0}, {-1, -0.0f, 0}, {NAN, -INFINITY, 0}, {0x1p-107f, 1e-33f, FLT_MIN / 8}};
     static const float most[][3] = {{FLT_MAX, 0, 1}, {1, INFINITY, NAN}, {0x1.fffffep126f, -INFINITY, 0x1p126f}};
-    float c[3];
     mcst_group("pixels");
+    float c[3];
     if (mcst_case("black is black")) {
         for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++) {
             const hdr_pixel p = hdr_encode(nothing[i]);
@@ -176,7 +183,7 @@ static void test_pixels(void) {
     if (mcst_case("what has been read is written as it was")) { /* from 1e-32 to HDR_MOST */
         for (int e = 23; e <= 187; e++) {
             for (int m = 0; m < 256; m += 5) {
-                hdr_pixel p = {{(unsigned char)(128 + m / 2), (unsigned char)m, (unsigned char)(255 - m), (unsigned char)e}};
+                const hdr_pixel p = {{(unsigned char)(128 + m / 2), (unsigned char)m, (unsigned char)(255 - m), (unsigned char)e}};
                 decode(p, c);
                 const hdr_pixel again = hdr_encode(c);
                 CHECK(!memcmp(&p, &again, sizeof p), "%d %d %d %d", p.c[0], p.c[1], p.c[2], p.c[3]);
@@ -302,25 +309,33 @@ static void test_orientations(void) {
     static bytes file;
     mcst_group("orientations");
     for (int which = 0; which < 8; which++) {
-        const int y_first = which & 1, x_sign = which & 2 ? '-' : '+', y_sign = which & 4 ? '-' : '+';
-        const int w = 7, h = 5, outer = y_first ? h : w, inner = y_first ? w : h;
-        char resolution[40], x_axis[20], y_axis[20];
+        const int y_first = which & 1;
+        const int x_sign = which & 2 ? '-' : '+';
+        const int y_sign = which & 4 ? '-' : '+';
+        const int w = 7;
+        const int h = 5;
+        const int outer = y_first ? h : w;
+        const int inner = y_first ? w : h;
+        char x_axis[20];
         snprintf(x_axis, sizeof x_axis, "%cX %d", x_sign, w);
+        char y_axis[20];
         snprintf(y_axis, sizeof y_axis, "%cY %d", y_sign, h);
+        char resolution[40];
         snprintf(resolution, sizeof resolution, "%s %s", y_first ? y_axis : x_axis, y_first ? x_axis : y_axis);
         if (!mcst_case("%s", resolution)) continue;
         begin(&file, "#?RADIANCE\n", resolution);
         for (int i = 0; i < outer; i++) {
             for (int k = 0; k < inner; k++) {
-                const int from_left = y_first ? k : i, from_bottom = y_first ? i : k;
+                const int from_left = y_first ? k : i;
+                const int from_bottom = y_first ? i : k;
                 const int x = x_sign == '+' ? from_left : w - 1 - from_left;
                 const int y = y_sign == '+' ? h - 1 - from_bottom : from_bottom;
                 put_numbered(&file, y * w + x);
             }
         }
         expect_numbered(&file, (uint32_t)w, (uint32_t)h);
-        hdr_picture p;
         granted = 1; /* for the pixels as they come, not for turning them */
+        hdr_picture p;
         CHECK(which == 5 ? load(&p, &file) : !load(&p, &file) && strstr(p.fault, "not enough memory to turn"), "'%s'", p.fault);
         granted = ALWAYS;
         free(p.pixel);
@@ -365,11 +380,11 @@ static void expect_alike(const bytes *file, uint32_t w, uint32_t h, int r, int g
 static void test_scanlines(void) {
     static const uint32_t widths[] = {1, 2, 7, 8, 9, 127, 128, 129, 255, 32767};
     static bytes file;
-    char resolution[40];
-    hdr_picture p;
     mcst_group("scan lines");
+    hdr_picture p;
     for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
         const uint32_t w = widths[i];
+        char resolution[40];
         snprintf(resolution, sizeof resolution, "-Y 2 +X %u", w);
         if (mcst_case("width %u, flat", w)) {
             begin(&file, "#?RADIANCE\n", resolution);
@@ -493,9 +508,9 @@ static void test_scanlines(void) {
 
 static void expect_matrix(const char *lines, const double m[3][3], double tolerance) {
     static bytes file;
-    hdr_picture p;
     begin(&file, lines, "-Y 1 +X 1");
     put_pixel(&file, 200, 150, 100, 130);
+    hdr_picture p;
     CHECK(load(&p, &file), "%s", p.fault);
     if (!p.pixel) return;
     float c[3];
@@ -515,9 +530,9 @@ static void expect_matrix(const char *lines, const double m[3][3], double tolera
 /* Sums of rows: what becomes of (1, 1, 1). */
 static void expect_white(const char *lines) {
     static bytes file;
-    hdr_picture p;
     begin(&file, lines, "-Y 1 +X 1");
     put_pixel(&file, 128, 128, 128, 129);
+    hdr_picture p;
     CHECK(load(&p, &file), "%s", p.fault);
     float c[3] = {0, 0, 0};
     if (p.pixel) hdr_color(&p, 0, c);
@@ -564,13 +579,13 @@ static void test_colours(void) {
         expect_white("#?RADIANCE\nEXPOSURE=.5\nPRIMARIES= .64 .33 .29 .6 .15 .06 .3333 .3333\nEXPOSURE=2\n");
     if (mcst_case("bright and dark")) { /* what leaves the range after the scale is clipped at HDR_MOST, what returns is not */
         static bytes file;
-        hdr_picture p;
-        float c[3];
         begin(&file, "#?RADIANCE\nCOLORCORR=1 1e20 1e-20\n", "-Y 1 +X 2");
         put_pixel(&file, 255, 255, 255, 200);
         put_pixel(&file, 255, 0, 255, 1);
+        hdr_picture p;
         CHECK(load(&p, &file), "%s", p.fault);
         if (p.pixel) {
+            float c[3];
             hdr_color(&p, 0, c);
             CHECK(c[0] == HDR_MOST && c[2] == HDR_MOST, "%g %g", (double)c[0], (double)c[2]);
             CHECK(fabs((double)c[1] / (255.5 * ldexp(1, 64) / 1e20) - 1) < 1e-6, "%g", (double)c[1]);
@@ -685,11 +700,11 @@ static void test_damage(void) {
         }
     }
     if (mcst_case("too little memory")) {
-        hdr_picture p;
         begin(&file, "#?RADIANCE\n", "-Y 2 +X 100000");
         put_pixel(&file, 130, 1, 2, 128);
         for (int k = 0; k < 3; k++) put_run(&file, 255);
         granted = 1;
+        hdr_picture p;
         CHECK(!load(&p, &file) && strstr(p.fault, "not enough memory"), "'%s'", p.fault);
         check_fault(&p);
         granted = ALWAYS;

@@ -80,15 +80,23 @@ static float power_37(float x) { return mcsi_power(37.5f, 0.0, x); }
 static double exact_power_37(double x) { return pow(x, 37.5); }
 
 static void sweep(const kernel *k) {
-    const uint32_t a = bits_of(k->lo) & 0x7fffffffu, b = bits_of(k->hi) & 0x7fffffffu, sign = bits_of(k->lo) & 0x80000000u;
-    uint32_t i, from = a < b ? a : b, to = a < b ? b : a;
-    double worst = 0, at = 0;
+    const uint32_t a = bits_of(k->lo) & 0x7fffffffu;
+    const uint32_t b = bits_of(k->hi) & 0x7fffffffu;
+    const uint32_t sign = bits_of(k->lo) & 0x80000000u;
+    const uint32_t from = a < b ? a : b;
+    const uint32_t to = a < b ? b : a;
+    double worst = 0;
+    double at = 0;
     float before = k->f(float_of(from | sign));
     const int rises = sign ? -k->increasing : k->increasing; /* with growing magnitude */
-    for (i = from; i <= to; i = to - i < k->step && i != to ? to : i + k->step) {
-        const float x = float_of(i | sign), y = k->f(x);
+    for (uint32_t i = from; i <= to; i = to - i < k->step && i != to ? to : i + k->step) {
+        const float x = float_of(i | sign);
+        const float y = k->f(x);
         const double e = ulp_error(y, k->exact((double)x));
-        if (!(e <= worst)) worst = e, at = (double)x;
+        if (!(e <= worst)) {
+            worst = e;
+            at = (double)x;
+        }
         /* Monotone up to rounding: a step back may be no larger than both errors, 2 bound ulp. */
         if (rises)
             CHECK((double)(y - before) * rises >= -2 * k->bound * fabs((double)y) * 0x1p-23, "%s(%.9g) turns back", k->name,
@@ -122,15 +130,20 @@ static const kernel kernels[] = {
 
 /* The quantile against the tail in double: a step of one ulp of x moves Phi(x) by phi(x) ulp(x). */
 static void quantile(void) {
-    double worst = 0, at = 0;
+    double worst = 0;
+    double at = 0;
     float before = -20;
-    uint32_t i;
-    for (i = bits_of(FLT_MIN); i < bits_of(1.0f); i += 97) {
-        const float p = float_of(i), x = mcsi_normal_quantile(p);
-        const double X = (double)x, phi = 0.39894228040143267794 * exp(-0.5 * X * X);
+    for (uint32_t i = bits_of(FLT_MIN); i < bits_of(1.0f); i += 97) {
+        const float p = float_of(i);
+        const float x = mcsi_normal_quantile(p);
+        const double X = (double)x;
+        const double phi = 0.39894228040143267794 * exp(-0.5 * X * X);
         const double off = X < 0 ? exact_tail(-X) - (double)p : (1 - (double)p) - exact_tail(X); /* towards too large an x */
         const double e = x == 0 ? fabs(off) / (phi * 0x1p-149) : fabs(off) / phi / ldexp(1.0, ilogb(X) - 23);
-        if (!(e <= worst)) worst = e, at = (double)p;
+        if (!(e <= worst)) {
+            worst = e;
+            at = (double)p;
+        }
         CHECK(x >= before || (double)(before - x) <= 0x1p-20 * fabs(X), "quantile(%.9g) turns back", (double)p);
         before = x;
     }
@@ -139,10 +152,9 @@ static void quantile(void) {
 }
 
 int main(int argc, char **argv) {
-    size_t i;
     mcst_start(argc, argv);
     mcst_group("kernels, ulp");
-    for (i = 0; i < sizeof kernels / sizeof kernels[0]; i++)
+    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++)
         if (mcst_case("%s", kernels[i].name)) sweep(&kernels[i]);
     if (mcst_case("quantile")) quantile();
 

@@ -13,12 +13,16 @@ static const double z_level = 4.42; /* that level of the normal distribution, bo
 static mcs_vec3 unit(double x, double y, double z) {
     const double len = sqrt(x * x + y * y + z * z);
     mcs_vec3 v;
-    v.x = (float)(x / len), v.y = (float)(y / len), v.z = (float)(z / len);
+    v.x = (float)(x / len);
+    v.y = (float)(y / len);
+    v.z = (float)(z / len);
     return v;
 }
 
 static mcs_vec3 random_unit(mcs_pcg32 *r) {
-    const double z = 1 - 2.0 * mcs_pcg32_float(r), phi = 6.283185307179586 * mcs_pcg32_float(r), s = sqrt((1 - z) * (1 + z));
+    const double z = 1 - 2.0 * mcs_pcg32_float(r);
+    const double phi = 6.283185307179586 * mcs_pcg32_float(r);
+    const double s = sqrt((1 - z) * (1 + z));
     return unit(s * cos(phi), s * sin(phi), z);
 }
 
@@ -32,22 +36,24 @@ static int finite3(mcs_vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfini
  * axes. An axis has components of up to 1 that pass five roundings, so its products with the other unit axes move by 5 sqrt(3). */
 static void check_frame(mcs_vec3 n) {
     const mcs_frame f = mcs_frame_make(n);
-    const double d = fabs(dot(n, n) - 1), tol = 10 * eps + d;
-    double det;
+    const double d = fabs(dot(n, n) - 1);
+    const double tol = 10 * eps + d;
     CHECK(f.n.x == n.x && f.n.y == n.y && f.n.z == n.z, "n = (%a, %a, %a): not kept", (double)n.x, (double)n.y, (double)n.z);
     CHECK(fabs(dot(f.s, f.s) - 1) <= tol && fabs(dot(f.t, f.t) - 1) <= tol, "n = (%a, %a, %a): lengths 1 + %g, 1 + %g", (double)n.x,
           (double)n.y, (double)n.z, dot(f.s, f.s) / 2 - 0.5, dot(f.t, f.t) / 2 - 0.5);
     CHECK(fabs(dot(f.s, f.t)) <= tol && fabs(dot(f.s, n)) <= tol && fabs(dot(f.t, n)) <= tol,
           "n = (%a, %a, %a): products %g, %g, %g", (double)n.x, (double)n.y, (double)n.z, dot(f.s, f.t), dot(f.s, n), dot(f.t, n));
-    det = ((double)f.s.y * f.t.z - (double)f.s.z * f.t.y) * n.x + ((double)f.s.z * f.t.x - (double)f.s.x * f.t.z) * n.y +
-          ((double)f.s.x * f.t.y - (double)f.s.y * f.t.x) * n.z;
+    const double det = ((double)f.s.y * f.t.z - (double)f.s.z * f.t.y) * n.x +
+                       ((double)f.s.z * f.t.x - (double)f.s.x * f.t.z) * n.y +
+                       ((double)f.s.x * f.t.y - (double)f.s.y * f.t.x) * n.z;
     CHECK(fabs(det - 1) <= 3 * tol, "n = (%a, %a, %a): determinant %g", (double)n.x, (double)n.y, (double)n.z, det);
 }
 
 /* There and back: three axes off by 10 eps + d each way, and twice three products and two sums. */
 static void check_round_trip(mcs_vec3 n, mcs_vec3 v) {
     const mcs_frame f = mcs_frame_make(n);
-    const mcs_vec3 w = mcs_to_world(&f, v), back = mcs_to_local(&f, w);
+    const mcs_vec3 w = mcs_to_world(&f, v);
+    const mcs_vec3 back = mcs_to_local(&f, w);
     const double tol = 3 * (10 * eps + fabs(dot(n, n) - 1)) + 12 * eps;
     const double err = fmax(fabs((double)back.x - v.x), fmax(fabs((double)back.y - v.y), fabs((double)back.z - v.z)));
     const double x = (double)f.s.x * v.x + (double)f.t.x * v.y + (double)f.n.x * v.z;
@@ -83,30 +89,31 @@ static const mcs_vec3 bad_normals[] = {
 
 static void test_frame(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 101);
-    size_t i;
     if (mcst_case("orthonormal: 1e6 random normals"))
-        for (i = 0; i < 1000000; i++) check_frame(random_unit(&r));
+        for (size_t i = 0; i < 1000000; i++) check_frame(random_unit(&r));
     if (mcst_case("orthonormal: near both poles, near the equator"))
-        for (i = 0; i < 300000; i++) {
-            const double s = pow(10, -12.0 * mcs_pcg32_float(&r)), phi = 6.283185307179586 * mcs_pcg32_float(&r);
+        for (size_t i = 0; i < 300000; i++) {
+            const double s = pow(10, -12.0 * mcs_pcg32_float(&r));
+            const double phi = 6.283185307179586 * mcs_pcg32_float(&r);
             check_frame(unit(s * cos(phi), s * sin(phi), i & 1 ? -1 : 1));
             check_frame(unit(cos(phi), sin(phi), i & 1 ? -s : s));
         }
     if (mcst_case("orthonormal: axes, signed zeros, subnormals"))
-        for (i = 0; i < sizeof odd_normals / sizeof *odd_normals; i++) check_frame(odd_normals[i]);
+        for (size_t i = 0; i < sizeof odd_normals / sizeof *odd_normals; i++) check_frame(odd_normals[i]);
     if (mcst_case("bad normals give a finite frame"))
-        for (i = 0; i < sizeof bad_normals / sizeof *bad_normals; i++) {
+        for (size_t i = 0; i < sizeof bad_normals / sizeof *bad_normals; i++) {
             const mcs_frame f = mcs_frame_make(bad_normals[i]);
             CHECK(finite3(f.s) && finite3(f.t) && finite3(f.n), "normal (%g, %g, %g)", (double)bad_normals[i].x,
                   (double)bad_normals[i].y, (double)bad_normals[i].z);
         }
     if (mcst_case("to_local undoes to_world")) {
-        for (i = 0; i < 300000; i++) check_round_trip(random_unit(&r), random_unit(&r));
-        for (i = 0; i < sizeof odd_normals / sizeof *odd_normals; i++) check_round_trip(odd_normals[i], random_unit(&r));
+        for (size_t i = 0; i < 300000; i++) check_round_trip(random_unit(&r), random_unit(&r));
+        for (size_t i = 0; i < sizeof odd_normals / sizeof *odd_normals; i++) check_round_trip(odd_normals[i], random_unit(&r));
     }
     if (mcst_case("+z goes to the normal, exactly"))
-        for (i = 0; i < 1000; i++) {
-            const mcs_vec3 n = random_unit(&r), up = {0, 0, 1};
+        for (size_t i = 0; i < 1000; i++) {
+            const mcs_vec3 n = random_unit(&r);
+            const mcs_vec3 up = {0, 0, 1};
             const mcs_frame f = mcs_frame_make(n);
             const mcs_vec3 w = mcs_to_world(&f, up);
             CHECK(w.x == n.x && w.y == n.y && w.z == n.z, "normal (%a, %a, %a)", (double)n.x, (double)n.y, (double)n.z);
@@ -115,7 +122,10 @@ static void test_frame(void) {
 
 /* Components up to 1e37 count, larger ones and NaN are as 0. Vectors along an axis scale exactly: one product, and zeros added. */
 static void same_moved(const mcs_frame *f, mcs_vec3 v, mcs_vec3 instead, float scale) {
-    const mcs_vec3 w = mcs_to_world(f, v), x = mcs_to_world(f, instead), l = mcs_to_local(f, v), m = mcs_to_local(f, instead);
+    const mcs_vec3 w = mcs_to_world(f, v);
+    const mcs_vec3 x = mcs_to_world(f, instead);
+    const mcs_vec3 l = mcs_to_local(f, v);
+    const mcs_vec3 m = mcs_to_local(f, instead);
     CHECK(w.x == x.x * scale && w.y == x.y * scale && w.z == x.z * scale, "(%g, %g, %g): to_world", (double)v.x, (double)v.y,
           (double)v.z);
     CHECK(l.x == m.x * scale && l.y == m.y * scale && l.z == m.z * scale, "(%g, %g, %g): to_local", (double)v.x, (double)v.y,
@@ -125,14 +135,14 @@ static void same_moved(const mcs_frame *f, mcs_vec3 v, mcs_vec3 instead, float s
 static void test_huge_vectors(void) {
     static const float beyond[] = {1.01e37f, 2e37f, -2e37f, FLT_MAX, INFINITY, -INFINITY, NAN};
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 149);
-    int i, j, k;
-    for (i = 0; i < 100; i++) {
+    for (int i = 0; i < 100; i++) {
         const mcs_frame f = mcs_frame_make(random_unit(&r));
-        for (k = 0; k < 3; k++) {
-            const mcs_vec3 axis = {k == 0, k == 1, k == 2}, far = {1e37f * axis.x, 1e37f * axis.y, 1e37f * axis.z};
+        for (int k = 0; k < 3; k++) {
+            const mcs_vec3 axis = {k == 0, k == 1, k == 2};
+            const mcs_vec3 far = {1e37f * axis.x, 1e37f * axis.y, 1e37f * axis.z};
             const mcs_vec3 rest = {k == 0 ? 0 : 0.5f, k == 1 ? 0 : -0.25f, k == 2 ? 0 : 0.75f};
             same_moved(&f, far, axis, 1e37f);
-            for (j = 0; j < (int)(sizeof beyond / sizeof *beyond); j++) {
+            for (int j = 0; j < (int)(sizeof beyond / sizeof *beyond); j++) {
                 const mcs_vec3 v = {k == 0 ? beyond[j] : rest.x, k == 1 ? beyond[j] : rest.y, k == 2 ? beyond[j] : rest.z};
                 same_moved(&f, v, rest, 1);
             }
@@ -149,13 +159,15 @@ static void test_cone_rim(float k) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 151);
     const double t = k * (1 + 4e-6);
     mcs_vec3 past = {0, 0, 0};
-    int i, lost = 0;
-    for (i = 0; i < 1 << 18; i++) {
-        const float u1 = i & 1 ? (float)(1 - (1 + (i >> 1) % 4) * eps) : mcs_pcg32_float(&r), u2 = mcs_pcg32_float(&r);
+    int lost = 0;
+    for (int i = 0; i < 1 << 18; i++) {
+        const float u1 = i & 1 ? (float)(1 - (1 + (i >> 1) % 4) * eps) : mcs_pcg32_float(&r);
+        const float u2 = mcs_pcg32_float(&r);
         lost += !(mcs_cone_pdf(k, mcs_cone_sample(k, u1, u2).w) > 0);
     }
     CHECK(lost == 0, "%d of 2^18 draws lie outside", lost);
-    past.x = (float)sqrt(t * (2 - t)), past.z = (float)(1 - t);
+    past.x = (float)sqrt(t * (2 - t));
+    past.z = (float)(1 - t);
     CHECK(mcs_cone_pdf(k, past) == 0, "density %g past the rim", (double)mcs_cone_pdf(k, past));
 }
 
@@ -174,22 +186,26 @@ static mcs_vec3 beside(mcs_pcg32 *r, mcs_vec3 wo, double s) {
 
 static void test_microfacet(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 103);
-    int i;
     /* dot product 3 eps, doubled 6, product with a component 2 more of up to 2, difference 1: 11 eps */
     if (mcst_case("reflect"))
-        for (i = 0; i < 300000; i++) {
-            const mcs_vec3 wo = random_unit(&r), h = random_unit(&r), wi = mcs_reflect(wo, h);
+        for (int i = 0; i < 300000; i++) {
+            const mcs_vec3 wo = random_unit(&r);
+            const mcs_vec3 h = random_unit(&r);
+            const mcs_vec3 wi = mcs_reflect(wo, h);
             const double err = far_from(wi, o_reflect(o_v3(wo.x, wo.y, wo.z), o_v3(h.x, h.y, h.z)));
             CHECK(err <= 12 * eps, "off by %g", err);
         }
     /* wo + wi is rounded once a component, hence right to eps however much it cancels; squares, sum and root 3, quotient 1 */
     if (mcst_case("half and cos_d, down to 1e-7 from grazing and from opposed"))
-        for (i = 0; i < 300000; i++) {
+        for (int i = 0; i < 300000; i++) {
             const double s = pow(10, -7.0 * mcs_pcg32_float(&r));
-            const mcs_vec3 wo = random_unit(&r), wi = i % 3 ? beside(&r, wo, i % 3 == 1 ? s : -s) : random_unit(&r);
-            const o_vec3 o = o_v3(wo.x, wo.y, wo.z), in = o_v3(wi.x, wi.y, wi.z);
+            const mcs_vec3 wo = random_unit(&r);
+            const mcs_vec3 wi = i % 3 ? beside(&r, wo, i % 3 == 1 ? s : -s) : random_unit(&r);
+            const o_vec3 o = o_v3(wo.x, wo.y, wo.z);
+            const o_vec3 in = o_v3(wi.x, wi.y, wi.z);
             const mcs_vec3 h = mcs_half(wo, wi);
-            const double c = mcs_cos_d(wo, wi), want = (double)o_cos_d(o, in);
+            const double c = mcs_cos_d(wo, wi);
+            const double want = (double)o_cos_d(o, in);
             CHECK(fabs(c - want) <= 5 * eps * want, "cos_d %g, not %g", c, want);
             if (want == 0) continue; /* exactly opposed */
             CHECK(far_from(h, o_half(o, in)) <= 6 * eps, "half is off by %g", far_from(h, o_half(o, in)));
@@ -210,8 +226,11 @@ static void test_microfacet(void) {
                                  {0, 0, 2.5f},
                                  {0, 0, 0.4f}};
         const int n = (int)(sizeof dirs / sizeof *dirs);
-        for (i = 0; i < n * n; i++) {
-            const mcs_vec3 wo = dirs[i / n], wi = dirs[i % n], h = mcs_half(wo, wi), w = mcs_reflect(wo, wi);
+        for (int i = 0; i < n * n; i++) {
+            const mcs_vec3 wo = dirs[i / n];
+            const mcs_vec3 wi = dirs[i % n];
+            const mcs_vec3 h = mcs_half(wo, wi);
+            const mcs_vec3 w = mcs_reflect(wo, wi);
             const float c = mcs_cos_d(wo, wi);
             CHECK(finite3(h) && finite3(w) && isfinite(c),
                   "directions %d and %d: half (%g, %g, %g), reflect (%g, %g, %g), cos_d %g", i / n, i % n, (double)h.x, (double)h.y,
@@ -223,11 +242,14 @@ static void test_microfacet(void) {
     /* A mirror pair at grazing incidence: |H|^2 = 4 z^2 and L = ax/(2 sqrt(pi) z), so the weight is G2 = sqrt(pi) z/ax. z L takes
      * 8 eps (t 2, its constant 1, e^x 2, three operations), the rest 7; what the form leaves out is below 1. */
     if (mcst_case("weight of Beckmann's mirror direction, cosines down to 1e-15"))
-        for (i = 9; i < 16; i++) { /* the form holds for z far below ax */
-            const float z = (float)pow(10, -i), a = 0.1f;
+        for (int i = 9; i < 16; i++) { /* the form holds for z far below ax */
+            const float z = (float)pow(10, -i);
+            const float a = 0.1f;
             const mcs_beckmann m = mcs_beckmann_make(a, a);
-            const mcs_vec3 wo = {1, 0, z}, wi = {-1, 0, z};
-            const double got = (double)mcs_beckmann_weight(&m, wo, wi), want = 1.772453850905516 * (double)z / (double)a;
+            const mcs_vec3 wo = {1, 0, z};
+            const mcs_vec3 wi = {-1, 0, z};
+            const double got = (double)mcs_beckmann_weight(&m, wo, wi);
+            const double want = 1.772453850905516 * (double)z / (double)a;
             CHECK(fabs(got - want) <= 16 * eps * want, "z = %g: %g, not %g", (double)z, got, want);
         }
     /* H = wo + wi is about (6e-20, 0, 2e-15): the square of x, and with it the azimuth, lies below FLT_MIN. Within E of the header,
@@ -235,21 +257,23 @@ static void test_microfacet(void) {
     if (mcst_case("density of Ashikhmin and Shirley near the normal, wo grazing")) {
         const mcs_ashikhmin m = mcs_ashikhmin_make(1e9f, 0.0194f);
         const mcs_vec3 wo = {-1.8e-16f, -1, 1.03e-15f};
-        for (i = 60; i < 127; i += 6) {
+        for (int i = 60; i < 127; i += 6) {
             const mcs_vec3 wi = mcs_ashikhmin_sample(&m, wo, 0x1.e23e8cp-2f, (float)ldexp(0x1.0007b2p0, -i)).wi;
-            const double got = (double)mcs_ashikhmin_pdf(&m, wo, wi),
-                         want = (double)o_ashikhmin_pdf(1e9f, 0.0194f, o_v3(wo.x, wo.y, wo.z), o_v3(wi.x, wi.y, wi.z));
+            const double got = (double)mcs_ashikhmin_pdf(&m, wo, wi);
+            const double want = (double)o_ashikhmin_pdf(1e9f, 0.0194f, o_v3(wo.x, wo.y, wo.z), o_v3(wi.x, wi.y, wi.z));
             CHECK(fabs(got - want) <= 1e-6 * want, "u2 = 2^-%d: %g, not %g", i, got, want);
         }
     }
     if (mcst_case("reflect_pdf")) {
         const float odd[] = {0.0f, -0.0f, -1e-3f, -1.0f, -INFINITY, NAN};
-        for (i = 0; i < 100000; i++) {
-            const float p = (float)pow(10, 40.0 * mcs_pcg32_float(&r) - 20), c = (float)pow(10, -8.0 * mcs_pcg32_float(&r));
-            const double want = p / (4.0 * c), got = mcs_reflect_pdf(p, c);
+        for (int i = 0; i < 100000; i++) {
+            const float p = (float)pow(10, 40.0 * mcs_pcg32_float(&r) - 20);
+            const float c = (float)pow(10, -8.0 * mcs_pcg32_float(&r));
+            const double want = p / (4.0 * c);
+            const double got = mcs_reflect_pdf(p, c);
             CHECK(fabs(got - want) <= 2 * eps * want, "%g / (4 * %g): %g", (double)p, (double)c, got);
         }
-        for (i = 0; i < 6; i++)
+        for (int i = 0; i < 6; i++)
             CHECK(mcs_reflect_pdf(1.0f, odd[i]) == 0, "cos_d %g: %g", (double)odd[i], (double)mcs_reflect_pdf(1.0f, odd[i]));
         CHECK(isfinite(mcs_reflect_pdf(FLT_MAX, 1e-30f)) && isfinite(mcs_reflect_pdf(NAN, 0.5f)) &&
                   isfinite(mcs_reflect_pdf(INFINITY, 0.5f)) && isfinite(mcs_reflect_pdf(1.0f, 1e-45f)),
@@ -258,15 +282,16 @@ static void test_microfacet(void) {
     /* 1 - c is exact or rounded once, its fifth power 5 + 3, its product with 1 - f0 two more, the sum one */
     if (mcst_case("schlick")) {
         const float odd[] = {-1.0f, -1e-30f, 0.0f, 1e-30f, 0.5f, 1.0f, 1.0000001f, 2.0f, 1e30f, INFINITY, -INFINITY, NAN};
-        for (i = 0; i < 100000; i++) {
-            const float f0 = i % 7 ? mcs_pcg32_float(&r) : 0.0f,
-                        c = i % 5 ? mcs_pcg32_float(&r) : (float)(1 - pow(10, -7.0 * mcs_pcg32_float(&r)));
-            const double want = (double)o_schlick(f0, c), got = mcs_schlick(f0, c);
+        for (int i = 0; i < 100000; i++) {
+            const float f0 = i % 7 ? mcs_pcg32_float(&r) : 0.0f;
+            const float c = i % 5 ? mcs_pcg32_float(&r) : (float)(1 - pow(10, -7.0 * mcs_pcg32_float(&r)));
+            const double want = (double)o_schlick(f0, c);
+            const double got = mcs_schlick(f0, c);
             CHECK(fabs(got - want) <= 12 * eps * want + FLT_MIN, "f0 = %g, cos_d = %g: %g, not %g", (double)f0, (double)c, got,
                   want);
         }
         CHECK(mcs_schlick(0.04f, 0.0f) == 1.0f && mcs_schlick(0.04f, 1.0f) == 0.04f, "both ends");
-        for (i = 0; i < 144; i++) {
+        for (int i = 0; i < 144; i++) {
             const float f = mcs_schlick(odd[i / 12], odd[i % 12]);
             CHECK(isfinite(f), "f0 = %g, cos_d = %g: %g", (double)odd[i / 12], (double)odd[i % 12], (double)f);
         }
@@ -274,7 +299,7 @@ static void test_microfacet(void) {
     if (mcst_case("half-vectors that were too short")) { /* by up to 4.3 eps: found among 4e7 random ones */
         static const float hard[][4] = {{0x1.388p+13f, 0x1.fffffep-1f, 0x1.f747p-1f, 0x1.3de148p-3f},
                                         {0x1.9p+6f, 0x1p-149f, 0x1.b5900ep-1f, 0x1.51b582p-1f}};
-        for (i = 0; i < 2; i++) {
+        for (int i = 0; i < 2; i++) {
             const float *a = hard[i];
             const mcs_ashikhmin m = mcs_ashikhmin_make(a[0], a[1]);
             const mcs_vec3 h = mcs_ashikhmin_h_sample(&m, a[2], a[3]).w;
@@ -292,12 +317,14 @@ static void test_linear_tiny(void) {
     static const float weights[] = {0.0f, 1e-45f, 3e-45f, 1e-44f, 1e-42f, 1e-40f, 1e-38f, FLT_MIN, 1e-30f},
                        u[] = {0.0f, 1e-45f, 1e-40f, FLT_MIN, 1e-35f, 1e-32f, 1e-25f, 1e-20f, 1e-12f, 1e-6f, 0.3f, 0.99999994f};
     enum { WEIGHTS = (int)(sizeof weights / sizeof *weights), US = (int)(sizeof u / sizeof *u) };
-    int i, k;
-    for (i = 1; i < WEIGHTS * WEIGHTS; i++)
-        for (k = 0; k < US; k++) {
-            const float a = weights[i / WEIGHTS], b = weights[i % WEIGHTS];
+    for (int i = 1; i < WEIGHTS * WEIGHTS; i++)
+        for (int k = 0; k < US; k++) {
+            const float a = weights[i / WEIGHTS];
+            const float b = weights[i % WEIGHTS];
             const mcs_sample1 s = mcs_linear_sample(a, b, u[k]);
-            const ld x = o_linear_map(a, b, u[k]), pdf = o_linear_pdf_u(a, b, u[k]), peak = 2 * fmaxl(a, b) / ((ld)a + b);
+            const ld x = o_linear_map(a, b, u[k]);
+            const ld pdf = o_linear_pdf_u(a, b, u[k]);
+            const ld peak = 2 * fmaxl(a, b) / ((ld)a + b);
             const ld e = pdf > 0 ? 1e-6L * (1 + fabsl(logl(pdf / peak))) : 0;
             CHECK(o_ulp(s.x, x) <= 4, "a = %g, b = %g, u = %g: x %g, not %Lg", (double)a, (double)b, (double)u[k], (double)s.x, x);
             CHECK(fabsl((ld)s.pdf - pdf) <= 0.2L * e * pdf + FLT_MIN * peak, "a = %g, b = %g, u = %g: pdf %g, not %Lg", (double)a,
@@ -314,8 +341,10 @@ enum { DENSITIES = (int)(sizeof densities / sizeof *densities) };
 /* Quotient g/f: eps; balance: 1 + g/f and the reciprocal once each, 3 eps. Power: the square makes it 3, then the same, 5 eps.
  * A weight below FLT_MIN may be lost. */
 static void check_heuristics(float f, float g) {
-    const ld lf = f, lg = g;
-    const double b = mcs_mis_balance(f, g), p = mcs_mis_power(f, g);
+    const ld lf = f;
+    const ld lg = g;
+    const double b = mcs_mis_balance(f, g);
+    const double p = mcs_mis_power(f, g);
     CHECK(b >= 0 && b <= 1 && p >= 0 && p <= 1, "f = %g, g = %g: balance %g, power %g", (double)f, (double)g, b, p);
     if (f == 0) CHECK(b == 0 && p == 0, "f = 0, g = %g: balance %g, power %g", (double)g, b, p);
     if (!(f >= 0 && g >= 0) || (f == 0 && g == 0)) return;
@@ -326,7 +355,8 @@ static void check_heuristics(float f, float g) {
     if (isinf(f) || isinf(g)) {
         CHECK(b == (f == g ? 0.5 : isinf(f) ? 1 : 0) && p == b, "f = %g, g = %g: balance %g, power %g", (double)f, (double)g, b, p);
     } else {
-        const double wb = (double)(lf / (lf + lg)), wp = (double)(lf * lf / (lf * lf + lg * lg));
+        const double wb = (double)(lf / (lf + lg));
+        const double wp = (double)(lf * lf / (lf * lf + lg * lg));
         CHECK(fabs(b - wb) <= 3 * eps * wb + FLT_MIN, "f = %g, g = %g: balance %g, not %g", (double)f, (double)g, b, wb);
         CHECK(fabs(p - wp) <= 5 * eps * wp + FLT_MIN, "f = %g, g = %g: power %g, not %g", (double)f, (double)g, p, wp);
     }
@@ -334,11 +364,10 @@ static void check_heuristics(float f, float g) {
 
 static void test_heuristics(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 107);
-    int i;
     if (mcst_case("heuristics: extremes"))
-        for (i = 0; i < DENSITIES * DENSITIES; i++) check_heuristics(densities[i / DENSITIES], densities[i % DENSITIES]);
+        for (int i = 0; i < DENSITIES * DENSITIES; i++) check_heuristics(densities[i / DENSITIES], densities[i % DENSITIES]);
     if (mcst_case("heuristics: 1e-38 to 1e38, and close to each other"))
-        for (i = 0; i < 300000; i++) {
+        for (int i = 0; i < 300000; i++) {
             const double f = pow(10, 76.0 * mcs_pcg32_float(&r) - 38);
             check_heuristics((float)f, (float)pow(10, 76.0 * mcs_pcg32_float(&r) - 38));
             check_heuristics((float)(f * 1e-2), (float)(f * 1e-2 * pow(10, 4.0 * mcs_pcg32_float(&r) - 2)));
@@ -346,22 +375,26 @@ static void test_heuristics(void) {
     /* 1 - c, two products and the sum: 3 eps of a sum of positive terms. Negative densities and NaN count as 0. */
     if (mcst_case("mix_pdf")) {
         const float c[] = {0.0f, 0x1p-24f, 0.25f, 0.3f, 0.5f, 0.999f, 1.0f};
-        int j;
-        for (j = 0; j < 7; j++)
-            for (i = 0; i < DENSITIES * DENSITIES; i++) {
-                const float f = densities[i / DENSITIES], g = densities[i % DENSITIES], p = mcs_mix_pdf(c[j], f, g);
+        for (int j = 0; j < 7; j++)
+            for (int i = 0; i < DENSITIES * DENSITIES; i++) {
+                const float f = densities[i / DENSITIES];
+                const float g = densities[i % DENSITIES];
+                const float p = mcs_mix_pdf(c[j], f, g);
                 const double want = (double)((ld)c[j] * (f > 0 ? f : 0) + (1 - (ld)c[j]) * (g > 0 ? g : 0));
                 CHECK(isfinite(p), "c = %g, f = %g, g = %g: %g", (double)c[j], (double)f, (double)g, (double)p);
                 if (want <= FLT_MAX)
                     CHECK(fabs(p - want) <= 3 * eps * want + FLT_MIN, "c = %g, f = %g, g = %g: %g, not %g", (double)c[j], (double)f,
                           (double)g, (double)p, want);
             }
-        for (i = 0; i < 100000; i++) {
-            const float w = mcs_pcg32_float(&r), f = 10 * mcs_pcg32_float(&r), g = 10 * mcs_pcg32_float(&r);
-            const double want = (double)((ld)w * f + (1 - (ld)w) * g), p = mcs_mix_pdf(w, f, g);
+        for (int i = 0; i < 100000; i++) {
+            const float w = mcs_pcg32_float(&r);
+            const float f = 10 * mcs_pcg32_float(&r);
+            const float g = 10 * mcs_pcg32_float(&r);
+            const double want = (double)((ld)w * f + (1 - (ld)w) * g);
+            const double p = mcs_mix_pdf(w, f, g);
             CHECK(fabs(p - want) <= 3 * eps * want, "c = %g, f = %g, g = %g: %g, not %g", (double)w, (double)f, (double)g, p, want);
         }
-        for (i = 0; i < DENSITIES; i++) CHECK(isfinite(mcs_mix_pdf(densities[i], 1.0f, 2.0f)), "c = %g", (double)densities[i]);
+        for (int i = 0; i < DENSITIES; i++) CHECK(isfinite(mcs_mix_pdf(densities[i], 1.0f, 2.0f)), "c = %g", (double)densities[i]);
         CHECK(mcs_mix_pdf(NAN, 1.0f, 2.0f) == 0, "c = NaN: %g", (double)mcs_mix_pdf(NAN, 1.0f, 2.0f));
     }
 }
@@ -370,34 +403,37 @@ static void test_heuristics(void) {
 static void test_mis_estimates(void) {
     enum { ROWS = 5, N = 200000 };
     static const char *const names[ROWS] = {"balance 1+1", "power 1+1", "balance 1+3", "power 3+1", "one sample, 0.3"};
-    mcs_stat s[ROWS];
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 109);
-    int row, i, k;
+    mcs_stat s[ROWS];
     memset(s, 0, sizeof s);
-    for (row = 0; row < ROWS; row++)
-        for (i = 0; i < N; i++) {
-            const int nf = row == 3 ? 3 : 1, ng = row == 2 ? 3 : 1;
+    for (int row = 0; row < ROWS; row++)
+        for (int i = 0; i < N; i++) {
+            const int nf = row == 3 ? 3 : 1;
+            const int ng = row == 2 ? 3 : 1;
             double sum = 0;
-            for (k = 0; k < (row == 4 ? 1 : nf + ng); k++) {
+            for (int k = 0; k < (row == 4 ? 1 : nf + ng); k++) {
                 const int first = row == 4 ? mcs_pcg32_float(&r) < 0.3f : k < nf;
-                const float u = mcs_pcg32_float(&r), x = first ? mcs_power_sample(2, u).x : mcs_linear_sample(1, 0, u).x;
-                const float pf = mcs_power_pdf(2, x), pg = mcs_linear_pdf(1, 0, x);
+                const float u = mcs_pcg32_float(&r);
+                const float x = first ? mcs_power_sample(2, u).x : mcs_linear_sample(1, 0, u).x;
+                const float pf = mcs_power_pdf(2, x);
+                const float pg = mcs_linear_pdf(1, 0, x);
                 const double f = 12.0 * x * x * (1.0 - x);
                 if (row == 4) {
                     const double p = mcs_mix_pdf(0.3f, pf, pg);
                     sum += p > 0 ? f / p : 0;
                 } else {
-                    const float mine = first ? (float)nf * pf : (float)ng * pg, other = first ? (float)ng * pg : (float)nf * pf;
+                    const float mine = first ? (float)nf * pf : (float)ng * pg;
+                    const float other = first ? (float)ng * pg : (float)nf * pf;
                     const double w = row & 1 ? mcs_mis_power(mine, other) : mcs_mis_balance(mine, other);
                     sum += mine > 0 ? w * f / mine : 0;
                 }
             }
             mcs_stat_add(&s[row], sum);
         }
-    for (row = 0; row < ROWS; row++) {
+    for (int row = 0; row < ROWS; row++) {
         const double off = fabs(s[row].mean - 1) / mcs_stat_error(&s[row]);
         CHECK(off <= z_level, "%s: %g, %g standard errors from 1", names[row], s[row].mean, off);
-        for (i = 0; i < row; i++) {
+        for (int i = 0; i < row; i++) {
             const double e = hypot(mcs_stat_error(&s[row]), mcs_stat_error(&s[i]));
             CHECK(fabs(s[row].mean - s[i].mean) <= z_level * e, "%s and %s disagree", names[row], names[i]);
         }
@@ -415,16 +451,17 @@ static ld hard_mean, hard_m2;
 
 static void make_hard(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 113);
-    int i;
     hard_mean = hard_m2 = 0;
-    for (i = 0; i < HARD; i++) hard_mean += hard[i] = 1e9 + mcs_normal_sample(0, 1, mcs_pcg32_float(&r)).x;
+    for (int i = 0; i < HARD; i++) hard_mean += hard[i] = 1e9 + mcs_normal_sample(0, 1, mcs_pcg32_float(&r)).x;
     hard_mean /= HARD;
-    for (i = 0; i < HARD; i++) hard_m2 += (hard[i] - hard_mean) * (hard[i] - hard_mean);
+    for (int i = 0; i < HARD; i++) hard_m2 += (hard[i] - hard_mean) * (hard[i] - hard_mean);
 }
 
 static void check_hard(const char *what, const mcs_stat *s) {
-    const double u = 0x1p-53, k = 1e9;
-    const double mean = fabs((double)(s->mean - hard_mean)), m2 = fabs((double)(s->m2 / hard_m2 - 1));
+    const double u = 0x1p-53;
+    const double k = 1e9;
+    const double mean = fabs((double)(s->mean - hard_mean));
+    const double m2 = fabs((double)(s->m2 / hard_m2 - 1));
     CHECK(s->n == HARD, "%s: n = %g", what, s->n);
     CHECK(mean <= HARD * u * 1e9, "%s: mean is off by %g", what, mean);
     CHECK(m2 <= HARD * k * u, "%s: sum of squares is off by %g relative", what, m2);
@@ -455,14 +492,19 @@ static int same_stat(mcs_stat a, mcs_stat b) { return a.n == b.n && a.mean == b.
  * them; sums of squares above DBL_MAX are DBL_MAX. Rounding: 5 steps of the mean, each to 2 u of the largest value, and of m2, each
  * to 6 u of the terms, which share a sign. A mean may be off by what its terms cancel, and m2 by its square root's part in that. */
 static void check_huge(const mcs_stat *s, const double *x, int n) {
-    const ld u = 0x1p-53L, down = ldexpl(1, -600);
-    ld mean = 0, m2 = 0, size = 0, off;
-    int i;
-    for (i = 0; i < n; i++) mean += (ld)x[i] * down / n, size = fmaxl(size, fabsl((ld)x[i]) * down);
-    for (i = 0; i < n; i++) m2 += ((ld)x[i] * down - mean) * ((ld)x[i] * down - mean);
+    const ld u = 0x1p-53L;
+    const ld down = ldexpl(1, -600);
+    ld mean = 0;
+    ld m2 = 0;
+    ld size = 0;
+    for (int i = 0; i < n; i++) {
+        mean += (ld)x[i] * down / n;
+        size = fmaxl(size, fabsl((ld)x[i]) * down);
+    }
+    for (int i = 0; i < n; i++) m2 += ((ld)x[i] * down - mean) * ((ld)x[i] * down - mean);
     CHECK(s->n == n && fabsl((ld)s->mean * down - mean) <= 10 * u * size, "%g %g %g ...: mean %g, not %Lg 2^600", x[0], x[1], x[2],
           s->mean, mean);
-    off = 30 * u * m2 + 2 * (10 * u * size) * sqrtl(n * m2) + n * (10 * u * size) * (10 * u * size);
+    const ld off = 30 * u * m2 + 2 * (10 * u * size) * sqrtl(n * m2) + n * (10 * u * size) * (10 * u * size);
     if ((m2 - off) / down < DBL_MAX * down)
         CHECK(s->m2 >= 0 && fabsl((ld)s->m2 * down * down - m2) <= off + 0x1p-1074L, "%g %g %g ...: m2 %g, not %Lg 2^1200", x[0],
               x[1], x[2], s->m2, m2);
@@ -473,14 +515,14 @@ static void test_huge_stat(void) {
     static const double sizes[] = {0, 1, 1e139, 1e140, 1e150, 1.3e154, 1e200, 1e299, 1e300, 1e307, 1e308, DBL_MAX};
     enum { SIZES = (int)(sizeof sizes / sizeof *sizes) };
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 141);
-    int i, k;
-    for (i = 0; i < 100000; i++) {
-        mcs_stat s, parts[2];
-        double x[5];
+    for (int i = 0; i < 100000; i++) {
         const int cut = i % 6;
+        mcs_stat s;
         memset(&s, 0, sizeof s);
+        mcs_stat parts[2];
         parts[0] = parts[1] = s;
-        for (k = 0; k < 5; k++) {
+        double x[5];
+        for (int k = 0; k < 5; k++) {
             const double size = sizes[mcs_pcg32_next(&r) % SIZES];
             x[k] = mcs_pcg32_next(&r) & 1 ? size : -size;
             mcs_stat_add(&s, x[k]);
@@ -494,7 +536,6 @@ static void test_huge_stat(void) {
 
 static void test_stat_values(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 127);
-    int i;
     make_hard();
     if (mcst_case("mean 1e9, deviation 1")) {
         const mcs_stat s = stat_of(0, HARD);
@@ -503,13 +544,13 @@ static void test_stat_values(void) {
     if (mcst_case("merge of any partition is the whole")) {
         mcs_stat s = stat_tree(0, HARD);
         check_hard("tree", &s);
-        for (i = 0; i <= HARD; i += i < 20 || i >= HARD - 20 ? 1 : 97) {
+        for (int i = 0; i <= HARD; i += i < 20 || i >= HARD - 20 ? 1 : 97) {
             s = mcs_stat_merge(stat_of(0, i), stat_of(i, HARD));
             check_hard("two parts", &s);
             s = mcs_stat_merge(stat_of(i, HARD), stat_of(0, i));
             check_hard("two parts, swapped", &s);
         }
-        for (i = 0; i < 100; i++) {
+        for (int i = 0; i < 100; i++) {
             int from = 0;
             memset(&s, 0, sizeof s);
             while (from < HARD) {
@@ -522,11 +563,11 @@ static void test_stat_values(void) {
         }
     }
     if (mcst_case("empty and single")) {
-        mcs_stat empty, one, s;
+        mcs_stat empty;
         memset(&empty, 0, sizeof empty);
-        one = empty;
+        mcs_stat one = empty;
         mcs_stat_add(&one, 3.5);
-        s = stat_of(0, 10);
+        mcs_stat s = stat_of(0, 10);
         CHECK(same_stat(mcs_stat_merge(empty, s), s) && same_stat(mcs_stat_merge(s, empty), s), "empty is neutral");
         CHECK(same_stat(mcs_stat_merge(empty, empty), empty), "empty and empty");
         CHECK(one.n == 1 && one.mean == 3.5 && one.m2 == 0, "single: %g, %g, %g", one.n, one.mean, one.m2);
@@ -541,7 +582,7 @@ static void test_stat_values(void) {
     if (mcst_case("equal values have no variance")) {
         mcs_stat s;
         memset(&s, 0, sizeof s);
-        for (i = 0; i < 1000; i++) mcs_stat_add(&s, 0.1);
+        for (int i = 0; i < 1000; i++) mcs_stat_add(&s, 0.1);
         CHECK(s.mean == 0.1 && s.m2 == 0 && mcs_stat_error(&s) == 0, "mean %g, sum of squares %g", s.mean, s.m2);
     }
     if (mcst_case("values up to DBL_MAX")) test_huge_stat();
@@ -554,16 +595,15 @@ static void test_standard_error(void) {
     enum { R = 400 };
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 131);
     double last = 0;
-    int n, i, j;
-    for (n = 64; n <= 4096; n *= 4) {
-        mcs_stat means, reported, errors;
-        double p, off, ratio;
+    for (int n = 64; n <= 4096; n *= 4) {
+        mcs_stat means;
         memset(&means, 0, sizeof means);
+        mcs_stat reported, errors;
         reported = errors = means;
-        for (i = 0; i < R; i++) {
+        for (int i = 0; i < R; i++) {
             mcs_stat s;
             memset(&s, 0, sizeof s);
-            for (j = 0; j < n; j++) {
+            for (int j = 0; j < n; j++) {
                 const double x = mcs_pcg32_float(&r);
                 mcs_stat_add(&s, x * x);
             }
@@ -571,14 +611,14 @@ static void test_standard_error(void) {
             mcs_stat_add(&reported, mcs_stat_variance(&s));
             mcs_stat_add(&errors, mcs_stat_error(&s));
         }
-        p = chi2_p(means.m2 * n * 45 / 4, R - 1);
-        off = fabs(reported.mean * 45 / 4 - 1) / sqrt((2.0 / (n - 1) - 6.0 / 7 / n) / R);
+        const double p = chi2_p(means.m2 * n * 45 / 4, R - 1);
+        const double off = fabs(reported.mean * 45 / 4 - 1) / sqrt((2.0 / (n - 1) - 6.0 / 7 / n) / R);
         CHECK(p >= level / 2 && 1 - p >= level / 2, "N = %d: the spread of the means has p = %g", n, p);
         CHECK(off <= z_level, "N = %d: reported variance %g, %g deviations from 4/45", n, reported.mean, off);
         CHECK(fabs(means.mean - 1.0 / 3) <= z_level * sqrt(4.0 / 45 / n / R), "N = %d: mean %g", n, means.mean);
         /* Four times the samples halve the error. Its mean has a relative deviation of sqrt((2 - 6/7) / N / R) / 2; the mean of a
          * root lies below the root of the mean by (2 - 6/7) / (8 N), which is known to a tenth of itself. */
-        ratio = errors.mean * sqrt(n) / (1 - (2 - 6.0 / 7) / (8.0 * n)) / sqrt(4.0 / 45);
+        const double ratio = errors.mean * sqrt(n) / (1 - (2 - 6.0 / 7) / (8.0 * n)) / sqrt(4.0 / 45);
         CHECK(fabs(ratio - 1) <= z_level * sqrt((2 - 6.0 / 7) / n / R) / 2 + 0.1 / (8.0 * n), "N = %d: error sqrt(N) / sigma = %g",
               n, ratio);
         CHECK(last == 0 || errors.mean < last, "N = %d: the error does not fall", n);
@@ -590,18 +630,19 @@ static void test_standard_error(void) {
  * 1.96: P(|normal| < z) - phi(z) (z^3 + z) / (2 * 399). The count over 2000 repetitions is binomial: tails summed exactly. */
 static void test_coverage(void) {
     enum { REPEAT = 2000, N = 400 };
-    const double z = 1.96,
-                 p = erf(z / sqrt(2.0)) - exp(-z * z / 2) / sqrt(2 * 3.14159265358979323846) * (z * z * z + z) / (2.0 * (N - 1));
+    const double z = 1.96;
+    const double p = erf(z / sqrt(2.0)) - exp(-z * z / 2) / sqrt(2 * 3.14159265358979323846) * (z * z * z + z) / (2.0 * (N - 1));
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 137);
-    double below = 0, above = 0;
-    int i, j, held = 0;
-    for (i = 0; i < REPEAT; i++) {
+    double below = 0;
+    double above = 0;
+    int held = 0;
+    for (int i = 0; i < REPEAT; i++) {
         mcs_stat s;
         memset(&s, 0, sizeof s);
-        for (j = 0; j < N; j++) mcs_stat_add(&s, mcs_normal_sample(5, 2, mcs_u01_open(mcs_pcg32_next(&r))).x);
+        for (int j = 0; j < N; j++) mcs_stat_add(&s, mcs_normal_sample(5, 2, mcs_u01_open(mcs_pcg32_next(&r))).x);
         held += fabs(s.mean - 5) <= mcs_stat_ci(&s, z);
     }
-    for (i = 0; i <= REPEAT; i++) {
+    for (int i = 0; i <= REPEAT; i++) {
         const double mass =
             exp(lgamma(REPEAT + 1.0) - lgamma(i + 1.0) - lgamma(REPEAT - i + 1.0) + i * log(p) + (REPEAT - i) * log1p(-p));
         if (i <= held) below += mass;
@@ -685,19 +726,28 @@ WIDE(16)
 
 static void test_widths(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 139);
-    const int n_odd = (int)(sizeof odd_normals / sizeof *odd_normals), n_bad = (int)(sizeof bad_normals / sizeof *bad_normals);
-    int i, k;
-    for (i = 0; i < 20000; i++) {
+    const int n_odd = (int)(sizeof odd_normals / sizeof *odd_normals);
+    const int n_bad = (int)(sizeof bad_normals / sizeof *bad_normals);
+    for (int i = 0; i < 20000; i++) {
         float in[6][16];
-        for (k = 0; k < 16; k++) {
+        for (int k = 0; k < 16; k++) {
             const uint32_t pick = mcs_pcg32_next(&r) % 8;
             const mcs_vec3 n = pick == 0   ? odd_normals[mcs_pcg32_next(&r) % (uint32_t)n_odd]
                                : pick == 1 ? bad_normals[mcs_pcg32_next(&r) % (uint32_t)n_bad]
                                            : random_unit(&r);
             mcs_vec3 w = random_unit(&r);
             if (pick == 2) w.x = densities[mcs_pcg32_next(&r) % DENSITIES];
-            if (pick == 3) w.x = -n.x, w.y = -n.y, w.z = -n.z;
-            in[0][k] = n.x, in[1][k] = n.y, in[2][k] = n.z, in[3][k] = w.x, in[4][k] = w.y, in[5][k] = w.z;
+            if (pick == 3) {
+                w.x = -n.x;
+                w.y = -n.y;
+                w.z = -n.z;
+            }
+            in[0][k] = n.x;
+            in[1][k] = n.y;
+            in[2][k] = n.z;
+            in[3][k] = w.x;
+            in[4][k] = w.y;
+            in[5][k] = w.z;
         }
         wide4((const float(*)[16])in);
         wide8((const float(*)[16])in);
@@ -714,14 +764,17 @@ static void check_phong_length(float n, mcs_vec3 wo, float u1, float u2) {
     enum { MANY = 21 }; /* one round of the widest unit, and a rest */
     const mcs_phong m = mcs_phong_make(n);
     const mcs_vec3 wi = mcs_phong_sample(&m, wo, u1, u2).wi;
-    float a[MANY], b[MANY], x[MANY], y[MANY], z[MANY];
     double off = fabs(sqrt(dot(wi, wi)) - 1);
-    int i;
     CHECK(off <= 3.5 * eps, "n %a, wo %a %a %a, u %a %a: length off by %g of 2^-24", (double)n, (double)wo.x, (double)wo.y,
           (double)wo.z, (double)u1, (double)u2, off / eps);
-    for (i = 0; i < MANY; i++) a[i] = u1, b[i] = u2;
+    float a[MANY], b[MANY];
+    for (int i = 0; i < MANY; i++) {
+        a[i] = u1;
+        b[i] = u2;
+    }
+    float x[MANY], y[MANY], z[MANY];
     mcs_phong_sample_n(&m, wo, MANY, a, b, x, y, z, NULL, NULL);
-    for (i = 0; i < MANY; i++) {
+    for (int i = 0; i < MANY; i++) {
         const mcs_vec3 w = {x[i], y[i], z[i]};
         off = fabs(sqrt(dot(w, w)) - 1);
         CHECK(off <= 3.5 * eps, "array, entry %d: length off by %g of 2^-24", i, off / eps);
@@ -731,7 +784,7 @@ static void check_phong_length(float n, mcs_vec3 wo, float u1, float u2) {
         const mcs8_phong wide = mcs8_phong_make(mcs8_set(n));
         const mcs8_vec3 eye = {mcs8_set(wo.x), mcs8_set(wo.y), mcs8_set(wo.z)};
         const mcs8_brdf s = mcs8_phong_sample(&wide, eye, mcs8_set(u1), mcs8_set(u2));
-        for (i = 0; i < 8; i++) {
+        for (int i = 0; i < 8; i++) {
             const mcs_vec3 w = {s.wi.x[i], s.wi.y[i], s.wi.z[i]};
             off = fabs(sqrt(dot(w, w)) - 1);
             CHECK(off <= 3.5 * eps, "lane %d: length off by %g of 2^-24", i, off / eps);
@@ -744,25 +797,25 @@ static void test_phong_length(void) {
     static const float exponents[] = {0, 0.01f, 0.5f, 1, 10, 1e3f, 1e9f};
     const mcs_vec3 bad = {-0x1.999998p-1f, 0x1.333332p-1f, 0x1.76231p-11f};
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 151);
-    int i;
     check_phong_length(0.01f, bad, 0x1.b443e8p-2f, 0x1.9a40d8p-2f);
-    for (i = 0; i < 100000; i++) {
-        const double z = i & 1 ? pow(10, -6.0 * mcs_pcg32_float(&r)) : 1 - (double)mcs_pcg32_float(&r),
-                     phi = 6.283185307179586 * mcs_pcg32_float(&r), s = sqrt((1 - z) * (1 + z));
-        const float u1 = mcs_pcg32_float(&r), u2 = mcs_pcg32_float(&r);
+    for (int i = 0; i < 100000; i++) {
+        const double z = i & 1 ? pow(10, -6.0 * mcs_pcg32_float(&r)) : 1 - (double)mcs_pcg32_float(&r);
+        const double phi = 6.283185307179586 * mcs_pcg32_float(&r);
+        const double s = sqrt((1 - z) * (1 + z));
+        const float u1 = mcs_pcg32_float(&r);
+        const float u2 = mcs_pcg32_float(&r);
         check_phong_length(exponents[i % 7], unit(s * cos(phi), s * sin(phi), z), u1, u2);
     }
 }
 
 int main(int argc, char **argv) {
     static const float cones[] = {0.5f, 0.01f, 1e-5f, 1e-8f};
-    int i;
     mcst_start(argc, argv);
     mcst_group("frame");
     test_frame();
     if (mcst_case("vectors of 1e37, and beyond")) test_huge_vectors();
     mcst_group("cone");
-    for (i = 0; i < 4; i++)
+    for (int i = 0; i < 4; i++)
         if (mcst_case("rim of k = %g", (double)cones[i])) test_cone_rim(cones[i]);
     mcst_group("microfacet");
     test_microfacet();

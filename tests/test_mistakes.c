@@ -24,9 +24,9 @@ static mcs_vec3 careful(uint64_t *state) {
 
 /* A function of a row at a point that is to be judged: does it assert? */
 static int tells(const mcst_row *row, int which, const float *p, const float *x) {
-    float out[5];
     const float u = 0.3f;
     asserted = 0;
+    float out[5];
     switch (which) {
     case 0: row->fn[0].pdf(p, x, out); break;
     case 1:
@@ -45,11 +45,12 @@ static int tells(const mcst_row *row, int which, const float *p, const float *x)
 static void check_row(const mcst_row *row) {
     static const int takes_point[] = {1, 1, 0, 1, 1};
     uint64_t state = mcst.seed;
-    float p[MCST_P], x[3], out[5];
+    float p[MCST_P];
     mcst_grid_get(row, 0, p);
     for (int i = 0; i < US; i++) {
         const float good = 0.3f;
         asserted = 0;
+        float out[5];
         row->fn[0].sample(p, &wrong_u[i], &good, out);
         CHECK(asserted > 0, "u1 = %g", (double)wrong_u[i]);
         asserted = 0;
@@ -57,11 +58,13 @@ static void check_row(const mcst_row *row) {
         CHECK(row->inputs < 2 || asserted > 0, "u2 = %g", (double)wrong_u[i]);
     }
     if (row->dim < 3) return;
+    float x[3];
     for (int which = 0; which < 5; which++) {
         if (which == 1 && !row->fn[0].invert) continue;
         if (which > 2 && !row->fn[0].eval) continue;
         for (int i = 0; i < LENGTHS; i++) {
-            const float w[3] = {0.48f, 0.6f, 0.64f}, length = wrong_length[i];
+            const float w[3] = {0.48f, 0.6f, 0.64f};
+            const float length = wrong_length[i];
             for (int k = 0; k < 3; k++) {
                 x[k] = w[k];
                 p[3 + k] = w[k];
@@ -92,7 +95,8 @@ static void check_row(const mcst_row *row) {
         CHECK(asserted > 0, "densities in arrays, wo of length %g", (double)wrong_length[i]);
     }
     for (int i = 0; i < CAREFUL; i++) {
-        const mcs_vec3 w = careful(&state), wo = careful(&state);
+        const mcs_vec3 w = careful(&state);
+        const mcs_vec3 wo = careful(&state);
         const float good[3] = {w.x, w.y, w.z};
         p[3] = wo.x;
         p[4] = wo.y;

@@ -16,12 +16,10 @@ static const float two_pi = 6.28318531f;
 static void (*one_sample)(const float *p, const float *u1, const float *u2, float *out);
 
 static void array_of_one(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) {
-    size_t i;
-    int k;
-    for (i = 0; i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         float one[5] = {0};
         one_sample(p, &u1[i], &u2[i], one);
-        for (k = 0; k < 5; k++)
+        for (int k = 0; k < 5; k++)
             if (out[k]) out[k][i] = one[k];
     }
 }
@@ -33,13 +31,12 @@ typedef struct {
 
 static verdict judge(const mcst_row *row, const float *p, uint64_t seed) {
     mcst_fit fit;
-    verdict v;
-    mcst_mass m;
     fit.chi2_u = fit.ks_u1 = fit.ks_u2 = 1;
     one_sample = row->fn[0].sample;
     mcst_fit_xy(row, p, SAMPLES, seed, &fit);
+    verdict v;
     v.p = mcst_fit_worst(&fit);
-    m = mcst_mass_of(row, p);
+    const mcst_mass m = mcst_mass_of(row, p);
     v.gap = fabs(m.integral - m.lit) / m.tolerance;
     return v;
 }
@@ -56,7 +53,13 @@ typedef struct {
 /* --- samplers gone wrong ---------------------------------------------------------------------------------------------------------
  * */
 
-static void put(float *out, float x, float y, float z, float pdf) { out[0] = x, out[1] = y, out[2] = z, out[3] = pdf, out[4] = 0; }
+static void put(float *out, float x, float y, float z, float pdf) {
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
+    out[3] = pdf;
+    out[4] = 0;
+}
 
 /* pow of a negative number: the lecture's x = (2u - 1)^(1/3) without the sign. */
 static void cube_root_by_pow(const float *p, const float *u1, const float *u2, float *out) {
@@ -70,14 +73,19 @@ static void disk_without_root(const float *p, const float *u1, const float *u2, 
 
 /* The slides' azimuths: one arctangent reaches half of the circle. */
 static void ward_one_arctangent(const float *p, const float *u1, const float *u2, float *out) {
-    const float phi = atanf(p[1] / p[0] * tanf(two_pi * *u2)), c = cosf(phi) / p[0], s = sinf(phi) / p[1];
+    const float phi = atanf(p[1] / p[0] * tanf(two_pi * *u2));
+    const float c = cosf(phi) / p[0];
+    const float s = sinf(phi) / p[1];
     const float theta = atanf(sqrtf(-logf(1 - *u1) / (c * c + s * s)));
     put(out, sinf(theta) * cosf(phi), sinf(theta) * sinf(phi), cosf(theta), 1);
 }
 
 static void ashikhmin_one_arctangent(const float *p, const float *u1, const float *u2, float *out) {
-    const float phi = atanf(sqrtf((p[0] + 1) / (p[1] + 1)) * tanf(0.25f * two_pi * *u2)), c = cosf(phi), s = sinf(phi);
-    const float z = powf(1 - *u1, 1 / (p[0] * c * c + p[1] * s * s + 1)), r = sqrtf(1 - z * z);
+    const float phi = atanf(sqrtf((p[0] + 1) / (p[1] + 1)) * tanf(0.25f * two_pi * *u2));
+    const float c = cosf(phi);
+    const float s = sinf(phi);
+    const float z = powf(1 - *u1, 1 / (p[0] * c * c + p[1] * s * s + 1));
+    const float r = sqrtf(1 - z * z);
     put(out, r * c, r * s, z, 1);
 }
 
@@ -102,15 +110,15 @@ static float column_weight(int i) { return (float)(1 + (i * i) % 7); }
 
 static float column_total(void) {
     float sum = 0;
-    int i;
-    for (i = 0; i < COLUMNS; i++) sum += column_weight(i);
+    for (int i = 0; i < COLUMNS; i++) sum += column_weight(i);
     return sum;
 }
 
 static void columns(const float *p, const float *u1, const float *u2, float *out) {
     float left = *u1 * column_total();
     int i = 0;
-    (void)p, (void)u2;
+    (void)p;
+    (void)u2;
     while (i < COLUMNS - 1 && left >= column_weight(i)) left -= column_weight(i++);
     put(out, ((float)i + left / column_weight(i)) / COLUMNS, 0, 0, 1);
 }
@@ -134,7 +142,8 @@ static void columns_off_by_one(const float *p, const float *x, float *out) {
 }
 
 static void without_sine(const float *p, const float *x, float *out) {
-    (void)p, (void)x;
+    (void)p;
+    (void)x;
     *out = 2 / (two_pi * two_pi);
 }
 
@@ -145,14 +154,16 @@ static void ashikhmin_squared(const float *p, const float *h, float *out) { /* s
 }
 
 static void ward_without_cosine(const float *p, const float *h, float *out) { /* slide 17's proportionality */
-    const float x = h[0] / (h[2] * p[0]), y = h[1] / (h[2] * p[1]);
+    const float x = h[0] / (h[2] * p[0]);
+    const float y = h[1] / (h[2] * p[1]);
     *out = expf(-(x * x + y * y)) * 2 / (two_pi * p[0] * p[1]);
 }
 
 static void changed_parameters(const char *row, const float *p, float a, float b, const float *x, float *out) {
     float q[MCST_P];
     memcpy(q, p, sizeof q);
-    q[0] = a, q[1] = b;
+    q[0] = a;
+    q[1] = b;
     mcst_find(row)->fn[0].pdf(q, x, out);
 }
 
@@ -210,7 +221,9 @@ static double lambda_exact(double a) { return 0.5 * (erf(a) - 1) + exp(-a * a) /
 static double lambda_rational(double a) { return a < 1.6 ? (1 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a) : 0; }
 
 static void beckmann_visible(const float *p, const float *h, double (*lambda)(double), float *out) {
-    const double wx = (double)p[3] * (double)p[0], wy = (double)p[4] * (double)p[1], wz = (double)p[5];
+    const double wx = (double)p[3] * (double)p[0];
+    const double wy = (double)p[4] * (double)p[1];
+    const double wz = (double)p[5];
     const double cosine = (double)p[3] * (double)h[0] + (double)p[4] * (double)h[1] + wz * (double)h[2];
     float pdf_h;
     mcst_find("beckmann_h")->fn[0].pdf(p, h, &pdf_h);
@@ -251,9 +264,9 @@ static const mutant mutants[] = {
 static float u_by_rounding(uint32_t bits) { return (float)bits * 0x1p-32f; }
 
 static int leaves_unit_interval(float (*u)(uint32_t bits)) {
-    uint32_t i;
-    for (i = 0; i < 1024; i++) {
-        const float v = u(0xFFFFFFFFu - i), w = u(i);
+    for (uint32_t i = 0; i < 1024; i++) {
+        const float v = u(0xFFFFFFFFu - i);
+        const float w = u(i);
         if (!(v >= 0 && v < 1 && w >= 0 && w < 1)) return 1;
     }
     return 0;
@@ -263,19 +276,20 @@ static float u_right(uint32_t bits) { return mcs_u01(bits); }
 
 int main(int argc, char **argv) {
     const double level = mcst_level();
-    size_t i;
     mcst_start(argc, argv);
     mcst_group("mutants");
-    for (i = 0; i < MCST_COUNT(mutants); i++) {
+    for (size_t i = 0; i < MCST_COUNT(mutants); i++) {
         const mutant *t = &mutants[i];
         mcst_row row = *mcst_find(t->row);
-        float p[MCST_P];
-        verdict v;
         if (!mcst_case("%s", t->name)) continue;
+        float p[MCST_P];
         mcst_fill(&row, t->a, t->b, t->cos_o, 0.7f, p);
-        if (t->sample) row.fn[0].sample = t->sample, row.sample_n = array_of_one;
+        if (t->sample) {
+            row.fn[0].sample = t->sample;
+            row.sample_n = array_of_one;
+        }
         if (t->pdf) row.fn[0].pdf = t->pdf;
-        v = judge(&row, p, mcst_seed_for(t->name, "mutant", 0));
+        const verdict v = judge(&row, p, mcst_seed_for(t->name, "mutant", 0));
         CHECK(is_caught(&v, level), "survived: p = %g, mass %.3g tolerances off", v.p, v.gap);
         mcst_note("  %-50s %s%s%s p = %.3g, mass %.3g tolerances off\n", t->name, is_caught(&v, level) ? "caught by" : "SURVIVED",
                   !(v.p >= level) ? " chi-square" : "", !(v.gap <= 1) ? " mass" : "", v.p, v.gap);
@@ -283,10 +297,9 @@ int main(int argc, char **argv) {
     if (mcst_case("Beckmann visible normals with a rational Lambda")) {
         mcst_row row = *mcst_find("ggx_vndf_h");
         float p[MCST_P];
-        mcst_mass m;
         mcst_fill(&row, 0.5f, 0.5f, 0.5f, 0.7f, p);
         row.fn[0].pdf = beckmann_rational;
-        m = mcst_mass_of(&row, p);
+        const mcst_mass m = mcst_mass_of(&row, p);
         CHECK(!(fabs(m.integral - 1) <= m.tolerance), "survived: mass %.8f", m.integral);
         mcst_note("  %-50s %s mass %.6f\n", "Beckmann visible normals with a rational Lambda",
                   fabs(m.integral - 1) <= m.tolerance ? "SURVIVED" : "caught by", m.integral);
@@ -297,24 +310,26 @@ int main(int argc, char **argv) {
                   leaves_unit_interval(u_by_rounding) ? "caught by range: gives 1" : "SURVIVED");
     }
     mcst_group("controls");
-    for (i = 0; i < MCST_COUNT(mutants); i++) {
+    for (size_t i = 0; i < MCST_COUNT(mutants); i++) {
         const mutant *t = &mutants[i];
         mcst_row row = *mcst_find(t->row);
-        float p[MCST_P];
-        verdict v;
         if (!mcst_case("right formula for: %s", t->name)) continue;
+        float p[MCST_P];
         mcst_fill(&row, t->a, t->b, t->cos_o, 0.7f, p);
-        if (t->sample == columns) row.fn[0].sample = columns, row.sample_n = array_of_one, row.fn[0].pdf = columns_right;
-        v = judge(&row, p, mcst_seed_for(t->name, "control", 0));
+        if (t->sample == columns) {
+            row.fn[0].sample = columns;
+            row.sample_n = array_of_one;
+            row.fn[0].pdf = columns_right;
+        }
+        const verdict v = judge(&row, p, mcst_seed_for(t->name, "control", 0));
         CHECK(!is_caught(&v, level), "p = %g, mass %.3g tolerances off", v.p, v.gap);
     }
     if (mcst_case("Beckmann visible normals with the exact Lambda")) {
         mcst_row row = *mcst_find("ggx_vndf_h");
         float p[MCST_P];
-        mcst_mass m;
         mcst_fill(&row, 0.5f, 0.5f, 0.5f, 0.7f, p);
         row.fn[0].pdf = beckmann_exact;
-        m = mcst_mass_of(&row, p);
+        const mcst_mass m = mcst_mass_of(&row, p);
         CHECK(fabs(m.integral - 1) <= m.tolerance, "mass %.8f", m.integral);
     }
     if (mcst_case("mcs_u01 stays below 1")) CHECK(!leaves_unit_interval(u_right), "mcs_u01 left [0,1)");

@@ -22,10 +22,13 @@ enum { CORNERS = 11, STRATA = 12, MAX_U = CORNERS * CORNERS + STRATA * STRATA };
 /* Every pair of corners, then one point in each cell of a grid. */
 static int make_u(const mcst_row *row, uint64_t seed, float u[MAX_U][2]) {
     const int lines = row->inputs == 1;
-    int i, j, n = 0;
-    for (i = 0; i < CORNERS; i++)
-        for (j = 0; j < (lines ? 1 : CORNERS); j++, n++) u[n][0] = corners[i], u[n][1] = corners[j];
-    for (i = 0; i < STRATA * STRATA; i++, n++) {
+    int n = 0;
+    for (int i = 0; i < CORNERS; i++)
+        for (int j = 0; j < (lines ? 1 : CORNERS); j++, n++) {
+            u[n][0] = corners[i];
+            u[n][1] = corners[j];
+        }
+    for (int i = 0; i < STRATA * STRATA; i++, n++) {
         mcst_uniform(&seed, 1, &u[n][0], &u[n][1]);
         if (lines) u[n][0] = fminf(((float)i + u[n][0]) / (STRATA * STRATA), 1 - 0x1p-24f);
         else {
@@ -62,7 +65,8 @@ static int within(int what, double err, double tol) {
 /* Is got within a relative tolerance of want? Densities beyond FLT_MAX saturate. A density is the peak times a float in [0,1];
  * where that float is subnormal its digits are gone, and all that is asked is that the density is small, too. */
 static int near(int what, float got, ld want, double rel, ld peak) {
-    const ld top = (ld)FLT_MAX, w = want > top ? top : want;
+    const ld top = (ld)FLT_MAX;
+    const ld w = want > top ? top : want;
     return within(what, (double)fabsl((ld)got - w), rel * (double)fabsl(w) + 0x1p-126 * (double)peak + 0x1p-149);
 }
 
@@ -72,7 +76,8 @@ static double pdf_tol(ld pdf, ld peak) { return 1e-6 * (1 + (pdf > 0 && peak > 0
 /* The same for a given direction. A Gaussian half-vector has factors beside e^-e: the peak of the product is not where e is 0, and
  * the rounding is that of e itself, which has 12 EPS: twice the 5 of a slope over its alpha, and two more. */
 static double direction_tol(const mcst_row *row, const float *p, const float *x, ld pdf, ld peak) {
-    const o_vec3 v = o_v3(x[0], x[1], x[2]), h = row->shape == MCST_IS_BRDF ? o_add(mcst_o3(p + 3), v) : v;
+    const o_vec3 v = o_v3(x[0], x[1], x[2]);
+    const o_vec3 h = row->shape == MCST_IS_BRDF ? o_add(mcst_o3(p + 3), v) : v;
     return mcst_is_gauss(row) && h.z > 0 ? 1e-6 * (1 + (double)(o_slope_rr((ld)p[0], (ld)p[1], h) / (h.z * h.z)))
                                          : pdf_tol(pdf, peak);
 }
@@ -96,7 +101,8 @@ static double u_error(const mcst_row *row, int i, double a, double b) {
 
 /* |(h.x/ax, h.y/ay, h.z)| */
 static double stretched_length(const float *p, o_vec3 h) {
-    const ld x = h.x / (ld)p[0], y = h.y / (ld)p[1];
+    const ld x = h.x / (ld)p[0];
+    const ld y = h.y / (ld)p[1];
     return (double)sqrtl(x * x + y * y + h.z * h.z);
 }
 
@@ -115,25 +121,28 @@ static void describe(const mcst_row *row, const float *p) {
 static void check_point(const mcst_row *row, const float *p, const float *u, ld peak, double extent) {
     const mcst_map map = mcst_map_make(row, p);
     const ld pdf_u = row->truth.pdf_u(p, u[0], u[1]);
-    ld exact[3] = {0, 0, 0}, pdf_x;
-    float out[5] = {0}, x[3], pdf, back[2] = {0, 0};
-    double tol, err = 0, size = 0, steps, magnified = 0;
-    int i;
+    ld exact[3] = {0, 0, 0};
+    float out[5] = {0};
+    float back[2] = {0, 0};
+    double err = 0;
+    double size = 0;
+    double magnified = 0;
     row->truth.map(p, u[0], u[1], exact);
     if (!strncmp(row->name, "ggx_vndf", 8) || !strncmp(row->name, "ggx_bounded", 11)) magnified = magnification(p, row, exact);
     row->fn[0].sample(p, &u[0], &u[1], out);
-    for (i = 0; i < 3; i++) x[i] = out[i];
-    for (i = 0; i < 5; i++) CHECK(isfinite(out[i]), "u %a %a: out[%d] = %g", (double)u[0], (double)u[1], i, (double)out[i]);
+    float x[3];
+    for (int i = 0; i < 3; i++) x[i] = out[i];
+    for (int i = 0; i < 5; i++) CHECK(isfinite(out[i]), "u %a %a: out[%d] = %g", (double)u[0], (double)u[1], i, (double)out[i]);
     /* where: 4 ulp, that is 8 EPS; the normal distribution's quantile has 5, and two more operations. For a direction about +z or a
      * half-vector the unit is 1, and a direction without a lobe has 2^-23; the reflection 2 (h.wo) h - wo magnifies an error of h
      * (3 EPS) by 4 and adds 3 roundings. */
-    for (i = 0; i < row->dim; i++) {
+    for (int i = 0; i < row->dim; i++) {
         err = fmax(err, fabs((double)((ld)x[i] - exact[i])));
         size = fmax(size, fabs((double)exact[i]));
     }
     if (row->dim == 1) size = fmax(size, line_scale(row, p));
     else if (row->dim == 3) size = 1;
-    steps = row->shape == MCST_IS_BRDF ? 16 : row->shape == MCST_IS_DIR ? 2 : !strcmp(row->name, "normal") ? 12 : 8;
+    double steps = row->shape == MCST_IS_BRDF ? 16 : row->shape == MCST_IS_DIR ? 2 : !strcmp(row->name, "normal") ? 12 : 8;
     steps *= 1 + magnified;
     CHECK(within(WHERE, err, steps * EPS * size + 0x1p-149 * fmax(1, extent)),
           "u %a %a: (%.9g %.9g %.9g), exact (%.9Lg %.9Lg %.9Lg)", (double)u[0], (double)u[1], (double)x[0], (double)x[1],
@@ -146,17 +155,19 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
     if (row->shape == MCST_IS_LOBE || row->shape == MCST_IS_VLOBE) {
         /* the same relative to the lobe's own width: slopes in units of alpha, off by a fraction of themselves or, of visible
          * normals, which are sums c + i, of the whole vector; the least radius is about the root of the least subnormal */
-        const double wx = row->coord == MCST_SLOPES ? map.a : 1 / sqrt(map.a + 1),
-                     wy = row->coord == MCST_SLOPES ? map.b : 1 / sqrt(map.b + 1);
-        const double dx = (double)((ld)x[0] - exact[0]) / wx, dy = (double)((ld)x[1] - exact[1]) / wy;
-        const double ex = (double)exact[0] / wx, ey = (double)exact[1] / wy;
+        const double wx = row->coord == MCST_SLOPES ? map.a : 1 / sqrt(map.a + 1);
+        const double wy = row->coord == MCST_SLOPES ? map.b : 1 / sqrt(map.b + 1);
+        const double dx = (double)((ld)x[0] - exact[0]) / wx;
+        const double dy = (double)((ld)x[1] - exact[1]) / wy;
+        const double ex = (double)exact[0] / wx;
+        const double ey = (double)exact[1] / wy;
         const double scale =
             row->shape == MCST_IS_VLOBE ? stretched_length(p, o_vec(exact[0], exact[1], exact[2])) : sqrt(ex * ex + ey * ey);
         CHECK(within(WIDTH, sqrt(dx * dx + dy * dy), 16 * EPS * (1 + magnified) * scale + 0x1p-73),
               "u %a %a: off by (%g %g) of the lobe's width", (double)u[0], (double)u[1], dx, dy);
     }
     /* the returned density belongs to u */
-    tol = mcst_claim_of(row, CLAIM_PDF_U, p) * pdf_tol(pdf_u, peak);
+    double tol = mcst_claim_of(row, CLAIM_PDF_U, p) * pdf_tol(pdf_u, peak);
     if (row->shape != MCST_IS_BRDF || fabsl(exact[2]) > 40 * EPS) /* otherwise above or below the horizon is a matter of rounding */
         CHECK(near(PDF_U, out[3], pdf_u, tol, peak), "u %a %a: pdf %.9g, exact %.9Lg (%.3g, tolerance %.3g)", (double)u[0],
               (double)u[1], (double)out[3], pdf_u, (double)((ld)out[3] / pdf_u - 1), tol);
@@ -165,12 +176,13 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
         return;
     }
     /* _pdf belongs to the float point */
-    pdf_x = row->truth.pdf(p, x);
+    ld pdf_x = row->truth.pdf(p, x);
+    float pdf;
     row->fn[0].pdf(p, x, &pdf);
     if (pdf_x == 0 && (row->shape == MCST_IS_PLANE || row->shape == MCST_IS_DIR || row->shape == MCST_IS_VLOBE)) {
         /* rounded over the rim: 0 or what is inside */
         float inside[3];
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             inside[i] = x[i] * (1 - 8 * (float)EPS) + (row->shape == MCST_IS_VLOBE ? 8 * (float)EPS * p[3 + i] : 0);
         if (row->shape == MCST_IS_DIR) inside[2] = x[2]; /* towards the axis of a cone */
         pdf_x = row->truth.pdf(p, inside);
@@ -182,11 +194,13 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
     CHECK(near(PDF_X, pdf, pdf_x, tol, peak), "u %a %a: pdf(x) %.9g, exact %.9Lg (%.3g, tolerance %.3g)", (double)u[0],
           (double)u[1], (double)pdf, pdf_x, (double)((ld)pdf / pdf_x - 1), tol);
     if (row->fn[0].eval) {
-        const ld f = row->truth.eval(p, x), w = row->truth.weight(p, x);
+        const ld f = row->truth.eval(p, x);
+        const ld w = row->truth.weight(p, x);
         /* a weight is a function of the cosines alone; the float wi.z is known to EPS, so to EPS / wi.z of itself */
         const double wtol = 2e-6 + 40 * EPS / (double)x[2];
-        float weight, value;
+        float value;
         row->fn[0].eval(p, x, &value);
+        float weight;
         row->fn[0].weight(p, x, &weight);
         if (pdf_x > 0) /* not rounded over the rim of a Phong lobe */
             CHECK(near(WEIGHT, out[4], w, wtol, 1), "u %a %a: weight %.9g, exact %.9Lg", (double)u[0], (double)u[1], (double)out[4],
@@ -203,26 +217,26 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
                   (double)value * (double)x[2]);
     }
     if (row->fn[0].invert) {
-        ld truth[2] = {0, 0}, moved[2] = {0, 0};
+        ld truth[2] = {0, 0};
+        ld moved[2] = {0, 0};
         /* a few roundings; visible normals first take c = d h - i apart, with d of five */
         const double base = (row->shape == MCST_IS_VLOBE ? 16 : 8) * EPS;
         double step[2] = {0, 0};
-        int k;
         row->truth.invert(p, x, truth);
         row->fn[0].invert(p, x, back);
         CHECK(back[0] >= 0 && back[0] < 1 && back[1] >= 0 && back[1] < 1, "u %a %a: invert gives %a %a", (double)u[0], (double)u[1],
               (double)back[0], (double)back[1]);
         /* what 8 ulp in each coordinate do to the exact inverse: its arithmetic takes about as many roundings */
-        for (k = 0; k < 2 * row->dim; k++) {
+        for (int k = 0; k < 2 * row->dim; k++) {
             float y[3];
             memcpy(y, x, sizeof y);
             y[k / 2] *= k % 2 ? 1 + 8 * 0x1p-23f : 1 - 8 * 0x1p-23f;
             row->truth.invert(p, y, moved);
-            for (i = 0; i < row->inputs; i++) step[i] = fmax(step[i], u_error(row, i, (double)moved[i], (double)truth[i]));
+            for (int i = 0; i < row->inputs; i++) step[i] = fmax(step[i], u_error(row, i, (double)moved[i], (double)truth[i]));
         }
-        for (i = 0; i < row->inputs; i++) {
-            const double d = u_error(row, i, (double)back[i], (double)truth[i]),
-                         trip = u_error(row, i, (double)back[i], (double)u[i]);
+        for (int i = 0; i < row->inputs; i++) {
+            const double d = u_error(row, i, (double)back[i], (double)truth[i]);
+            const double trip = u_error(row, i, (double)back[i], (double)u[i]);
             if (x[0] == 0 && x[1] == 0 && is_azimuth(row, i)) continue; /* without a radius there is no azimuth */
             CHECK(within(INVERT, d, base + 2 * step[i]), "u %a %a: invert u%d %.9g, exact %.9Lg", (double)u[0], (double)u[1], i + 1,
                   (double)back[i], truth[i]);
@@ -235,19 +249,18 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
 
 /* Directions that the sampler would never pick: density and weight must be as exact there. */
 static void check_far(const mcst_row *row, const float *p, uint64_t seed, ld peak) {
-    int i;
-    for (i = 0; i < 40; i++) {
-        float u[2], x[3], pdf;
-        double r, tol;
-        ld want;
+    for (int i = 0; i < 40; i++) {
+        float u[2];
         mcst_uniform(&seed, 1, &u[0], &u[1]);
+        float x[3];
         x[2] = i < 30 ? u[0] : i < 35 ? 1e-4f * u[0] : -u[0];
-        r = sqrt(1 - (double)x[2] * (double)x[2]);
+        const double r = sqrt(1 - (double)x[2] * (double)x[2]);
         x[0] = (float)(r * cos(6.283185307179586 * (double)u[1]));
         x[1] = (float)(r * sin(6.283185307179586 * (double)u[1]));
-        want = row->truth.pdf(p, x);
+        const ld want = row->truth.pdf(p, x);
+        float pdf;
         row->fn[0].pdf(p, x, &pdf);
-        tol = mcst_claim_of(row, CLAIM_PDF_W, p) * direction_tol(row, p, x, want, peak);
+        double tol = mcst_claim_of(row, CLAIM_PDF_W, p) * direction_tol(row, p, x, want, peak);
         CHECK(near(PDF_FAR, pdf, want, tol, peak), "pdf at %.9g %.9g %.9g: %.9g, exact %.9Lg (%.3g)", (double)x[0], (double)x[1],
               (double)x[2], (double)pdf, want, (double)((ld)pdf / want - 1));
         if (row->fn[0].eval) { /* also 0 where the density is */
@@ -266,8 +279,7 @@ static void check_accuracy(const mcst_row *row, const float *p, uint64_t seed) {
     const int n = make_u(row, seed, u);
     ld peak = 0;
     double extent = 0;
-    int i;
-    for (i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++) {
         const ld pdf = row->truth.pdf_u(p, u[i][0], u[i][1]);
         ld x[3];
         row->truth.map(p, u[i][0], u[i][1], x);
@@ -275,7 +287,7 @@ static void check_accuracy(const mcst_row *row, const float *p, uint64_t seed) {
         if (pdf > peak && pdf < 1e300L) peak = pdf;
     }
     asserted = 0;
-    for (i = 0; i < n; i++) check_point(row, p, u[i], peak, extent);
+    for (int i = 0; i < n; i++) check_point(row, p, u[i], peak, extent);
     if (row->dim == 3) check_far(row, p, seed, peak);
     CHECK(asserted == 0, "good parameters asserted %d times", asserted);
 }
@@ -361,8 +373,7 @@ static void must_assert(const mcst_row *row, const float *p, const float *u, con
     static const char *const name[] = {"sample", "pdf", "invert", "eval", "weight"};
     const mcst_fns *f = &row->fn[0];
     float out[5];
-    int i;
-    for (i = 0; i < 5; i++) {
+    for (int i = 0; i < 5; i++) {
         asserted = 0;
         if (i == 0) f->sample(p, &u[0], &u[1], out);
         else if (i == 1) f->pdf(p, x, out);
@@ -399,23 +410,25 @@ static void check_bad_input(const mcst_row *row) {
                                       {1, 0, -0x1p-149f}, {-0.6f, 0.8f, -0.0f}, {6e-31f, 0, 8e-31f}, {6e29f, 0, 8e29f}};
     static const float bad_wi[][3] = {{0, 0, -1}, {0.6f, 0, -0.8f}, {1, 0, 0}, {0, 0, 0}};
     static const float bad_parameter[] = {0, -0.0f, -0x1p-149f, -1, -FLT_MAX, 3};
-    const float fine[2] = {0.3f, 0.6f}, side[3] = {0.36f, 0.48f, 0.8f};
+    const float fine[2] = {0.3f, 0.6f};
+    const float side[3] = {0.36f, 0.48f, 0.8f};
     uint64_t state = mcst_seed_for(row->name, "odd", 0);
-    float p[MCST_P], q[MCST_P], out[5];
-    int i, j, k;
+    float p[MCST_P];
     mcst_fill(row, row->grid[0][0], row->grid[0][1], 0.70710678f, 0.7f, p);
+    float out[5];
     if (mcst_case("u outside [0,1)")) {
-        for (i = 0; i < 9; i++) {
+        for (int i = 0; i < 9; i++) {
             const float v = i < 6 ? bad_u[i] : i == 6 ? NAN : i == 7 ? INFINITY : -INFINITY;
-            for (j = 0; j < row->inputs; j++) {
+            for (int j = 0; j < row->inputs; j++) {
                 float u[2] = {0.3f, 0.6f};
                 u[j] = v;
                 must_be_zero(row, p, u, "bad u");
             }
         }
-        for (j = 0; j < 2; j++) { /* -0 is 0 */
-            float u[2] = {0.3f, 0.6f}, zero[5];
+        for (int j = 0; j < 2; j++) { /* -0 is 0 */
+            float u[2] = {0.3f, 0.6f};
             u[j] = 0;
+            float zero[5];
             call_all(row, p, u, side, zero);
             u[j] = -0.0f;
             call_all(row, p, u, side, out);
@@ -423,8 +436,9 @@ static void check_bad_input(const mcst_row *row) {
                   "u%d = -0 is not 0: pdf %g and %g", j + 1, (double)out[3], (double)zero[3]);
         }
     }
+    float q[MCST_P];
     if (row->has_wo && mcst_case("wo below the surface or no direction")) {
-        for (i = 0; i < 8 + 9; i++) {
+        for (int i = 0; i < 8 + 9; i++) {
             memcpy(q, p, sizeof q);
             if (i < 8) memcpy(q + 3, bad_wo[i], sizeof bad_wo[i]);
             else q[3 + (i - 8) % 3] = i < 11 ? NAN : i < 14 ? INFINITY : -INFINITY;
@@ -433,7 +447,7 @@ static void check_bad_input(const mcst_row *row) {
         }
     }
     if (mcst_case("a point or direction that is none")) {
-        for (i = 0; i < 3 * row->dim; i++) {
+        for (int i = 0; i < 3 * row->dim; i++) {
             float x[3] = {0.36f, 0.48f, 0.8f};
             x[i % row->dim] = i < row->dim ? NAN : i < 2 * row->dim ? INFINITY : -INFINITY;
             pdf_must_be_zero(row, p, x, "bad point");
@@ -443,12 +457,12 @@ static void check_bad_input(const mcst_row *row) {
                 CHECK(v[0] == 0 && v[1] == 0, "NaN for coordinate %d: invert gives %g %g", i, (double)v[0], (double)v[1]);
             }
         }
-        for (i = 0; row->shape == MCST_IS_BRDF && i < 4; i++) pdf_must_be_zero(row, p, bad_wi[i], "wi not above the surface");
+        for (int i = 0; row->shape == MCST_IS_BRDF && i < 4; i++) pdf_must_be_zero(row, p, bad_wi[i], "wi not above the surface");
     }
     if (row->params && mcst_case("parameters out of range")) {
-        for (i = 0; i < 7; i++) {
+        for (int i = 0; i < 7; i++) {
             const float v = i < 6 ? bad_parameter[i] : NAN;
-            for (j = 0; j < row->params; j++) {
+            for (int j = 0; j < row->params; j++) {
                 if (!parameter_is_bad(row, j, v)) continue;
                 memcpy(q, p, sizeof q);
                 q[j] = v;
@@ -460,12 +474,13 @@ static void check_bad_input(const mcst_row *row) {
     }
     if (mcst_case("odd numbers everywhere")) {
         const int rounds = (int)(6000 * fmin(1, mcst_scale()));
-        for (k = 0; k < rounds; k++) {
-            float u[2], x[3];
+        for (int k = 0; k < rounds; k++) {
             memcpy(q, p, sizeof q);
+            float u[2];
             memcpy(u, fine, sizeof u);
+            float x[3];
             memcpy(x, side, sizeof x);
-            for (i = 0; i < 11; i++) { /* a third of all inputs are odd */
+            for (int i = 0; i < 11; i++) { /* a third of all inputs are odd */
                 float *slot = i < 6 ? &q[i] : i < 8 ? &u[i - 6] : &x[i - 8];
                 if (mcst_mix(&state) % 3 == 0) *slot = odd_number(&state);
             }
@@ -475,30 +490,28 @@ static void check_bad_input(const mcst_row *row) {
 }
 
 int main(int argc, char **argv) {
-    size_t i, j;
-    int k;
     mcst_start(argc, argv);
     mcst_group("claims");
     if (mcst_case("the header states them"))
-        for (i = 0; i < MCST_COUNT(mcst_claim_sentences); i++)
+        for (size_t i = 0; i < MCST_COUNT(mcst_claim_sentences); i++)
             CHECK(mcst_header_says(MCS_HEADER, mcst_claim_sentences[i]), "not in %s: %s", MCS_HEADER, mcst_claim_sentences[i]);
-    for (i = 0; i < MCST_NROWS; i++) {
+    for (size_t i = 0; i < MCST_NROWS; i++) {
         const mcst_row *row = &mcst_rows[i];
-        char group[64];
-        float p[MCST_P];
         mcst_group(row->name);
         memset(worst, 0, sizeof worst);
-        for (j = 0; j < mcst_grid_count(row); j++) {
+        float p[MCST_P];
+        for (size_t j = 0; j < mcst_grid_count(row); j++) {
             mcst_grid_get(row, j, p);
             describe(row, p);
             if (mcst.open) check_accuracy(row, p, mcst_seed_for(row->name, "accuracy", j));
         }
         mcst_note("  %-14s", row->name);
-        for (k = 0; k < ERRORS; k++) mcst_note(" %s %.2f", error_name[k], worst[k]);
+        for (int k = 0; k < ERRORS; k++) mcst_note(" %s %.2f", error_name[k], worst[k]);
         mcst_note("\n");
+        char group[64];
         snprintf(group, sizeof group, "%s mass", row->name);
         mcst_group(group);
-        for (j = 0; j < row->chi_size + row->grid_size; j++) {
+        for (size_t j = 0; j < row->chi_size + row->grid_size; j++) {
             const mcst_set *set = &row->chi[j];
             const size_t g = j - row->chi_size;
             /* the sets of the chi-square test, then every set of parameters at one incidence each */

@@ -12,16 +12,16 @@ enum { LOG_N = 12, N = 1 << LOG_N, SEEDS = 16 };
 static int broken_shapes(uint32_t first, uint32_t a, uint32_t b, int t, uint32_t seed) {
     static int hit[N];
     const int bits = LOG_N - t;
-    int k, broken = 0;
-    for (k = 0; k <= bits; k++) {
-        uint32_t i;
+    int broken = 0;
+    for (int k = 0; k <= bits; k++) {
         int even = 1;
         memset(hit, 0, sizeof hit);
-        for (i = 0; i < N; i++) {
-            const uint64_t x = mcs_sobol_bits(first + i, a, seed), y = mcs_sobol_bits(first + i, b, seed);
+        for (uint32_t i = 0; i < N; i++) {
+            const uint64_t x = mcs_sobol_bits(first + i, a, seed);
+            const uint64_t y = mcs_sobol_bits(first + i, b, seed);
             hit[(x >> (32 - k)) << (bits - k) | y >> (32 - bits + k)]++;
         }
-        for (i = 0; i < 1u << bits; i++) even &= hit[i] == 1 << t;
+        for (uint32_t i = 0; i < 1u << bits; i++) even &= hit[i] == 1 << t;
         broken += !even;
     }
     return broken;
@@ -32,10 +32,9 @@ static int broken_shapes(uint32_t first, uint32_t a, uint32_t b, int t, uint32_t
  * polynomial: degree s, inner coefficients a and first numbers m of new-joe-kuo-6 (Joe and Kuo 2008). */
 static void columns(void) {
     static const struct { uint32_t s, a, m[3]; } poly[3] = {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}};
-    uint32_t d, k, j, lead, draw;
     if (!mcst_case("dimensions 0 to 3 are Sobol's: every column")) return;
-    for (d = 0; d < 4; d++) {
-        uint32_t column[32], bad;
+    for (uint32_t d = 0; d < 4; d++) {
+        uint32_t column[32], k;
         for (k = 0; k < 32; k++) {
             uint32_t m = 1;
             if (d) {
@@ -44,17 +43,24 @@ static void columns(void) {
                 else {
                     m = column[k - s] >> (31 - (k - s));
                     m ^= m << s;
-                    for (j = 1; j < s; j++) m ^= (poly[d - 1].a >> (s - 1 - j) & 1) * (column[k - j] >> (31 - (k - j)) << j);
+                    for (uint32_t j = 1; j < s; j++)
+                        m ^= (poly[d - 1].a >> (s - 1 - j) & 1) * (column[k - j] >> (31 - (k - j)) << j);
                 }
             }
             column[k] = m << (31 - k);
         }
-        for (bad = 0, lead = 0; lead < 32; lead++) /* sums of columns that cancel above bit `lead` show every bit of theirs */
-            for (draw = 0; draw < 128; draw++) {
-                const uint32_t i = mcs_hash(draw, 100 + lead), sum = (mcs_hash(draw, 200 + lead) | 1u << 31) >> lead;
-                uint32_t mask = 0, rest = sum;
+        uint32_t bad = 0;
+        for (uint32_t lead = 0; lead < 32; lead++) /* sums of columns that cancel above bit `lead` show every bit of theirs */
+            for (uint32_t draw = 0; draw < 128; draw++) {
+                const uint32_t i = mcs_hash(draw, 100 + lead);
+                const uint32_t sum = (mcs_hash(draw, 200 + lead) | 1u << 31) >> lead;
+                uint32_t mask = 0;
+                uint32_t rest = sum;
                 for (k = 32; k-- > 0;)
-                    if (rest >> (31 - k) & 1) mask |= 1u << k, rest ^= column[k];
+                    if (rest >> (31 - k) & 1) {
+                        mask |= 1u << k;
+                        rest ^= column[k];
+                    }
                 bad += (mcs_sobol_bits(i, d, draw) ^ mcs_sobol_bits(i ^ mask, d, draw)) >> (31 - lead) != 1;
             }
         CHECK(bad == 0, "dimension %u: %u sums of columns", d, bad);
@@ -62,28 +68,26 @@ static void columns(void) {
 }
 
 static void nets(void) {
-    uint32_t seed, d;
     if (mcst_case("dimensions 0 and 1 are a (0,2)-sequence"))
-        for (seed = 0; seed < SEEDS; seed++) {
+        for (uint32_t seed = 0; seed < SEEDS; seed++) {
             CHECK(broken_shapes(0, 0, 1, 0, seed) == 0, "seed %u, the first points", seed);
             CHECK(broken_shapes(5u << LOG_N, 0, 1, 0, seed) == 0, "seed %u, a later block", seed);
             CHECK(broken_shapes(0, 4, 5, 0, seed) == 0, "seed %u, the second group", seed);
         }
     if (mcst_case("every dimension alone is a (0,1)-sequence"))
-        for (seed = 0; seed < SEEDS; seed++)
-            for (d = 0; d < 12; d++) {
+        for (uint32_t seed = 0; seed < SEEDS; seed++)
+            for (uint32_t d = 0; d < 12; d++) {
                 static unsigned char hit[N];
-                uint32_t i;
                 int one = 1;
                 memset(hit, 0, sizeof hit);
-                for (i = 0; i < N; i++) one &= !hit[mcs_sobol_bits(3u * N + i, d, seed) >> (32 - LOG_N)]++;
+                for (uint32_t i = 0; i < N; i++) one &= !hit[mcs_sobol_bits(3u * N + i, d, seed) >> (32 - LOG_N)]++;
                 CHECK(one, "seed %u, dimension %u", seed, d);
             }
     /* t of a projection is the sum of degree - 1 over the primitive polynomials of its dimensions (Niederreiter 1987); dimension 0
      * adds nothing, 1 to 3 have degrees 1, 2, 3. */
     if (mcst_case("dimensions 0 to 3 are Sobol's: t of every pair"))
-        for (seed = 0; seed < SEEDS; seed++)
-            for (d = 0; d < 2; d++) {
+        for (uint32_t seed = 0; seed < SEEDS; seed++)
+            for (uint32_t d = 0; d < 2; d++) {
                 CHECK(broken_shapes(0, d, 2, 1, seed) == 0, "seed %u: %u and 2", seed, d);
                 CHECK(broken_shapes(0, d, 3, 2, seed) == 0, "seed %u: %u and 3", seed, d);
                 CHECK(broken_shapes(0, 2, 3, 3, seed) == 0, "seed %u: 2 and 3", seed);
@@ -93,30 +97,28 @@ static void nets(void) {
 /* chi-square over `bins` equal bins; the level is Sidak's for the 22 tests of this file at 0.01. */
 static void uniform(const double *count, int bins, double total, const char *what) {
     double expected[4096];
-    int i;
-    for (i = 0; i < bins; i++) expected[i] = total / bins;
+    for (int i = 0; i < bins; i++) expected[i] = total / bins;
     CHECK(chi2_test(count, expected, (size_t)bins, NULL, NULL) >= sidak(0.01, 22), "%s is not uniform", what);
 }
 
 static void randomisation(void) {
     enum { BINS = 1024, DRAWS = 1 << 20 };
     static double count[BINS];
-    uint32_t i, d, s;
     if (mcst_case("one point over many seeds is uniform, alone and in pairs")) {
-        for (d = 0; d < 5; d++) {
+        for (uint32_t d = 0; d < 5; d++) {
             memset(count, 0, sizeof count);
-            for (s = 0; s < DRAWS; s++) count[mcs_sobol_bits(77, d, s) >> 22]++;
+            for (uint32_t s = 0; s < DRAWS; s++) count[mcs_sobol_bits(77, d, s) >> 22]++;
             uniform(count, BINS, DRAWS, "a point of Sobol");
         }
         memset(count, 0, sizeof count);
-        for (s = 0; s < DRAWS; s++) count[(mcs_sobol_bits(77, 0, s) >> 27) * 32 + (mcs_sobol_bits(77, 1, s) >> 27)]++;
+        for (uint32_t s = 0; s < DRAWS; s++) count[(mcs_sobol_bits(77, 0, s) >> 27) * 32 + (mcs_sobol_bits(77, 1, s) >> 27)]++;
         uniform(count, BINS, DRAWS, "two dimensions of a point");
         /* two points of one sequence: in different halves by the net, else uniform */
         memset(count, 0, sizeof count);
-        for (s = 0; s < DRAWS; s++) count[(mcs_sobol_bits(0, 0, s) >> 27) * 32 + ((mcs_sobol_bits(1, 0, s) << 1) >> 27)]++;
+        for (uint32_t s = 0; s < DRAWS; s++) count[(mcs_sobol_bits(0, 0, s) >> 27) * 32 + ((mcs_sobol_bits(1, 0, s) << 1) >> 27)]++;
         uniform(count, BINS, DRAWS, "the second point behind its first bit");
         memset(count, 0, sizeof count);
-        for (s = 0; s < DRAWS; s++) {
+        for (uint32_t s = 0; s < DRAWS; s++) {
             const mcs_vec2 p = mcs_r2(5, s);
             count[(int)(p.x * 32) * 32 + (int)(p.y * 32)]++;
         }
@@ -124,20 +126,22 @@ static void randomisation(void) {
     }
     if (mcst_case("hash: bits and pairs")) {
         memset(count, 0, sizeof count);
-        for (i = 0; i < DRAWS; i++) count[mcs_hash(i, 3) >> 22]++;
+        for (uint32_t i = 0; i < DRAWS; i++) count[mcs_hash(i, 3) >> 22]++;
         uniform(count, BINS, DRAWS, "the hash of a counter");
         memset(count, 0, sizeof count);
-        for (i = 0; i < DRAWS; i++) count[(mcs_hash(i, 0) & 31) * 32 + (mcs_hash(i, 1) & 31)]++;
+        for (uint32_t i = 0; i < DRAWS; i++) count[(mcs_hash(i, 0) & 31) * 32 + (mcs_hash(i, 1) & 31)]++;
         uniform(count, BINS, DRAWS, "hashes of neighbouring keys");
     }
     /* Indices that differ in bit 3 alone: shuffled, bit 0, 1, 2 or 3 is the lowest in which they differ, with probabilities of 1/2,
      * 1/4, 1/8, 1/8, and as far from the top the scrambled numbers of a group's first dimension differ first. */
     if (mcst_case("groups: shuffled by the seed, and each by itself")) {
-        double seen[16] = {0}, expected[16];
-        for (i = 0; i < 16; i++) expected[i] = (1 << 16) / (double)((2u << (i % 4 - i % 4 / 3)) * (2u << (i / 4 - i / 12)));
-        for (s = 0; s < 1 << 16; s++) {
+        double seen[16] = {0};
+        double expected[16];
+        for (uint32_t i = 0; i < 16; i++)
+            expected[i] = (1 << 16) / (double)((2u << (i % 4 - i % 4 / 3)) * (2u << (i / 4 - i / 12)));
+        for (uint32_t s = 0; s < 1 << 16; s++) {
             uint32_t at[2];
-            for (d = 0; d < 2; d++) {
+            for (uint32_t d = 0; d < 2; d++) {
                 const uint32_t x = mcs_sobol_bits(77, 4 + 4 * d, s) ^ mcs_sobol_bits(77 ^ 8, 4 + 4 * d, s);
                 for (at[d] = 0; at[d] < 3 && !(x >> (31 - at[d])); at[d]++) {}
             }
@@ -150,27 +154,28 @@ static void randomisation(void) {
 static void strata(void) {
     static unsigned char hit[1 << 20];
     const uint32_t sizes[][2] = {{1, 1}, {2, 3}, {16, 16}, {7, 100}, {1, 4099}, {1000, 1000}, {1u << 20, 1}};
-    uint32_t k, i;
-    for (k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
+    for (uint32_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
         if (mcst_case("one point to a cell, %u x %u", sizes[k][0], sizes[k][1])) {
-            const uint32_t nx = sizes[k][0], ny = sizes[k][1];
-            int one = 1, inside = 1;
+            const uint32_t nx = sizes[k][0];
+            const uint32_t ny = sizes[k][1];
+            int one = 1;
+            int inside = 1;
             memset(hit, 0, sizeof hit);
-            for (i = 0; i < nx * ny; i++) {
+            for (uint32_t i = 0; i < nx * ny; i++) {
                 const mcs_vec2 p = mcs_stratified(i, nx, ny, 9);
-                const uint32_t x = (uint32_t)((double)p.x * nx), y = (uint32_t)((double)p.y * ny);
+                const uint32_t x = (uint32_t)((double)p.x * nx);
+                const uint32_t y = (uint32_t)((double)p.y * ny);
                 inside &= p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1;
                 one &= x == i % nx && y == i / nx && !hit[y * nx + x]++;
             }
             CHECK(one && inside, "cells or range");
         }
     if (mcst_case("Latin hypercube: one point to a slab in each dimension")) {
-        uint32_t n, d;
-        for (n = 1; n < 5000; n += n < 70 ? 1 : 331)
-            for (d = 0; d < 6; d++) {
+        for (uint32_t n = 1; n < 5000; n += n < 70 ? 1 : 331)
+            for (uint32_t d = 0; d < 6; d++) {
                 int one = 1;
                 memset(hit, 0, n);
-                for (i = 0; i < n; i++) {
+                for (uint32_t i = 0; i < n; i++) {
                     const float x = mcs_latin(i, n, d, 4);
                     const uint32_t slab = (uint32_t)((double)x * n);
                     one &= x >= 0 && x < 1 && slab < n && !hit[slab]++;
@@ -182,7 +187,7 @@ static void strata(void) {
         enum { SLABS = 24, DRAWS = 1 << 18 };
         static double count[SLABS * SLABS];
         memset(count, 0, sizeof count);
-        for (i = 0; i < DRAWS; i++)
+        for (uint32_t i = 0; i < DRAWS; i++)
             count[(int)(mcs_latin(7, SLABS, 0, i) * SLABS) * SLABS + (int)(mcs_latin(7, SLABS, 1, i) * SLABS)]++;
         uniform(count, SLABS * SLABS, DRAWS, "the slab");
     }
@@ -190,16 +195,16 @@ static void strata(void) {
     if (mcst_case("Latin hypercube: the permutation is random over seeds")) {
         enum { LARGEST = 16, LEFT = LARGEST - 1, DRAWS = 1 << 18 };
         static double slab[LARGEST], pair[LARGEST * LEFT];
-        uint32_t n;
-        for (n = 9; n <= LARGEST; n += 7)
-            for (k = 0; k < 3; k++) { /* the first, the middle, the last point */
+        for (uint32_t n = 9; n <= LARGEST; n += 7)
+            for (uint32_t k = 0; k < 3; k++) { /* the first, the middle, the last point */
                 memset(slab, 0, sizeof slab);
-                for (i = 0; i < DRAWS; i++) slab[(int)((double)mcs_latin(k * (n - 1) / 2, n, 0, i) * n)]++;
+                for (uint32_t i = 0; i < DRAWS; i++) slab[(int)((double)mcs_latin(k * (n - 1) / 2, n, 0, i) * n)]++;
                 uniform(slab, (int)n, DRAWS, "the slab of one point");
             }
         memset(pair, 0, sizeof pair);
-        for (i = 0; i < DRAWS; i++) {
-            const int a = (int)(mcs_latin(0, LARGEST, 0, i) * LARGEST), b = (int)(mcs_latin(8, LARGEST, 0, i) * LARGEST);
+        for (uint32_t i = 0; i < DRAWS; i++) {
+            const int a = (int)(mcs_latin(0, LARGEST, 0, i) * LARGEST);
+            const int b = (int)(mcs_latin(8, LARGEST, 0, i) * LARGEST);
             pair[a * LEFT + b - (b > a)]++; /* b: of the slabs that a leaves */
         }
         uniform(pair, LARGEST * LEFT, DRAWS, "the pair of slabs of two points");
@@ -207,16 +212,19 @@ static void strata(void) {
     if (mcst_case("the place within a cell is uniform, and independent in x and y")) {
         enum { BINS = 16, SEED_COUNT = 1 << 14 };
         static double count[BINS * BINS];
-        for (k = 0; k < 3; k++) { /* 2: Latin hypercube */
-            const uint32_t nx = k ? 3 : 4, ny = k == 1 ? 5 : nx + k / 2;
-            uint32_t s;
+        for (uint32_t k = 0; k < 3; k++) { /* 2: Latin hypercube */
+            const uint32_t nx = k ? 3 : 4;
+            const uint32_t ny = k == 1 ? 5 : nx + k / 2;
             memset(count, 0, sizeof count);
-            for (s = 0; s < SEED_COUNT; s++)
-                for (i = 0; i < nx * ny; i++) {
+            for (uint32_t s = 0; s < SEED_COUNT; s++)
+                for (uint32_t i = 0; i < nx * ny; i++) {
                     const mcs_vec2 p = mcs_stratified(i, nx, ny, s);
-                    double x = (double)p.x * nx, y = (double)p.y * ny;
-                    if (k == 2)
-                        x = (double)mcs_latin(i, nx * ny, 0, s) * (nx * ny), y = (double)mcs_latin(i, nx * ny, 1, s) * (nx * ny);
+                    double x = (double)p.x * nx;
+                    double y = (double)p.y * ny;
+                    if (k == 2) {
+                        x = (double)mcs_latin(i, nx * ny, 0, s) * (nx * ny);
+                        y = (double)mcs_latin(i, nx * ny, 1, s) * (nx * ny);
+                    }
                     count[(int)((x - floor(x)) * BINS) * BINS + (int)((y - floor(y)) * BINS)]++;
                 }
             uniform(count, BINS * BINS, (double)SEED_COUNT * nx * ny, "the place within a cell");
@@ -224,7 +232,7 @@ static void strata(void) {
     }
     if (mcst_case("counts out of range")) {
         const uint32_t odd[] = {0, 1u << 21, 0xffffffffu};
-        for (i = 0; i < 9; i++) {
+        for (uint32_t i = 0; i < 9; i++) {
             const mcs_vec2 p = mcs_stratified(0xfffffff0u + i, odd[i % 3], odd[i / 3], i);
             const float l = mcs_latin(0xfffffff0u + i, odd[i % 3], odd[i / 3], i);
             CHECK(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1 && l >= 0 && l < 1, "%u, %u", odd[i % 3], odd[i / 3]);
@@ -236,33 +244,37 @@ static void strata(void) {
  * the denominators of the convergents of alpha (three-gap theorem, Sos 1958); q_(k+1) <= (a_(k+1) + 1) q_k, so gap N <= a + 1 with
  * the largest partial quotient a up to there; one more for the rounding of points to 2^-24. */
 static double gap_bound(double alpha, double n) {
-    double a = 0, q0 = 0, q1 = 1;
+    double a = 0;
+    double q0 = 0;
+    double q1 = 1;
     while (q1 <= n) {
-        const double part = floor(1 / alpha), q = part * q1 + q0;
+        const double part = floor(1 / alpha);
+        const double q = part * q1 + q0;
         alpha = 1 / alpha - part;
         a = part > a ? part : a;
-        q0 = q1, q1 = q;
+        q0 = q1;
+        q1 = q;
     }
     return a + 2;
 }
 static int by_value(const void *a, const void *b) {
-    const float x = *(const float *)a, y = *(const float *)b;
+    const float x = *(const float *)a;
+    const float y = *(const float *)b;
     return x < y ? -1 : x > y;
 }
 static void r2_gaps(void) {
     static float v[2][N];
-    uint32_t n, i, d;
     if (!mcst_case("R2: no large gap in either projection")) return;
-    for (n = 16; n <= N; n *= 2) {
-        for (i = 0; i < n; i++) {
+    for (uint32_t n = 16; n <= N; n *= 2) {
+        for (uint32_t i = 0; i < n; i++) {
             const mcs_vec2 p = mcs_r2(i, 11);
-            v[0][i] = p.x, v[1][i] = p.y;
+            v[0][i] = p.x;
+            v[1][i] = p.y;
         }
-        for (d = 0; d < 2; d++) {
-            float gap;
+        for (uint32_t d = 0; d < 2; d++) {
             qsort(v[d], n, sizeof v[d][0], by_value);
-            gap = v[d][0] + 1 - v[d][n - 1];
-            for (i = 1; i < n; i++) gap = v[d][i] - v[d][i - 1] > gap ? v[d][i] - v[d][i - 1] : gap;
+            float gap = v[d][0] + 1 - v[d][n - 1];
+            for (uint32_t i = 1; i < n; i++) gap = v[d][i] - v[d][i - 1] > gap ? v[d][i] - v[d][i - 1] : gap;
             CHECK((double)gap * n <= gap_bound(d ? 0.56984029099805327 : 0.75487766624669276, n), "%u points, dimension %u: gap %g",
                   n, d, (double)gap);
         }
@@ -272,34 +284,35 @@ static void r2_gaps(void) {
 static void forms(void) {
     enum { MAX = 67 };
     float out[MAX + 2];
-    uint32_t n, i, k, d;
     if (mcst_case("the array form is the scalar one, every n, nothing beyond it, NULL"))
-        for (d = 0; d < 6; d++)
-            for (n = 0; n <= MAX; n++) {
+        for (uint32_t d = 0; d < 6; d++)
+            for (uint32_t n = 0; n <= MAX; n++) {
                 int same = 1;
-                for (i = 0; i < MAX + 2; i++) out[i] = -7;
+                for (uint32_t i = 0; i < MAX + 2; i++) out[i] = -7;
                 mcs_sobol_n(1000 + d, d, 5, n, out + 1);
                 mcs_sobol_n(1000 + d, d, 5, n, NULL);
-                for (i = 0; i < n; i++) same &= out[1 + i] == mcs_sobol(1000 + d + i, d, 5);
+                for (uint32_t i = 0; i < n; i++) same &= out[1 + i] == mcs_sobol(1000 + d + i, d, 5);
                 CHECK(same && out[0] == -7 && out[n + 1] == -7, "dimension %u, n = %u", d, n);
             }
 #ifndef MCS_NO_WIDE
     if (mcst_case("wide forms"))
-        for (d = 0; d < 6; d++) {
+        for (uint32_t d = 0; d < 6; d++) {
             mcs4_u i4;
             mcs8_u i8;
             mcs16_u i16;
-            for (k = 0; k < 16; k++) i4[k & 3] = i8[k & 7] = i16[k] = 0;
-            for (k = 0; k < 16; k++) i16[k] = mcs_hash(k, d), i8[k & 7] = i16[k & 7], i4[k & 3] = i16[k & 3];
-            for (k = 0; k < 16; k++) {
+            for (uint32_t k = 0; k < 16; k++) i4[k & 3] = i8[k & 7] = i16[k] = 0;
+            for (uint32_t k = 0; k < 16; k++) {
+                i16[k] = mcs_hash(k, d);
+                i8[k & 7] = i16[k & 7];
+                i4[k & 3] = i16[k & 3];
+            }
+            for (uint32_t k = 0; k < 16; k++) {
                 CHECK(mcs16_sobol_bits(i16, d, 3)[k] == mcs_sobol_bits(i16[k], d, 3), "16 wide, dimension %u", d);
                 CHECK(mcs8_sobol_bits(i8, d, 3)[k & 7] == mcs_sobol_bits(i8[k & 7], d, 3), "8 wide, dimension %u", d);
                 CHECK(mcs4_sobol_bits(i4, d, 3)[k & 3] == mcs_sobol_bits(i4[k & 3], d, 3), "4 wide, dimension %u", d);
                 CHECK(mcs8_r2(i8, d).y[k & 7] == mcs_r2(i8[k & 7], d).y, "R2, 8 wide");
             }
         }
-#else
-    (void)k;
 #endif
 }
 
@@ -311,13 +324,18 @@ static void forms(void) {
 static double smooth(double x, double y) { return x * x * y + (x - 0.3) * y * y * y; }
 static const double smooth_mean = 1.0 / 6 + 0.2 / 4;
 static double slope(mcs_vec2 (*point)(uint32_t i, uint32_t n, uint32_t seed), double *last) {
-    double sx = 0, sy = 0, sxx = 0, sxy = 0, e = 0;
-    uint32_t k, n, seed, i, runs = 0;
-    for (k = 3; k <= 7; k++) {
-        n = 1u << (2 * k);
-        for (e = 0, seed = 0; seed < 64; seed++) {
+    double sx = 0;
+    double sy = 0;
+    double sxx = 0;
+    double sxy = 0;
+    double e = 0;
+    uint32_t runs = 0;
+    for (uint32_t k = 3; k <= 7; k++) {
+        const uint32_t n = 1u << (2 * k);
+        e = 0;
+        for (uint32_t seed = 0; seed < 64; seed++) {
             double m = 0;
-            for (i = 0; i < n; i++) {
+            for (uint32_t i = 0; i < n; i++) {
                 const mcs_vec2 p = point(i, n, seed);
                 m += smooth((double)p.x, (double)p.y);
             }
@@ -325,21 +343,27 @@ static double slope(mcs_vec2 (*point)(uint32_t i, uint32_t n, uint32_t seed), do
             e += m * m;
         }
         e = sqrt(e / 64);
-        sx += k, sy += log(e) / log(4), sxx += k * (double)k, sxy += k * log(e) / log(4), runs++;
+        sx += k;
+        sy += log(e) / log(4);
+        sxx += k * (double)k;
+        sxy += k * log(e) / log(4);
+        runs++;
     }
     *last = e;
     return (runs * sxy - sx * sy) / (runs * sxx - sx * sx);
 }
 static mcs_vec2 by_sobol(uint32_t i, uint32_t n, uint32_t seed) {
-    mcs_vec2 p;
     (void)n;
-    p.x = mcs_sobol(i, 0, seed), p.y = mcs_sobol(i, 1, seed);
+    mcs_vec2 p;
+    p.x = mcs_sobol(i, 0, seed);
+    p.y = mcs_sobol(i, 1, seed);
     return p;
 }
 static mcs_vec2 by_sobol_23(uint32_t i, uint32_t n, uint32_t seed) {
-    mcs_vec2 p;
     (void)n;
-    p.x = mcs_sobol(i, 2, seed), p.y = mcs_sobol(i, 3, seed);
+    mcs_vec2 p;
+    p.x = mcs_sobol(i, 2, seed);
+    p.y = mcs_sobol(i, 3, seed);
     return p;
 }
 static mcs_vec2 by_strata(uint32_t i, uint32_t n, uint32_t seed) {
@@ -349,7 +373,8 @@ static mcs_vec2 by_strata(uint32_t i, uint32_t n, uint32_t seed) {
 }
 static mcs_vec2 by_latin(uint32_t i, uint32_t n, uint32_t seed) {
     mcs_vec2 p;
-    p.x = mcs_latin(i, n, 0, seed), p.y = mcs_latin(i, n, 1, seed);
+    p.x = mcs_latin(i, n, 0, seed);
+    p.y = mcs_latin(i, n, 1, seed);
     return p;
 }
 static mcs_vec2 by_r2(uint32_t i, uint32_t n, uint32_t seed) {
@@ -359,22 +384,28 @@ static mcs_vec2 by_r2(uint32_t i, uint32_t n, uint32_t seed) {
 static mcs_vec2 by_philox(uint32_t i, uint32_t n, uint32_t seed) {
     const mcs_philox4 v = mcs_philox(seed, i, n);
     mcs_vec2 p;
-    p.x = mcs_u01(v.v[0]), p.y = mcs_u01(v.v[1]);
+    p.x = mcs_u01(v.v[0]);
+    p.y = mcs_u01(v.v[1]);
     return p;
 }
 static void rates(void) {
-    double sobol, pair, strata_error, latin, r2, independent, s;
     if (!mcst_case("rates on a smooth integrand")) return;
-    s = slope(by_sobol, &sobol);
+    double sobol;
+    double s = slope(by_sobol, &sobol);
     CHECK(s <= -1.3, "Sobol 0, 1: N^%.2f", s);
+    double pair;
     s = slope(by_sobol_23, &pair);
     CHECK(s <= -1.3, "Sobol 2, 3: N^%.2f", s);
+    double strata_error;
     s = slope(by_strata, &strata_error); /* one point to a cell: the variance is that within cells, N^-2, so N^-1 */
     CHECK(fabs(s + 1) <= 0.1, "stratified: N^%.2f", s);
+    double r2;
     s = slope(by_r2, &r2);
     CHECK(s <= -0.54, "R2: N^%.2f", s); /* N^-1, but for a factor up to a + 1 = 13 between good and bad N: 1 - ln 13 / ln 2^8 */
+    double independent;
     s = slope(by_philox, &independent);
     CHECK(fabs(s + 0.5) <= 0.1, "independent: N^%.2f", s);
+    double latin;
     s = slope(by_latin, &latin);
     CHECK(fabs(s + 0.5) <= 0.1 && latin < 0.6 * independent, "Latin hypercube: N^%.2f, error %g of %g", s, latin, independent);
 }

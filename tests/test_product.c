@@ -14,30 +14,40 @@ typedef struct {
 static estimate estimate_of(const sampler *d, int count, uint64_t stream) {
     static float u1[CHUNK], u2[CHUNK], x[CHUNK], y[CHUNK], z[CHUNK], pdf[CHUNK];
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, stream);
-    double sum = 0, sum2 = 0, shift = -1;
-    estimate r;
-    int i, k, n = 0;
-    for (i = 0; i < count; i += CHUNK) {
+    double sum = 0;
+    double sum2 = 0;
+    double shift = -1;
+    int n = 0;
+    for (int i = 0; i < count; i += CHUNK) {
         fill(&rng, CHUNK, u1, u2);
         if (d->p) mcs_product_sample_n(d->p, CHUNK, u1, u2, x, y, z, pdf, NULL, NULL);
-        for (k = 0; k < CHUNK; k++, n++) {
-            double v = 0, visible;
+        for (int k = 0; k < CHUNK; k++, n++) {
+            double v = 0;
             uint32_t col, at;
             mcs_vec3 w;
             if (d->p) {
+                w.x = x[k];
+                w.y = y[k];
+                w.z = z[k];
                 double c, row;
-                w.x = x[k], w.y = y[k], w.z = z[k];
                 texel_of(d->m->w, d->m->h, w, &c, &row);
-                col = c < d->m->w ? (uint32_t)c : d->m->w - 1, at = row < d->m->h ? (uint32_t)row : d->m->h - 1;
+                col = c < d->m->w ? (uint32_t)c : d->m->w - 1;
+                at = row < d->m->h ? (uint32_t)row : d->m->h - 1;
             } else {
                 const mcs_texel t = draw(d, u1[k], u2[k]);
-                w = t.w, pdf[k] = t.pdf, col = t.col, at = t.row;
+                w = t.w;
+                pdf[k] = t.pdf;
+                col = t.col;
+                at = t.row;
             }
+            double visible;
             if (pdf[k] > 0) v = d->m->light[(size_t)at * d->m->w + col] * reflect_f(d->s, w, &visible) / (double)pdf[k];
             if (shift < 0) shift = v; /* sums about a value of the right size keep their digits */
-            sum += v - shift, sum2 += (v - shift) * (v - shift);
+            sum += v - shift;
+            sum2 += (v - shift) * (v - shift);
         }
     }
+    estimate r;
     r.mean = shift + sum / n;
     r.error = sqrt(fmax(sum2 - sum * sum / n, 0) / ((double)n - 1) / n);
     return r;
@@ -65,21 +75,15 @@ static void test_mean(void) {
     enum { CASES = (int)(sizeof cases / sizeof *cases) };
     const double f = scale();
     const int count = (int)(f >= 10 ? 1e7 : f < 1 ? 1e6 * f : 1e6);
-    int i, form;
     mcst_group("product, means");
-    for (i = 0; i < CASES; i++)
-        for (form = 0; form < 2; form++) {
-            scene m;
-            surface s;
-            sampler d;
-            double truth;
-            estimate e;
+    for (int i = 0; i < CASES; i++)
+        for (int form = 0; form < 2; form++) {
             if (!mcst_case("%s, %s, %s", form ? "prepared" : "one-shot", cases[i].name, lobes[cases[i].lobe].name)) continue;
-            m = scene_make(cases[i].name, cases[i].w, cases[i].h, cases[i].value, cases[i].rows);
-            s = surface_make(normals[cases[i].normal], local_wo(cases[i].cosine, 0.11 * i), lobes[cases[i].lobe]);
-            d = sampler_make(&m, &s, form);
-            truth = true_light(&m, &s);
-            e = estimate_of(&d, count, 80 + (uint64_t)i);
+            scene m = scene_make(cases[i].name, cases[i].w, cases[i].h, cases[i].value, cases[i].rows);
+            const surface s = surface_make(normals[cases[i].normal], local_wo(cases[i].cosine, 0.11 * i), lobes[cases[i].lobe]);
+            sampler d = sampler_make(&m, &s, form);
+            const double truth = true_light(&m, &s);
+            const estimate e = estimate_of(&d, count, 80 + (uint64_t)i);
             /* Four standard errors: 6e-5 for one, 1.2e-3 for all; 1e-6 for the quadrature and the densities as floats. */
             CHECK(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth, "mean %.7g with error %.2g, not %.7g", e.mean, e.error,
                   truth);
@@ -98,14 +102,12 @@ static void test_mean(void) {
  * 4. */
 static void test_blocks(void) {
     static const struct { uint32_t w, h; } sizes[] = {{1, 1}, {3, 1}, {2, 3}, {5, 2}, {16, 8}};
-    int i, k;
     mcst_group("product, blocks");
-    for (i = 0; i < (int)(sizeof sizes / sizeof *sizes); i++) {
-        scene m;
+    for (int i = 0; i < (int)(sizeof sizes / sizeof *sizes); i++) {
         if (!mcst_case("constant, %u x %u", sizes[i].w, sizes[i].h)) continue;
-        m = scene_make("constant", sizes[i].w, sizes[i].h, v_constant, 16);
-        for (k = 0; k < 5; k++) {
-            surface s = surface_make(normals[k], local_wo(0.7, 0.1), lobes[0]);
+        scene m = scene_make("constant", sizes[i].w, sizes[i].h, v_constant, 16);
+        for (int k = 0; k < 5; k++) {
+            const surface s = surface_make(normals[k], local_wo(0.7, 0.1), lobes[0]);
             sampler d = sampler_make(&m, &s, 0);
             const estimate e = estimate_of(&d, 1 << 14, 300 + (uint64_t)k);
             /* what the floor of a ten-thousandth may hide: five standard errors, all 25 together below 2e-5 */
@@ -117,16 +119,17 @@ static void test_blocks(void) {
         }
         scene_free(&m);
     }
-    for (i = 16; i <= 128; i *= 2) {
+    for (int i = 16; i <= 128; i *= 2) {
         double variance[2] = {0, 0};
-        scene m;
         if (!mcst_case("a bright texel at the horizon, %d x %d", i, i / 2)) continue;
-        m = scene_make("spark", (uint32_t)i, (uint32_t)i / 2, v_spark, 16);
-        for (k = 0; k < 2; k++) {
+        scene m = scene_make("spark", (uint32_t)i, (uint32_t)i / 2, v_spark, 16);
+        for (int k = 0; k < 2; k++) {
             /* The normal lies a quarter of a texel less than square to the texel's middle, on the far side. */
-            const double phi = 2 * pi * (i / 3 + 0.5) / i, theta = pi * (i / 2 / 3 + 0.5) / (i / 2.0), tip = pi / 2 + pi / (2 * i);
+            const double phi = 2 * pi * (i / 3 + 0.5) / i;
+            const double theta = pi * (i / 2 / 3 + 0.5) / (i / 2.0);
+            const double tip = pi / 2 + pi / (2 * i);
             const mcs_vec3 normal = vec(sin(theta + tip) * cos(phi), sin(theta + tip) * sin(phi), cos(theta + tip));
-            surface s = surface_make(normal, local_wo(0.7, 0.1), lobes[0]);
+            const surface s = surface_make(normal, local_wo(0.7, 0.1), lobes[0]);
             sampler d = sampler_make(&m, &s, k);
             const estimate e = estimate_of(&d, 1 << 17, 320);
             variance[k] = e.error * e.error / (e.mean * e.mean) * (1 << 17);
@@ -165,52 +168,53 @@ static void test_weights(void) {
     enum { SUB = 16 };
     const double f = scale();
     const int count = (int)(f >= 10 ? 1e7 : f < 1 ? 3e5 * f : 3e5);
-    int k, i, j;
-    uint32_t r, c, q;
     mcst_group("product, weights");
-    for (k = 0; k < MODELS; k++) {
-        scene m;
-        surface s;
-        sampler d;
-        float *weight;
-        double truth = 0, sum = 0, sum2 = 0, density_sum = 0, error;
+    for (int k = 0; k < MODELS; k++) {
+        double truth = 0;
+        double sum = 0;
+        double sum2 = 0;
+        double density_sum = 0;
         mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 73);
         if (!mcst_case("%s", names[k])) continue;
-        m = scene_make("sun", 64, 32, k % 2 ? v_sun : v_room, k < 2 ? 16 : 32);
-        s = surface_make(normals[3 + k], local_wo(0.5 + 0.1 * k, 0.2 * k), lobes[0]);
+        scene m = scene_make("sun", 64, 32, k % 2 ? v_sun : v_room, k < 2 ? 16 : 32);
+        surface s = surface_make(normals[3 + k], local_wo(0.5 + 0.1 * k, 0.2 * k), lobes[0]);
+        float *weight;
         weight = (float *)memory(2 * m.rows * m.rows * sizeof *weight);
-        for (q = 0; q < 2 * m.rows * m.rows; q++) {
+        for (uint32_t q = 0; q < 2 * m.rows * m.rows; q++) {
             mcs_vec3 w = mcs_to_local(&s.r.frame, mcs_tiles_direction(tiles_of(&m), env_of(&m), q));
             /* a tile may reach above the horizon when its mean direction does not */
             w = w.z < 0.1f ? vec(w.x, w.y, 0.1) : w;
             weight[q] = (float)model(k, s.r.wo, w) + 1e-3f;
         }
-        d = sampler_weights(&m, &s, weight);
+        sampler d = sampler_weights(&m, &s, weight);
         CHECK(d.status == MCS_OK, "build returns %d", (int)d.status);
-        for (r = 0; r < m.h; r++)
-            for (c = 0; c < m.w; c++) {
-                const double light = m.light[r * m.w + c], omega = m.area[r];
+        for (uint32_t r = 0; r < m.h; r++)
+            for (uint32_t c = 0; c < m.w; c++) {
+                const double light = m.light[r * m.w + c];
+                const double omega = m.area[r];
                 const double p = density(&d, point(m.w, m.h, c, r, 0.5, 0.5));
                 CHECK((p > 0) == (light > 0), "texel (%u, %u): density %g of light %g", c, r, p, light);
                 density_sum += p * omega;
-                for (i = 0; i < SUB; i++)
-                    for (j = 0; j < SUB; j++)
+                for (int i = 0; i < SUB; i++)
+                    for (int j = 0; j < SUB; j++)
                         truth +=
                             light * omega / (SUB * SUB) *
                             model(k, s.r.wo, mcs_to_local(&s.r.frame, point(m.w, m.h, c, r, (i + 0.5) / SUB, (j + 0.5) / SUB)));
             }
         CHECK(fabs(density_sum - 1) <= 1e-5, "the density integrates to %g", density_sum);
-        for (i = 0; i < count; i++) {
-            const float u1 = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
+        for (int i = 0; i < count; i++) {
+            const float u1 = mcs_pcg32_float(&rng);
+            const float u2 = mcs_pcg32_float(&rng);
             const mcs_texel t = mcs_product_sample(d.p, u1, u2);
             const double v =
                 t.pdf > 0 ? m.light[t.row * m.w + t.col] * model(k, s.r.wo, mcs_to_local(&s.r.frame, t.w)) / (double)t.pdf : 0;
-            sum += v, sum2 += v * v;
+            sum += v;
+            sum2 += v * v;
             if (i % 64 == 0)
                 CHECK(t.pdf > 0 && agrees(&d, t), "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2, density(&d, t.w),
                       (double)t.pdf);
         }
-        error = sqrt(fmax(sum2 - sum * sum / count, 0) / count / (count - 1.0));
+        const double error = sqrt(fmax(sum2 - sum * sum / count, 0) / count / (count - 1.0));
         /* midpoints 1/16 of a texel apart, 0.006, in lobes wider than 0.1: (0.006/0.1)^2 / 24 */
         CHECK(fabs(sum / count - truth) <= 4 * error + 1.5e-4 * truth, "mean %g with error %g, not %g", sum / count, error, truth);
         free(weight);
@@ -222,18 +226,18 @@ static void test_weights(void) {
         scene m = scene_make("sun", 64, 32, v_sun, 16);
         const surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[0]);
         float weight[512];
-        for (i = 0; i < (int)(sizeof sizes / sizeof *sizes); i++)
-            for (k = 0; k < 3; k++) { /* 1: one tile alone has weight; 2: the others have 1e-44 */
-                sampler d;
+        for (int i = 0; i < (int)(sizeof sizes / sizeof *sizes); i++)
+            for (int k = 0; k < 3; k++) { /* 1: one tile alone has weight; 2: the others have 1e-44 */
                 uint32_t bad = 0;
                 double sum = 0;
-                for (q = 0; q < 512; q++) weight[q] = !k || q == 100 ? sizes[i] : k == 1 ? 0 : 1e-44f;
-                d = sampler_weights(&m, &s, weight);
+                for (uint32_t q = 0; q < 512; q++) weight[q] = !k || q == 100 ? sizes[i] : k == 1 ? 0 : 1e-44f;
+                sampler d = sampler_weights(&m, &s, weight);
                 CHECK(d.status == MCS_OK, "%g: build returns %d", (double)sizes[i], (int)d.status);
-                for (r = 0; r < 32; r++)
-                    for (c = 0; c < 64; c++) {
+                for (uint32_t r = 0; r < 32; r++)
+                    for (uint32_t c = 0; c < 64; c++) {
                         const double p = density(&d, point(64, 32, c, r, 0.5, 0.5));
-                        bad += !(p >= 0) || (p > 0) != (weight[tile_at(&m, c, r)] > 0), sum += p * m.area[r];
+                        bad += !(p >= 0) || (p > 0) != (weight[tile_at(&m, c, r)] > 0);
+                        sum += p * m.area[r];
                     }
                 CHECK(bad == 0, "weights of %g: %u texels that can be drawn and should not, or the other way", (double)sizes[i],
                       bad);
@@ -248,16 +252,16 @@ static void test_weights(void) {
         scene m = scene_make("sun", 64, 32, v_sun, 16);
         const surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[0]);
         float weight[512];
-        sampler d;
-        for (k = 0; k < 3; k++) { /* 1: none is good; 2: nor infinite */
-            for (q = 0; q < 512; q++) weight[q] = k || q % 3 ? wrong[q % 5] : 1;
-            for (q = 0; k == 2 && q < 512; q++) weight[q] = weight[q] > 0 ? NAN : weight[q];
-            d = sampler_weights(&m, &s, weight);
+        for (int k = 0; k < 3; k++) { /* 1: none is good; 2: nor infinite */
+            for (uint32_t q = 0; q < 512; q++) weight[q] = k || q % 3 ? wrong[q % 5] : 1;
+            for (uint32_t q = 0; k == 2 && q < 512; q++) weight[q] = weight[q] > 0 ? NAN : weight[q];
+            sampler d = sampler_weights(&m, &s, weight);
             CHECK(d.status == (k == 2 ? MCS_UNIFORM : MCS_OK), "build returns %d", (int)d.status);
             check_sane(&d, 1);
-            for (r = 0; r < 32; r++)
-                for (c = 0; c < 64; c++) {
-                    const double p = density(&d, point(64, 32, c, r, 0.5, 0.5)), want = weight[tile_at(&m, c, r)];
+            for (uint32_t r = 0; r < 32; r++)
+                for (uint32_t c = 0; c < 64; c++) {
+                    const double p = density(&d, point(64, 32, c, r, 0.5, 0.5));
+                    const double want = weight[tile_at(&m, c, r)];
                     CHECK(p >= 0 && p <= FLT_MAX && (p > 0) == (want > 0), "texel (%u, %u): density %g of weight %g", c, r, p,
                           want);
                 }
@@ -272,37 +276,39 @@ static void test_mutants(void) {
     static const char *const names[] = {"tile weight by the mean direction alone", "a low tile dropped", "a bright tile dropped"};
     const double f = scale();
     const int count = (int)(f >= 10 ? 1e7 : f < 1 ? 2e6 * f : 2e6);
-    int k;
     mcst_group("product, mutants");
-    for (k = 0; k < 3; k++) {
-        scene m;
-        surface s;
-        sampler d;
-        float weight[512];
-        uint32_t q, c = 0, r = 0, drop = 512;
-        double truth, best = 2;
-        estimate e;
-        int bad;
+    for (int k = 0; k < 3; k++) {
+        uint32_t c = 0;
+        uint32_t r = 0;
+        uint32_t drop = 512;
+        double best = 2;
         if (!mcst_case("%s", names[k])) continue;
-        m = scene_make("", 64, 32, k ? v_noise : v_rim, 16), s = surface_make(normals[4], local_wo(0.7, 0.1), lobes[0]);
-        for (q = 0; q < 512; q++) {
+        scene m = scene_make("", 64, 32, k ? v_noise : v_rim, 16);
+        const surface s = surface_make(normals[4], local_wo(0.7, 0.1), lobes[0]);
+        float weight[512];
+        for (uint32_t q = 0; q < 512; q++) {
             const mcs_vec3 w = mcs_tiles_direction(tiles_of(&m), env_of(&m), q);
             const double z = s.n[0] * w.x + s.n[1] * w.y + s.n[2] * w.z;
             weight[q] = z > 0 ? (float)z : 0;
             if (k) weight[q] = (float)fmax(z, 0.02);
-            if (fabs(z - (k == 1 ? 0.3 : 0.9)) < best) best = fabs(z - (k == 1 ? 0.3 : 0.9)), drop = q;
+            if (fabs(z - (k == 1 ? 0.3 : 0.9)) < best) {
+                best = fabs(z - (k == 1 ? 0.3 : 0.9));
+                drop = q;
+            }
         }
-        d = sampler_weights(&m, &s, weight);
-        truth = true_light(&m, &s);
+        sampler d = sampler_weights(&m, &s, weight);
+        const double truth = true_light(&m, &s);
+        estimate e;
         if (k) {
             CHECK(unsupported(&d, 4, &c, &r) == 0, "the whole one fails");
             e = estimate_of(&d, count, 90);
             CHECK(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth, "the whole one: mean %g with error %g, not %g", e.mean,
                   e.error, truth);
             sampler_free(&d);
-            weight[drop] = 0, d = sampler_weights(&m, &s, weight);
+            weight[drop] = 0;
+            d = sampler_weights(&m, &s, weight);
         }
-        bad = unsupported(&d, 4, &c, &r);
+        const int bad = unsupported(&d, 4, &c, &r);
         CHECK(bad > 0, "not seen by the support");
         e = estimate_of(&d, count, 91);
         /* At least 0.2 % of the integral is missed and more of the rim; the error is about a third of the mean over sqrt(n),
@@ -319,46 +325,67 @@ static void test_mutants(void) {
 
 static void test_spread(void) {
     enum { SEEDS = 64, STEPS = 11 };
-    const int seeds = scale() < 1 ? 32 : SEEDS, steps = scale() >= 10 ? STEPS : 7;
+    const int seeds = scale() < 1 ? 32 : SEEDS;
+    const int steps = scale() >= 10 ? STEPS : 7;
     const uint32_t most = 64u << (steps - 1);
-    double gain = 0, rate = 0;
-    int k, form, cases = 0;
+    double gain = 0;
+    double rate = 0;
+    int cases = 0;
     mcst_group("product, spread points");
-    for (k = 0; k < 4; k++)
-        for (form = 0; form < 2; form++) {
-            scene m;
-            surface s;
-            sampler d;
-            double truth, square[STEPS] = {0}, sx = 0, sy = 0, sxx = 0, sxy = 0, slope, sum2 = 0, alone, error;
-            int seed, step;
-            uint32_t i;
+    for (int k = 0; k < 4; k++)
+        for (int form = 0; form < 2; form++) {
+            double square[STEPS] = {0};
+            double sx = 0;
+            double sy = 0;
+            double sxx = 0;
+            double sxy = 0;
+            double sum2 = 0;
             lobe l = lobes[0];
-            if (k % 2) l.matte = 0, l.ax = l.ay = 0.3f, l.name = "alpha 0.3";
+            if (k % 2) {
+                l.matte = 0;
+                l.ax = l.ay = 0.3f;
+                l.name = "alpha 0.3";
+            }
             if (!mcst_case("%s, %s, %s", form ? "prepared" : "one-shot", k < 2 ? "smooth" : "room", l.name)) continue;
-            m = scene_make("", 256, 128, k < 2 ? v_smooth : v_room, 16);
-            s = surface_make(normals[4], local_wo(0.7, 0.3), l), d = sampler_make(&m, &s, form), truth = true_light(&m, &s);
+            scene m = scene_make("", 256, 128, k < 2 ? v_smooth : v_room, 16);
+            const surface s = surface_make(normals[4], local_wo(0.7, 0.3), l);
+            sampler d = sampler_make(&m, &s, form);
+            const double truth = true_light(&m, &s);
             CHECK(!(d.share > 0), "share %g", d.share);
-            for (seed = 0; seed < seeds; seed++) {
+            for (int seed = 0; seed < seeds; seed++) {
                 double sum = 0;
-                for (i = 0, step = 0; i < most; i++) {
+                int step = 0;
+                for (uint32_t i = 0; i < most; i++) {
                     const uint32_t key = (uint32_t)(mcst.seed + 7919u * (uint32_t)seed);
                     const mcs_texel t = draw(&d, mcs_sobol(i, 0, key), mcs_sobol(i, 1, key));
-                    double visible, v = 0;
+                    double v = 0;
+                    double visible;
                     if (t.pdf > 0) v = m.light[t.row * m.w + t.col] * reflect_f(&s, t.w, &visible) / (double)t.pdf;
-                    sum += v, sum2 += v * v;
-                    if (i + 1 == 64u << step) square[step] += pow(sum / (i + 1) / truth - 1, 2), step++;
+                    sum += v;
+                    sum2 += v * v;
+                    if (i + 1 == 64u << step) {
+                        square[step] += pow(sum / (i + 1) / truth - 1, 2);
+                        step++;
+                    }
                 }
             }
-            for (step = 0; step < steps; step++) {
-                const double x = log(64u << step), y = 0.5 * log(square[step] / seeds);
-                sx += x, sy += y, sxx += x * x, sxy += x * y;
+            for (int step = 0; step < steps; step++) {
+                const double x = log(64u << step);
+                const double y = 0.5 * log(square[step] / seeds);
+                sx += x;
+                sy += y;
+                sxx += x * x;
+                sxy += x * y;
             }
-            slope = (steps * sxy - sx * sy) / (steps * sxx - sx * sx);
-            alone = sqrt((sum2 / seeds / most / truth / truth - 1) / most), error = sqrt(square[steps - 1] / seeds);
+            const double slope = (steps * sxy - sx * sy) / (steps * sxx - sx * sx);
+            const double alone = sqrt((sum2 / seeds / most / truth / truth - 1) / most);
+            const double error = sqrt(square[steps - 1] / seeds);
             mcst_note("    %-32s error %.2e at 64, %.2e at %u, 1/%.1f of independent: N^%.2f%s\n", mcst.name,
                       sqrt(square[0] / seeds), error, most, alone / error, slope, slope <= -0.9 ? "" : ", -0.9 not met");
             CHECK(error <= alone, "error %.2e at %u, of independent points %.2e", error, most, alone);
-            gain += log(alone / error), rate += slope, cases++;
+            gain += log(alone / error);
+            rate += slope;
+            cases++;
             sampler_free(&d);
             scene_free(&m);
         }

@@ -12,17 +12,19 @@ static double *expected, *observed;
  * where the others are. Their falloff is the 256th power of a sum and a quotient, by eight squares (767 eps), of an x with some
  * 32. */
 static double reflect_at(const sampler *d, box b, double t1, double t2, span *s, uint32_t *r, double *sharp) {
-    double visible, v[3], root;
-    mcs_vec3 w;
-    fall f;
     *sharp = (2 / fmin(d->s->ax, d->s->ay) + 4) * 8 * eps;
-    t1 = fmax(0, fmin(t1, 1 - 0x1p-32)), t2 = fmax(0, fmin(t2, 1 - 0x1p-32));
+    t1 = fmax(0, fmin(t1, 1 - 0x1p-32));
+    t2 = fmax(0, fmin(t2, 1 - 0x1p-32));
+    mcs_vec3 w;
     if (!(direction_at(d->m, b, t1, t2, &w, r, s) > 0)) return -1;
+    double v[3];
     to3(v, w);
     if (d->s->profile != MCS_PROFILE_GGX) {
-        f = fall_at(d->s, v), root = fmin(f.root, 8);
+        fall f = fall_at(d->s, v);
+        const double root = fmin(f.root, 8);
         *sharp = (2 * root / f.scale + 4 / d->s->wo[2]) * 8 * eps + (767 + 32 * root * root) * eps;
     }
+    double visible;
     return reflect_as(d->s, v, 1, &visible) + 1e-4 / pi;
 }
 /* The place that a node stands for: its own, but the outer ones for those a hundredth off the border. */
@@ -34,18 +36,22 @@ typedef struct {
 /* 0: there is no light, or the node may lie in another texel. */
 static int know_node(const sampler *d, box b, double row_slack, const fit *f, double mean, int k1, int k2, known_node *n) {
     static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-    const double t1 = place_of_node(k1), t2 = place_of_node(k2);
-    double sharp, beside;
+    const double t1 = place_of_node(k1);
+    const double t2 = place_of_node(k2);
+    double sharp;
     uint32_t r;
-    span s, s1;
+    span s;
     n->wanted = reflect_at(d, b, t1, t2, &s, &r, &sharp);
     if (!(n->wanted > 0)) return 0;
     const places off = places_off(d->m, &s, r, row_slack);
-    const double in1 = t1 - s.t1, in2 = t2 - s.t2;
+    const double in1 = t1 - s.t1;
+    const double in2 = t2 - s.t2;
     if (!(fmin(in1, s.part1 - in1) > off.t1)) return 0;
     if (!(fmin(in2, s.part2 - in2) > off.t2)) return 0;
     n->off = sharp * n->wanted;
     for (int k = 0; k < 4; k++) {
+        double beside;
+        span s1;
         const double v = reflect_at(d, b, t1 + step[k][0] * off.t1, t2 + step[k][1] * off.t2, &s1, &r, &beside);
         n->off = fmax(n->off, fabs(v - n->wanted) + sharp * n->wanted);
     }
@@ -58,8 +64,9 @@ static int know_node(const sampler *d, box b, double row_slack, const fit *f, do
 static void check_nodes(const sampler *d, uint32_t tile, const fit *f, double mean, double *least, double *most) {
     const box b = tile_box(d->m, tile);
     const double row_slack = slack_of_tile(d->m, b);
-    known_node known[(FINE + 1) * (FINE + 1)], best = {0, 0, 0, 0};
+    known_node best = {0, 0, 0, 0};
     int n = 0;
+    known_node known[(FINE + 1) * (FINE + 1)];
     for (int k = 0; k < (FINE + 1) * (FINE + 1); k++) {
         if (!know_node(d, b, row_slack, f, mean, k / (FINE + 1), k % (FINE + 1), &known[n])) continue;
         if (known[n].v > best.v) best = known[n];
@@ -67,7 +74,8 @@ static void check_nodes(const sampler *d, uint32_t tile, const fit *f, double me
     }
     if (!n) return;
     const double factor = best.v / best.wanted;
-    double wrong = best.blur / best.v + best.off / best.wanted, light = 0;
+    double wrong = best.blur / best.v + best.off / best.wanted;
+    double light = 0;
     for (int k = 0; k < n; k++)
         CHECK(fabs(known[k].v - factor * known[k].wanted) <=
                   known[k].blur + factor * (known[k].off + wrong * known[k].wanted) + 16 * eps * (best.v + mean),
@@ -99,14 +107,18 @@ static void check_place(const sampler *d, uint32_t c, uint32_t r, double x, doub
     const scene *m = d->m;
     const double light = m->light[(size_t)r * m->w + c];
     const mcs_vec3 w = point(m->w, m->h, c, r, 0.01 + 0.98 * x, 0.01 + 0.98 * y);
-    double blur, all, visible, want = 0, tol = 0;
+    double want = 0;
+    double tol = 0;
+    double blur, all;
     const double rest = tile_density(d, w, &blur, &all);
+    double visible;
     reflect_f(d->s, w, &visible);
     /* and the mixture's rounding */
     CHECK(fabs(all - rest - d->share * visible) <= d->share * lobe_off(d->s, w, visible) + 4 * eps * rest + blur,
           "texel (%u, %u): density %g of tiles, %g of the lobe, %g in all", c, r, rest, d->share * visible, all);
     if (light > 0) {
-        const double t1 = s->t1 + (0.01 + 0.98 * x) * s->part1, t2 = s->t2 + (0.01 + 0.98 * y) * s->part2;
+        const double t1 = s->t1 + (0.01 + 0.98 * x) * s->part1;
+        const double t2 = s->t2 + (0.01 + 0.98 * y) * s->part2;
         const places off = places_off(m, s, r, row_slack);
         const doubt o = fit_doubt(f, t1, t2, off);
         want = light * fit_at(f, t1, t2);
@@ -136,12 +148,16 @@ static int check_density(const sampler *d) {
     static const span whole = {0, 1, 0, 1, 0};
     const scene *m = d->m;
     const uint32_t n = m->w * m->h;
-    double sum = 0, seen = 0, least_factor = 0, most_factor = INFINITY;
+    double sum = 0;
+    double seen = 0;
+    double least_factor = 0;
+    double most_factor = INFINITY;
     int fine = 0;
     for (uint32_t tile = 0; tile < 2 * m->rows * m->rows; tile++) {
         const box b = tile_box(m, tile);
         const fit f = fit_tile(d, tile);
-        const double mean = fit_mean(&f, &whole), row_slack = slack_of_tile(m, b);
+        const double mean = fit_mean(&f, &whole);
+        const double row_slack = slack_of_tile(m, b);
         fine += f.parts > 1;
         check_range_of_nodes(tile, &f, mean);
         if (f.parts > 1) check_nodes(d, tile, &f, mean, &least_factor, &most_factor);
@@ -162,23 +178,28 @@ static int check_density(const sampler *d) {
 static void check_counts(const sampler *d, int count, mcs_pcg32 *rng, double tests) {
     static float u1[CHUNK], u2[CHUNK], x[CHUNK], y[CHUNK], z[CHUNK], pdf[CHUNK];
     const uint32_t n = d->m->w * d->m->h;
-    double stat, p, all = 0;
-    int dof, i, k;
-    uint32_t j;
-    for (j = 0; j <= n; j++) observed[j] = 0, all += expected[j];
+    double all = 0;
+    for (uint32_t j = 0; j <= n; j++) {
+        observed[j] = 0;
+        all += expected[j];
+    }
+    int i;
     for (i = 0; i < count; i += CHUNK) {
         fill(rng, CHUNK, u1, u2);
         if (d->p) mcs_product_sample_n(d->p, CHUNK, u1, u2, x, y, z, pdf, NULL, NULL);
-        for (k = 0; k < CHUNK; k++) {
-            double col, row;
+        for (int k = 0; k < CHUNK; k++) {
             mcs_vec3 w;
             if (d->p) {
-                w.x = x[k], w.y = y[k], w.z = z[k];
+                w.x = x[k];
+                w.y = y[k];
+                w.z = z[k];
             } else {
                 const mcs_texel t = draw(d, u1[k], u2[k]);
-                w = t.w, pdf[k] = t.pdf;
+                w = t.w;
+                pdf[k] = t.pdf;
             }
             if (pdf[k] > 0) {
+                double col, row;
                 texel_of(d->m->w, d->m->h, w, &col, &row);
                 observed[(uint32_t)(row < d->m->h ? row : d->m->h - 1) * d->m->w + (uint32_t)(col < d->m->w ? col : d->m->w - 1)] +=
                     1;
@@ -193,8 +214,10 @@ static void check_counts(const sampler *d, int count, mcs_pcg32 *rng, double tes
             }
         }
     }
-    for (j = 0; j <= n; j++) expected[j] *= i / all;
-    p = chi2_test(observed, expected, n + 1, &stat, &dof);
+    for (uint32_t j = 0; j <= n; j++) expected[j] *= i / all;
+    double stat;
+    int dof;
+    const double p = chi2_test(observed, expected, n + 1, &stat, &dof);
     /* not a number: everything in one bin, where a miss has been counted as impossible */
     CHECK(p >= sidak(level, tests) || (isnan(p) && dof == 0), "%s: p = %g, chi-square %g with %d degrees of freedom",
           d->p ? "prepared" : "one-shot", p, stat, dof);
@@ -203,9 +226,8 @@ static void check_counts(const sampler *d, int count, mcs_pcg32 *rng, double tes
 /* How far light rises over the horizon. */
 static double rises(const scene *m, const surface *s) {
     double top = -1;
-    uint32_t r, c;
-    for (r = 0; r < m->h; r++)
-        for (c = 0; c < m->w; c++)
+    for (uint32_t r = 0; r < m->h; r++)
+        for (uint32_t c = 0; c < m->w; c++)
             if (m->light[(size_t)r * m->w + c] > 0) top = fmax(top, highest(m, s->n, c, r, 1));
     return top;
 }
@@ -246,7 +268,8 @@ static void test_chi2(void) {
     mcst_group("product, chi-square");
     for (int a = 0; a < MAPS; a++)
         for (int l = 0; l < LOBES; l++) {
-            const uint32_t rows = (a + l) % 3 ? 16 : (a + l) % 2 ? 64 : 32, odd = (uint32_t)(a + l) % 4 == 3;
+            const uint32_t rows = (a + l) % 3 ? 16 : (a + l) % 2 ? 64 : 32;
+            const uint32_t odd = (uint32_t)(a + l) % 4 == 3;
             const int first = tried < NORMALS ? (a * LOBES + l) * tried % NORMALS : 0;
             if (!mcst_case("%s, %s", maps[a].name, lobes[l].name)) continue;
             scene m = scene_make(maps[a].name, odd ? 50 : 64, odd ? 25 : 32, maps[a].value, rows);

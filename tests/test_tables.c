@@ -35,7 +35,10 @@ static int pwc_build(void *t, size_t bytes, const float *w, uint32_t n) { return
 static draw pwc_sample(const void *t, float u) {
     const mcs_cell c = mcs_pwc_sample((const mcs_pwc *)t, u);
     draw d;
-    d.x = c.x, d.pdf = c.pdf, d.rest = 0, d.i = c.i;
+    d.x = c.x;
+    d.pdf = c.pdf;
+    d.rest = 0;
+    d.i = c.i;
     return d;
 }
 static double pwc_total(const void *t) { return ((const mcs_pwc *)t)->total; }
@@ -44,7 +47,10 @@ static unsigned long long pwc_bad(const void *t) { return ((const mcs_pwc *)t)->
 static draw discrete_sample(const void *t, float u) {
     const mcs_pick c = mcs_discrete_sample((const mcs_pwc *)t, u);
     draw d;
-    d.x = 0, d.pdf = c.pmf, d.rest = c.u, d.i = c.i;
+    d.x = 0;
+    d.pdf = c.pmf;
+    d.rest = c.u;
+    d.i = c.i;
     return d;
 }
 
@@ -53,7 +59,10 @@ static int pwl_build(void *t, size_t bytes, const float *w, uint32_t n) { return
 static draw pwl_sample(const void *t, float u) {
     const mcs_cell c = mcs_pwl_sample((const mcs_pwl *)t, u);
     draw d;
-    d.x = c.x, d.pdf = c.pdf, d.rest = 0, d.i = c.i;
+    d.x = c.x;
+    d.pdf = c.pdf;
+    d.rest = 0;
+    d.i = c.i;
     return d;
 }
 static double pwl_total(const void *t) { return ((const mcs_pwl *)t)->cells.total; }
@@ -64,7 +73,10 @@ static int alias_build(void *t, size_t bytes, const float *w, uint32_t n) { retu
 static draw alias_sample(const void *t, float u) {
     const mcs_pick c = mcs_alias_sample((const mcs_alias *)t, u);
     draw d;
-    d.x = 0, d.pdf = c.pmf, d.rest = c.u, d.i = c.i;
+    d.x = 0;
+    d.pdf = c.pmf;
+    d.rest = c.u;
+    d.i = c.i;
     return d;
 }
 static double alias_total(const void *t) { return ((const mcs_alias *)t)->total; }
@@ -86,18 +98,40 @@ typedef struct {
 } weights;
 
 static float hash01(uint32_t i) { return mcs_u01(mcs_philox(mcst.seed, i, 1).v[0]); }
-static float w_one(uint32_t i, uint32_t n) { return (void)i, (void)n, 1.0f; }
-static float w_random(uint32_t i, uint32_t n) { return (void)n, hash01(i); }
+static float w_one(uint32_t i, uint32_t n) {
+    (void)i;
+    (void)n;
+    return 1.0f;
+}
+static float w_random(uint32_t i, uint32_t n) {
+    (void)n;
+    return hash01(i);
+}
 static float w_ends(uint32_t i, uint32_t n) { return i == 0 || i + 1 == n ? 1.0f : 0.0f; }
-static float w_ramp(uint32_t i, uint32_t n) { return (void)n, (float)i; }
+static float w_ramp(uint32_t i, uint32_t n) {
+    (void)n;
+    return (float)i;
+}
 static float w_border(uint32_t i, uint32_t n) { return i < n / 3 || i >= n - n / 4 ? 0.0f : 0.5f + hash01(i); }
-static float w_checker(uint32_t i, uint32_t n) { return (void)n, i & 1 ? 1.0f : 0.0f; }
+static float w_checker(uint32_t i, uint32_t n) {
+    (void)n;
+    return i & 1 ? 1.0f : 0.0f;
+}
 static float w_last(uint32_t i, uint32_t n) { return i + 1 == n ? 3.0f : 0.0f; }
 static float w_peak8(uint32_t i, uint32_t n) { return i == n / 3 ? 1e8f : i % 5 ? hash01(i) : 0.0f; }
 static float w_peak30(uint32_t i, uint32_t n) { return i == n / 2 ? 1e30f : i % 7 ? 1.0f : 0.0f; }
-static float w_denormal(uint32_t i, uint32_t n) { return (void)n, (float)(int)(i % 4) * 1.4012984643e-45f; }
-static float w_huge(uint32_t i, uint32_t n) { return (void)n, i % 3 ? FLT_MAX : FLT_MAX / 7; }
-static float w_wide(uint32_t i, uint32_t n) { return (void)n, powf(10.0f, 76.0f * hash01(i) - 38.0f); }
+static float w_denormal(uint32_t i, uint32_t n) {
+    (void)n;
+    return (float)(int)(i % 4) * 1.4012984643e-45f;
+}
+static float w_huge(uint32_t i, uint32_t n) {
+    (void)n;
+    return i % 3 ? FLT_MAX : FLT_MAX / 7;
+}
+static float w_wide(uint32_t i, uint32_t n) {
+    (void)n;
+    return powf(10.0f, 76.0f * hash01(i) - 38.0f);
+}
 
 static const weights sets[] = {
     {"one entry", 1, 0, w_one},
@@ -125,11 +159,12 @@ static uint32_t hits[MAX_N];
 
 /* Masses of the cells: the weights, or the means of neighbouring vertices. They are normalised by their long double sum. */
 static void load(const weights *s, uint32_t extra) {
-    uint32_t i;
-    for (i = 0; i < s->n + extra; i++) weight[i] = s->w(i, s->n + extra);
-    sum = 0, lit = 0, cumulative[0] = 0;
-    for (i = 0; i < s->n; i++) sum += mass[i] = extra ? ((ld)weight[i] + weight[i + 1]) / 2 : weight[i];
-    for (i = 0; i < s->n; i++) {
+    for (uint32_t i = 0; i < s->n + extra; i++) weight[i] = s->w(i, s->n + extra);
+    sum = 0;
+    lit = 0;
+    cumulative[0] = 0;
+    for (uint32_t i = 0; i < s->n; i++) sum += mass[i] = extra ? ((ld)weight[i] + weight[i + 1]) / 2 : weight[i];
+    for (uint32_t i = 0; i < s->n; i++) {
         mass[i] /= sum;
         cumulative[i + 1] = cumulative[i] + mass[i];
         lit += mass[i] > 0;
@@ -143,18 +178,18 @@ enum { CORNERS = (int)(sizeof corner / sizeof *corner), US = STRATA + CORNERS };
 static float us[US];
 
 static int by_value(const void *a, const void *b) {
-    const float x = *(const float *)a, y = *(const float *)b;
+    const float x = *(const float *)a;
+    const float y = *(const float *)b;
     return (x > y) - (x < y);
 }
 
 static void make_us(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 11);
-    int i;
-    for (i = 0; i < STRATA; i++) {
+    for (int i = 0; i < STRATA; i++) {
         const double u = (i + (double)mcs_pcg32_float(&r)) / STRATA;
         us[i] = u < 1 - eps ? (float)u : (float)(1 - eps);
     }
-    for (i = 0; i < CORNERS; i++) us[STRATA + i] = corner[i];
+    for (int i = 0; i < CORNERS; i++) us[STRATA + i] = corner[i];
     qsort(us, US, sizeof *us, by_value);
 }
 
@@ -177,10 +212,10 @@ static arena build(const kind *k, uint32_t n, double *total_error) {
 
 static void check_pmf(const mcs_pwc *t, uint32_t n) {
     double total = 0;
-    uint32_t i;
     int exact = 1;
-    for (i = 0; i < n; i++) {
-        const double p = mcs_discrete_pmf(t, i), err = fabs((double)(p - mass[i]));
+    for (uint32_t i = 0; i < n; i++) {
+        const double p = mcs_discrete_pmf(t, i);
+        const double err = fabs((double)(p - mass[i]));
         total += p;
         exact &= p < 0x1p-7; /* below that an integer over 2^31 is exact in a float */
         CHECK((p > 0) == (mass[i] > 0), "entry %u: pmf %g where the weight is %g", i, p, (double)weight[i]);
@@ -192,11 +227,13 @@ static void check_pmf(const mcs_pwc *t, uint32_t n) {
 
 /* All 2^24 u. An interval [c, c + p) holds more than p 2^24 - 1 and fewer than p 2^24 + 1 of them; the float p is off by eps p. */
 static void sweep_pwc(const mcs_pwc *t, uint32_t n) {
-    uint32_t k, i;
-    int wrong_pdf = 0, falls = 0, outside = 0, dark = 0;
+    int wrong_pdf = 0;
+    int falls = 0;
+    int outside = 0;
+    int dark = 0;
     float last = 0;
     memset(hits, 0, n * sizeof *hits);
-    for (k = 0; k < GRID; k++) {
+    for (uint32_t k = 0; k < GRID; k++) {
         const mcs_cell c = mcs_pwc_sample(t, (float)k * 0x1p-24f);
         outside += !(c.i < n && c.x >= 0 && c.x < 1);
         if (c.i >= n) continue;
@@ -210,7 +247,7 @@ static void sweep_pwc(const mcs_pwc *t, uint32_t n) {
     CHECK(dark == 0, "%d draws of a zero entry", dark);
     CHECK(falls == 0, "x falls %d times", falls);
     CHECK(wrong_pdf == 0, "pdf(x) differs from the returned pdf %d times", wrong_pdf);
-    for (i = 0; i < n; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         const double p = mcs_discrete_pmf(t, i);
         CHECK(fabs(hits[i] - p * GRID) <= 1 + p, "entry %u: %u of 2^24 draws, pmf %a", i, hits[i], p);
     }
@@ -218,32 +255,30 @@ static void sweep_pwc(const mcs_pwc *t, uint32_t n) {
 
 /* x is rounded three times at most (cell plus fraction, reciprocal, product) and moved one float to stay in its cell. */
 static void check_pwc(const mcs_pwc *t, uint32_t n) {
-    const double dx = 4 * eps, slack = slack_of();
-    int k;
+    const double dx = 4 * eps;
+    const double slack = slack_of();
     float last = 0;
-    for (k = 0; k < US; k++) {
+    for (int k = 0; k < US; k++) {
         const float u = us[k];
         const mcs_cell c = mcs_pwc_sample(t, u);
         const mcs_pick d = mcs_discrete_sample(t, u);
         const float back = mcs_pwc_invert(t, c.x);
-        ld at, below;
-        double p, err;
         CHECK(c.i < n && c.x >= 0 && c.x < 1, "u = %a: x = %a, i = %u", (double)u, (double)c.x, c.i);
         if (c.i >= n) continue;
-        p = mcs_discrete_pmf(t, c.i);
+        const double p = mcs_discrete_pmf(t, c.i);
         CHECK(weight[c.i] > 0, "u = %a: zero entry %u", (double)u, c.i);
         CHECK(c.x >= last, "u = %a: x falls to %a", (double)u, (double)c.x);
         CHECK(mcs_pwc_pdf(t, c.x) == c.pdf, "u = %a, x = %a: pdf %g, returned %g", (double)u, (double)c.x,
               (double)mcs_pwc_pdf(t, c.x), (double)c.pdf);
         CHECK(fabs(c.pdf - p * n) <= 2 * eps * p * n, "u = %a: pdf %g, pmf * n %g", (double)u, (double)c.pdf, p * n);
-        at = (ld)c.x * n - c.i; /* exact: 24 + 20 bits */
+        const ld at = (ld)c.x * n - c.i; /* exact: 24 + 20 bits */
         CHECK(fabs((double)(at - 0.5L)) <= 0.5 + 2 * eps * n, "u = %a: x = %a is not in cell %u", (double)u, (double)c.x, c.i);
-        err = fabs((double)(cumulative[c.i] + mass[c.i] * at - u));
+        double err = fabs((double)(cumulative[c.i] + mass[c.i] * at - u));
         CHECK(err <= slack + p * n * dx + eps, "u = %a: C(x) is off by %g", (double)u, err);
         err = fabs((double)back - u);
         CHECK(back >= 0 && back < 1 && err <= p * n * dx + 2 * eps, "u = %a: invert %a", (double)u, (double)back);
         CHECK(d.i == c.i && d.pmf == mcs_discrete_pmf(t, d.i), "u = %a: discrete %u, %g", (double)u, d.i, (double)d.pmf);
-        below = cumulative[d.i] + (ld)d.u * mass[d.i];
+        const ld below = cumulative[d.i] + (ld)d.u * mass[d.i];
         CHECK(d.u >= 0 && d.u < 1 && fabs((double)(below - u)) <= 2 * slack + 2 * eps * (p + u), "u = %a: rest %a of entry %u",
               (double)u, (double)d.u, d.i);
         last = c.x;
@@ -256,32 +291,30 @@ static void chi_square(const kind *k, const void *t, uint32_t n) {
     const uint32_t groups = n < 64 ? n : 64;
     const int draws = 1000000;
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, n);
-    uint32_t g, i;
-    int j, shown = 0;
-    for (g = 0; g < groups; g++) observed[g] = expected[g] = 0;
-    for (i = 0; i < n; i++) expected[(uint64_t)i * groups / n] += (double)mass[i] * draws;
-    for (j = 0; j < draws; j++) {
+    int shown = 0;
+    for (uint32_t g = 0; g < groups; g++) observed[g] = expected[g] = 0;
+    for (uint32_t i = 0; i < n; i++) expected[(uint64_t)i * groups / n] += (double)mass[i] * draws;
+    for (int j = 0; j < draws; j++) {
         const draw d = k->sample(t, mcs_pcg32_float(&r));
         if (d.i < n) observed[(uint64_t)d.i * groups / n] += 1;
         else CHECK(shown++ > 0, "entry %u of %u", d.i, n);
     }
-    for (g = 0, i = 0; g < groups; g++) i += expected[g] >= 5;
-    if (i >= 2) {
+    uint32_t full = 0;
+    for (uint32_t g = 0; g < groups; g++) full += expected[g] >= 5;
+    if (full >= 2) {
         const double p = chi2_test(observed, expected, groups, NULL, NULL);
         CHECK(p >= level, "chi-square p = %g", p);
     } else {
-        for (g = 0; g < groups; g++) CHECK(expected[g] >= 5 || observed[g] <= 40, "group %u: %g draws", g, observed[g]);
+        for (uint32_t g = 0; g < groups; g++) CHECK(expected[g] >= 5 || observed[g] <= 40, "group %u: %g draws", g, observed[g]);
     }
 }
 
 static void test_pwc(void) {
-    int s;
-    for (s = 0; s < SETS; s++) {
-        arena a;
-        double total;
+    for (int s = 0; s < SETS; s++) {
         if (!mcst_case("%s", sets[s].name)) continue;
         load(&sets[s], 0);
-        a = build(&kinds[PWC], sets[s].n, &total);
+        double total;
+        arena a = build(&kinds[PWC], sets[s].n, &total);
         CHECK(total <= 1e-12, "total is off by %g relative", total);
         check_pmf((const mcs_pwc *)a.at, sets[s].n);
         check_pwc((const mcs_pwc *)a.at, sets[s].n);
@@ -295,24 +328,24 @@ static void test_pwc(void) {
 
 /* With vertex values f, g of the cell and the mean value m of all cells: density lerp(f, g, at)/m, slope n (g - f)/m per length. */
 static void check_pwl(const mcs_pwl *t, uint32_t n) {
-    const double dx = 4 * eps, slack = slack_of();
+    const double dx = 4 * eps;
+    const double slack = slack_of();
     const ld mean = sum / n;
     float last = 0;
-    int k;
-    for (k = 0; k < US; k++) {
+    for (int k = 0; k < US; k++) {
         const float u = us[k];
         const mcs_cell c = mcs_pwl_sample(t, u);
-        const float again = mcs_pwl_pdf(t, c.x), back = mcs_pwl_invert(t, c.x);
-        ld at, f, g, want;
-        double slope, near, relative, err;
+        const float again = mcs_pwl_pdf(t, c.x);
+        const float back = mcs_pwl_invert(t, c.x);
         CHECK(c.i < n && c.x >= 0 && c.x < 1, "u = %a: x = %a, i = %u", (double)u, (double)c.x, c.i);
         if (c.i >= n) continue;
-        f = weight[c.i], g = weight[c.i + 1];
-        at = (ld)c.x * n - c.i;
-        want = (f + (g - f) * at) / mean;
-        slope = fabs((double)((g - f) / mean)) * n;
-        near = (double)want + slope * dx; /* largest density within the rounding of x */
-        relative = slack / (double)mass[c.i] + 8 * eps;
+        const ld f = weight[c.i];
+        const ld g = weight[c.i + 1];
+        const ld at = (ld)c.x * n - c.i;
+        const ld want = (f + (g - f) * at) / mean;
+        const double slope = fabs((double)((g - f) / mean)) * n;
+        const double near = (double)want + slope * dx; /* largest density within the rounding of x */
+        const double relative = slack / (double)mass[c.i] + 8 * eps;
         CHECK(mass[c.i] > 0, "u = %a: zero cell %u", (double)u, c.i);
         CHECK(c.x >= last, "u = %a: x falls to %a", (double)u, (double)c.x);
         CHECK(fabs((double)(at - 0.5L)) <= 0.5 + 2 * eps * n, "u = %a: x = %a is not in cell %u", (double)u, (double)c.x, c.i);
@@ -320,7 +353,7 @@ static void check_pwl(const mcs_pwl *t, uint32_t n) {
               (double)again, (double)want);
         CHECK(fabs((double)(c.pdf - want)) <= relative * near + slope * dx, "u = %a: returned pdf %g at %a, not %g", (double)u,
               (double)c.pdf, (double)c.x, (double)want);
-        err = fabs((double)(cumulative[c.i] + (f * at + (g - f) * at * at / 2) / sum - u));
+        const double err = fabs((double)(cumulative[c.i] + (f * at + (g - f) * at * at / 2) / sum - u));
         CHECK(err <= slack + near * dx + eps, "u = %a: C(x) is off by %g", (double)u, err);
         CHECK(back >= 0 && back < 1 && fabs((double)back - u) <= near * dx + 4 * eps, "u = %a: invert %a", (double)u, (double)back);
         last = c.x;
@@ -328,11 +361,12 @@ static void check_pwl(const mcs_pwl *t, uint32_t n) {
 }
 
 static void sweep_pwl(const mcs_pwl *t, uint32_t n) {
-    uint32_t k, i;
-    int falls = 0, outside = 0, dark = 0;
+    int falls = 0;
+    int outside = 0;
+    int dark = 0;
     float last = 0;
     memset(hits, 0, n * sizeof *hits);
-    for (k = 0; k < GRID; k++) {
+    for (uint32_t k = 0; k < GRID; k++) {
         const mcs_cell c = mcs_pwl_sample(t, (float)k * 0x1p-24f);
         outside += !(c.i < n && c.x >= 0 && c.x < 1);
         if (c.i >= n) continue;
@@ -344,7 +378,7 @@ static void sweep_pwl(const mcs_pwl *t, uint32_t n) {
     CHECK(outside == 0, "%d points outside [0,1)", outside);
     CHECK(dark == 0, "%d draws of a zero cell or without a finite pdf", dark);
     CHECK(falls == 0, "x falls %d times", falls);
-    for (i = 0; i < n; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         const double p = (double)mass[i];
         CHECK(fabs(hits[i] - p * GRID) <= 1 + 2 * slack_of() * GRID, "cell %u: %u of 2^24 draws, mass %a", i, hits[i], p);
     }
@@ -362,13 +396,11 @@ static void test_pwl_overflow(void) {
 
 static void test_pwl(void) {
     static const float triangle[3][2] = {{0, 1}, {1, 0}, {1, 0x1.000002p0f}};
-    int s;
-    for (s = 0; s < SETS; s++) {
-        arena a;
-        double total;
+    for (int s = 0; s < SETS; s++) {
         if (!mcst_case("%s", sets[s].name)) continue;
         load(&sets[s], 1);
-        a = build(&kinds[PWL], sets[s].n, &total);
+        double total;
+        arena a = build(&kinds[PWL], sets[s].n, &total);
         CHECK(total <= 1e-12, "total is off by %g relative", total);
         check_pwl((const mcs_pwl *)a.at, sets[s].n);
         if (sets[s].every_u >> PWL & 1) sweep_pwl((const mcs_pwl *)a.at, sets[s].n);
@@ -377,11 +409,11 @@ static void test_pwl(void) {
     }
     if (mcst_case("vertices whose sum overflows")) test_pwl_overflow();
     if (mcst_case("one cell is the linear density")) {
-        for (s = 0; s < 3; s++) {
+        for (int s = 0; s < 3; s++) {
             arena a = arena_make(mcs_pwl_bytes(1));
-            int k, rc = mcs_pwl_build((mcs_pwl *)a.at, a.bytes, triangle[s], 1);
+            const int rc = mcs_pwl_build((mcs_pwl *)a.at, a.bytes, triangle[s], 1);
             CHECK(rc == MCS_OK, "build returns %d", rc);
-            for (k = 0; k < US; k++) {
+            for (int k = 0; k < US; k++) {
                 const mcs_cell c = mcs_pwl_sample((const mcs_pwl *)a.at, us[k]);
                 const mcs_sample1 l = mcs_linear_sample(triangle[s][0], triangle[s][1], us[k]);
                 CHECK(fabs((double)c.x - l.x) <= 4 * eps, "u = %a: %a, not %a", (double)us[k], (double)c.x, (double)l.x);
@@ -397,11 +429,12 @@ static void test_pwl(void) {
 
 /* Of n columns an entry holds at most n + 1 intervals of u (its own and parts of others), each counted to within one of 2^24. */
 static void sweep_alias(const mcs_alias *t, uint32_t n) {
-    uint32_t k, i;
-    int outside = 0, dark = 0, wrong = 0;
+    int outside = 0;
+    int dark = 0;
+    int wrong = 0;
     double off = 0;
     memset(hits, 0, n * sizeof *hits);
-    for (k = 0; k < GRID; k++) {
+    for (uint32_t k = 0; k < GRID; k++) {
         const mcs_pick c = mcs_alias_sample(t, (float)k * 0x1p-24f);
         outside += !(c.i < n && c.u >= 0 && c.u < 1);
         if (c.i >= n) continue;
@@ -412,8 +445,9 @@ static void sweep_alias(const mcs_alias *t, uint32_t n) {
     CHECK(outside == 0, "%d picks outside", outside);
     CHECK(dark == 0, "%d draws of a zero entry", dark);
     CHECK(wrong == 0, "pmf(i) differs from the returned pmf %d times", wrong);
-    for (i = 0; i < n; i++) {
-        const double p = mcs_alias_pmf(t, i), err = fabs(hits[i] - p * GRID);
+    for (uint32_t i = 0; i < n; i++) {
+        const double p = mcs_alias_pmf(t, i);
+        const double err = fabs(hits[i] - p * GRID);
         CHECK(err <= n + 1, "entry %u: %u of 2^24 draws, pmf %a", i, hits[i], p);
         off += err;
     }
@@ -421,17 +455,15 @@ static void sweep_alias(const mcs_alias *t, uint32_t n) {
 }
 
 static void test_alias(void) {
-    int s, k;
-    for (s = 0; s < SETS; s++) {
+    for (int s = 0; s < SETS; s++) {
         const uint32_t n = sets[s].n;
-        arena a;
-        double total, psum = 0;
-        uint32_t i;
+        double psum = 0;
         if (!mcst_case("%s", sets[s].name)) continue;
         load(&sets[s], 0);
-        a = build(&kinds[ALIAS], n, &total);
+        double total;
+        arena a = build(&kinds[ALIAS], n, &total);
         CHECK(total <= 1e-12, "total is off by %g relative", total);
-        for (i = 0; i < n; i++) {
+        for (uint32_t i = 0; i < n; i++) {
             const double p = mcs_alias_pmf((const mcs_alias *)a.at, i);
             psum += p;
             CHECK((p > 0) == (mass[i] > 0), "entry %u: pmf %g, probability %g", i, p, (double)mass[i]);
@@ -440,7 +472,7 @@ static void test_alias(void) {
         }
         CHECK(fabs(psum - 1) <= eps, "pmf sums to 1 + %g", psum - 1);
         CHECK(mcs_alias_pmf((const mcs_alias *)a.at, n) == 0, "pmf past the end");
-        for (k = 0; k < US; k++) {
+        for (int k = 0; k < US; k++) {
             const mcs_pick c = mcs_alias_sample((const mcs_alias *)a.at, us[k]);
             CHECK(c.i < n && weight[c.i] > 0 && c.u >= 0 && c.u < 1, "u = %a: entry %u, rest %a", (double)us[k], c.i, (double)c.u);
             CHECK(c.pmf == mcs_alias_pmf((const mcs_alias *)a.at, c.i), "u = %a: returned pmf %g", (double)us[k], (double)c.pmf);
@@ -456,17 +488,17 @@ static void test_rest(const kind *k) {
     static double observed[7 * 64], expected[7 * 64];
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 21);
     const int draws = 1000000;
-    arena a;
-    int j;
-    double p;
     load(&sets[SEVEN], 0);
-    a = build(k, 7, NULL);
-    for (j = 0; j < 7 * 64; j++) observed[j] = 0, expected[j] = (double)mass[j / 64] * draws / 64;
-    for (j = 0; j < draws; j++) {
+    arena a = build(k, 7, NULL);
+    for (int j = 0; j < 7 * 64; j++) {
+        observed[j] = 0;
+        expected[j] = (double)mass[j / 64] * draws / 64;
+    }
+    for (int j = 0; j < draws; j++) {
         const draw d = k->sample(a.at, mcs_pcg32_float(&r));
         if (d.i < 7 && d.rest >= 0 && d.rest < 1) observed[d.i * 64 + (uint32_t)(d.rest * 64)] += 1;
     }
-    p = chi2_test(observed, expected, 7 * 64, NULL, NULL);
+    const double p = chi2_test(observed, expected, 7 * 64, NULL, NULL);
     CHECK(p >= level, "chi-square of entry and rest: p = %g", p);
     arena_free(&a);
 }
@@ -477,32 +509,32 @@ static void test_batch(void) {
     enum { MAX = 67 };
     const size_t counts[] = {1000, 4099};
     static float u[4200], x[4200 + 8], pdf[4200 + 8];
-    arena c, l;
-    size_t n, i, shift;
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 31);
     load(&sets[CHECKER], 0);
-    c = build(&kinds[PWC], sets[CHECKER].n, NULL);
+    arena c = build(&kinds[PWC], sets[CHECKER].n, NULL);
     load(&sets[RAMP], 1);
-    l = build(&kinds[PWL], sets[RAMP].n, NULL);
-    for (n = 0; n <= MAX + 2; n++) {
+    arena l = build(&kinds[PWL], sets[RAMP].n, NULL);
+    for (size_t n = 0; n <= MAX + 2; n++) {
         const size_t count = n <= MAX ? n : counts[n - MAX - 1];
-        for (shift = 0; shift < 4; shift++) {
-            int pass;
+        for (size_t shift = 0; shift < 4; shift++) {
             mcs_pcg32_fill_n(&r, count + shift, u);
-            for (pass = 0; pass < 8; pass++) {
-                const int linear = pass & 1, inplace = pass >> 1 == 3;
-                float *px = pass >> 1 == 1 ? NULL : x + shift + 1, *pp = pass >> 1 == 2 ? NULL : pdf + shift + 1;
+            for (int pass = 0; pass < 8; pass++) {
+                const int linear = pass & 1;
+                const int inplace = pass >> 1 == 3;
+                float *px = pass >> 1 == 1 ? NULL : x + shift + 1;
+                float *pp = pass >> 1 == 2 ? NULL : pdf + shift + 1;
                 const float *in = inplace ? px : u + shift;
-                int same = 1, kept;
-                for (i = 0; i < count + 8; i++) x[i] = pdf[i] = -7.0f;
+                int same = 1;
+                for (size_t i = 0; i < count + 8; i++) x[i] = pdf[i] = -7.0f;
                 if (inplace) memcpy(px, u + shift, count * sizeof *u);
                 if (linear) mcs_pwl_sample_n((const mcs_pwl *)l.at, count, in, px, pp);
                 else mcs_pwc_sample_n((const mcs_pwc *)c.at, count, in, px, pp);
-                for (i = 0; i < count; i++) {
+                for (size_t i = 0; i < count; i++) {
                     const draw d = kinds[linear ? PWL : PWC].sample(linear ? l.at : c.at, u[shift + i]);
                     same &= (!px || px[i] == d.x) && (!pp || pp[i] == d.pdf);
                 }
-                kept = x[shift] == -7.0f && pdf[shift] == -7.0f && x[shift + count + 1] == -7.0f && pdf[shift + count + 1] == -7.0f;
+                const int kept =
+                    x[shift] == -7.0f && pdf[shift] == -7.0f && x[shift + count + 1] == -7.0f && pdf[shift + count + 1] == -7.0f;
                 CHECK(same, "n = %zu, shift %zu, pass %d: differs from scalar", count, shift, pass);
                 CHECK(kept, "n = %zu, shift %zu, pass %d: written outside", count, shift, pass);
             }
@@ -516,7 +548,10 @@ static void test_batch(void) {
 
 static float f_square(float x, void *ctx) { return *(float *)ctx * x * x; }
 static float f_bump(float x, void *ctx) { return *(float *)ctx * expf(-50.0f * (x - 0.4f) * (x - 0.4f)); }
-static float f_bad(float x, void *ctx) { return (void)ctx, x < 0.25f ? NAN : x < 0.5f ? -1.0f : x < 0.75f ? INFINITY : 2e38f; }
+static float f_bad(float x, void *ctx) {
+    (void)ctx;
+    return x < 0.25f ? NAN : x < 0.5f ? -1.0f : x < 0.75f ? INFINITY : 2e38f;
+}
 static double exact_square(double x) { return x * x * x; }
 static double exact_bump(double x) { return sqrt(3.14159265358979323846 / 50) / 2 * erf(sqrt(50) * (x - 0.4)); }
 
@@ -528,18 +563,19 @@ static void test_build_fn(void) {
         float (*f)(float, void *);
         double (*integral)(double);
     } fn[2] = {{f_square, exact_square}, {f_bump, exact_bump}};
-    int j;
-    for (j = 0; j < 2; j++) {
+    for (int j = 0; j < 2; j++) {
         float scale = j ? 1.0f : 3.0f;
         arena a = arena_make(mcs_pwc_bytes(N));
         mcs_pwc *t = (mcs_pwc *)a.at;
         const int rc = mcs_pwc_build_fn(t, a.bytes, fn[j].f, &scale, N);
         const double whole = fn[j].integral(1) - fn[j].integral(0);
-        uint32_t i;
         CHECK(rc == MCS_OK && t->bad == 0 && arena_intact(&a), "build returns %d", rc);
-        for (i = 0; i < N; i++) {
-            const double p = (fn[j].integral((i + 1.0) / N) - fn[j].integral((double)i / N)) / whole, got = mcs_discrete_pmf(t, i);
-            const double x = (i + 0.5) / N, d = fabs(x - 0.4), roundings = j ? 6 + 100 * d * x + 150 * d * d : 6;
+        for (uint32_t i = 0; i < N; i++) {
+            const double p = (fn[j].integral((i + 1.0) / N) - fn[j].integral((double)i / N)) / whole;
+            const double got = mcs_discrete_pmf(t, i);
+            const double x = (i + 0.5) / N;
+            const double d = fabs(x - 0.4);
+            const double roundings = j ? 6 + 100 * d * x + 150 * d * d : 6;
             CHECK(fabs(got - p) <= roundings * eps * p + (2 + N * p) * quantum, "function %d, cell %u: %g, not %g", j, i, got, p);
         }
         arena_free(&a);
@@ -548,10 +584,11 @@ static void test_build_fn(void) {
         arena a = arena_make(mcs_pwc_bytes(16));
         mcs_pwc *t = (mcs_pwc *)a.at;
         const int rc = mcs_pwc_build_fn(t, a.bytes, f_bad, NULL, 16);
-        uint32_t i;
         CHECK(rc == MCS_OK && t->bad == 12, "build returns %d, %llu bad", rc, pwc_bad(t));
-        for (i = 0; i < 16; i++) { /* an infinite one weighs FLT_MAX; 8 cells have one integer each before the rest is shared */
-            const double w = i < 8 ? 0 : i < 12 ? (double)FLT_MAX : (double)2e38f, p = w / (4 * ((double)FLT_MAX + (double)2e38f));
+        for (uint32_t i = 0; i < 16;
+             i++) { /* an infinite one weighs FLT_MAX; 8 cells have one integer each before the rest is shared */
+            const double w = i < 8 ? 0 : i < 12 ? (double)FLT_MAX : (double)2e38f;
+            const double p = w / (4 * ((double)FLT_MAX + (double)2e38f));
             CHECK(fabs(mcs_discrete_pmf(t, i) - p) <= eps * p + (i < 8 ? 0 : 2 + 8 * p) * quantum, "cell %u: %g, not %g", i,
                   (double)mcs_discrete_pmf(t, i), p);
         }
@@ -566,17 +603,20 @@ static void test_build_fn(void) {
 /* Four points are exact up to degree 7. In float 8 x^7 is off by 7 eps from x and 6 from products, 1 more from the sum and one from
  * the mean: 15 eps = 9e-7 of a mean. A probability takes the share of the other cell, 1/4 or 3/4, of both errors; where that is
  * 3/4, 8 x^7 is below 1/16 and its own error 3 eps. */
-static float f_seven(float x, void *ctx) { return (void)ctx, 1.0f + 8.0f * (x * x * x) * (x * x * x) * x; }
+static float f_seven(float x, void *ctx) {
+    (void)ctx;
+    return 1.0f + 8.0f * (x * x * x) * (x * x * x) * x;
+}
 static double exact_seven(double x) { return x + pow(x, 8); }
 static void test_degree_seven(void) {
-    uint32_t n, i;
-    for (n = 1; n <= 2; n++) {
+    for (uint32_t n = 1; n <= 2; n++) {
         arena a = arena_make(mcs_pwc_bytes(n));
         mcs_pwc *t = (mcs_pwc *)a.at;
         CHECK(mcs_pwc_build_fn(t, a.bytes, f_seven, NULL, n) == MCS_OK, "build");
         CHECK(fabs(t->total / n / 2 - 1) <= 1e-6, "%u cells: integral %.9g, not 2", n, t->total / n);
-        for (i = 0; i < n; i++) {
-            const double p = (exact_seven((i + 1.0) / n) - exact_seven((double)i / n)) / 2, got = mcs_discrete_pmf(t, i);
+        for (uint32_t i = 0; i < n; i++) {
+            const double p = (exact_seven((i + 1.0) / n) - exact_seven((double)i / n)) / 2;
+            const double got = mcs_discrete_pmf(t, i);
             CHECK(fabs(got - p) <= 1e-6 * p, "%u cells, cell %u: %.9g, not %.9g", n, i, got, p);
         }
         arena_free(&a);
@@ -589,18 +629,17 @@ static void test_errors(const kind *k) {
     const uint32_t n = 100;
     const uint32_t many[] = {0xffffffffu, 0xfffffffeu, 0x80000000u, 0x7fffffffu, 0x10000000u, 0x0fffffffu};
     arena a = arena_make(k->bytes(n) + 8);
-    size_t i;
     load(&sets[RAMP], 1);
     CHECK(k->build(NULL, a.bytes, weight, n) == MCS_ERR_ARG, "no memory");
     CHECK(k->build(a.at, a.bytes, NULL, n) == MCS_ERR_ARG, "no weights");
     CHECK(k->build(a.at, a.bytes, weight, 0) == MCS_ERR_SIZE, "n = 0");
     CHECK(k->build(a.at + 1, a.bytes - 8, weight, n) == MCS_ERR_ARG, "memory off by 1");
     CHECK(k->build(a.at + 4, a.bytes - 8, weight, n) == MCS_ERR_ARG, "memory off by 4");
-    for (i = 0; i < k->bytes(n); i += i < 80 || i + 9 > k->bytes(n) ? 1 : 7) {
+    for (size_t i = 0; i < k->bytes(n); i += i < 80 || i + 9 > k->bytes(n) ? 1 : 7) {
         const int rc = k->build(a.at, i, weight, n);
         CHECK(rc == MCS_ERR_MEMORY, "%zu of %zu bytes: %d", i, k->bytes(n), rc);
     }
-    for (i = 0; i < sizeof many / sizeof *many; i++) {
+    for (size_t i = 0; i < sizeof many / sizeof *many; i++) {
         const size_t bytes = k->bytes(many[i]);
         const int rc = k->build(a.at, a.bytes, weight, many[i]);
         CHECK(rc == MCS_ERR_SIZE || rc == MCS_ERR_MEMORY, "n = %u: %d", many[i], rc);
@@ -614,55 +653,65 @@ static void test_errors(const kind *k) {
 
 /* Bad entries are 0, but +infinity is FLT_MAX: the table is that of such a list. */
 static void test_bad_weights(const kind *k) {
-    const float inf = INFINITY, nothing[5] = {NAN, -1, -inf, -FLT_MAX, -FLT_MIN};
+    const float inf = INFINITY;
+    const float nothing[5] = {NAN, -1, -inf, -FLT_MAX, -FLT_MIN};
     const uint32_t n = 40;
-    uint32_t i, suns;
-    arena a = arena_make(k->bytes(n)), b = arena_make(k->bytes(n));
-    int rc, j;
+    arena a = arena_make(k->bytes(n));
+    arena b = arena_make(k->bytes(n));
     static float clean[41];
-    for (suns = 0; suns < 2; suns++) {
+    int rc;
+    for (uint32_t suns = 0; suns < 2; suns++) {
         uint32_t bad = 0;
-        for (i = 0; i < n + k->extra; i++) {
+        for (uint32_t i = 0; i < n + k->extra; i++) {
             weight[i] = clean[i] = hash01(i + 100);
-            if (i % 4 == 1) weight[i] = nothing[i / 4 % 5], clean[i] = 0, bad++;
-            if (suns && i % 8 == 2) weight[i] = inf, clean[i] = FLT_MAX, bad++;
+            if (i % 4 == 1) {
+                weight[i] = nothing[i / 4 % 5];
+                clean[i] = 0;
+                bad++;
+            }
+            if (suns && i % 8 == 2) {
+                weight[i] = inf;
+                clean[i] = FLT_MAX;
+                bad++;
+            }
         }
         rc = k->build(a.at, a.bytes, weight, n);
         CHECK(rc == MCS_OK && k->bad(a.at) == bad, "build returns %d, %llu bad, not %u", rc, k->bad(a.at), bad);
         rc = k->build(b.at, b.bytes, clean, n);
         CHECK(rc == MCS_OK && k->bad(b.at) == 0 && k->total(a.at) == k->total(b.at) && k->total(a.at) <= n * (double)FLT_MAX,
               "build returns %d, %llu bad, total %g", rc, k->bad(b.at), k->total(a.at));
-        for (j = 0; j < US; j += 7) {
-            const draw c = k->sample(a.at, us[j]), d = k->sample(b.at, us[j]);
+        for (int j = 0; j < US; j += 7) {
+            const draw c = k->sample(a.at, us[j]);
+            const draw d = k->sample(b.at, us[j]);
             CHECK(c.i == d.i && c.x == d.x && c.pdf == d.pdf && c.rest == d.rest, "u = %a: not as with clean entries",
                   (double)us[j]);
         }
     }
-    for (i = 0; i < n + k->extra; i++) weight[i] = inf;
+    for (uint32_t i = 0; i < n + k->extra; i++) weight[i] = inf;
     rc = k->build(a.at, a.bytes, weight, n);
     CHECK(rc == MCS_OK && k->bad(a.at) == n + k->extra && fabs(k->total(a.at) / (n * (double)FLT_MAX) - 1) <= 1e-12,
           "all infinite: build returns %d, %llu bad, total %g", rc, k->bad(a.at), k->total(a.at));
-    for (i = 0; i < 1 << 12; i++) {
+    for (uint32_t i = 0; i < 1 << 12; i++) {
         const draw d = k->sample(a.at, (float)i * 0x1p-12f);
         const double want = k == &kinds[DISCRETE] || k == &kinds[ALIAS] ? 1.0 / n : 1.0;
         CHECK(fabs(d.pdf - want) <= (2 * eps + 2 * n * quantum) * want, "all infinite: u = %u/2^12: density %g", i, (double)d.pdf);
     }
-    for (j = 0; j < 3; j++) {
+    for (int j = 0; j < 3; j++) {
         const float fill[3] = {0, -0.0f, NAN};
-        for (i = 0; i < n + k->extra; i++) weight[i] = fill[j];
+        for (uint32_t i = 0; i < n + k->extra; i++) weight[i] = fill[j];
         rc = k->build(a.at, a.bytes, weight, n);
         CHECK(rc == MCS_UNIFORM && arena_intact(&a), "all %g: build returns %d", (double)fill[j], rc);
         CHECK(k->bad(a.at) == (j == 2 ? n + k->extra : 0) && k->total(a.at) == 0, "all %g: %llu bad, total %g", (double)fill[j],
               k->bad(a.at), k->total(a.at));
-        for (i = 0; i < n; i++) hits[i] = 0;
-        for (i = 0; i < 1 << 16; i++) {
+        for (uint32_t i = 0; i < n; i++) hits[i] = 0;
+        for (uint32_t i = 0; i < 1 << 16; i++) {
             const draw d = k->sample(a.at, (float)i * 0x1p-16f);
             const double want = k == &kinds[DISCRETE] || k == &kinds[ALIAS] ? 1.0 / n : 1.0;
             CHECK(fabs(d.pdf - want) <= 2 * eps * want + n * quantum && d.i < n, "u = %u/2^16: entry %u, density %g", i, d.i,
                   (double)d.pdf);
             if (d.i < n) hits[d.i]++;
         }
-        for (i = 0; i < n; i++) CHECK(fabs(hits[i] - 65536.0 / n) <= 2, "entry %u: %u draws of 65536", i, hits[i]);
+        for (uint32_t i = 0; i < n; i++) CHECK(fabs(hits[i] - 65536.0 / n) <= 2, "entry %u: %u draws of 65536", i, hits[i]);
     }
     arena_free(&a);
     arena_free(&b);
@@ -670,20 +719,20 @@ static void test_bad_weights(const kind *k) {
 
 static void test_bad_u(const kind *k) {
     const float u[] = {1.0f, -1e-45f, -0.5f, 1.5f, 1e30f, FLT_MAX, INFINITY, -INFINITY, NAN};
-    arena a;
-    size_t i;
     load(&sets[SEVEN], k->extra);
-    a = build(k, 7, NULL);
-    for (i = 0; i < sizeof u / sizeof *u; i++) {
+    arena a = build(k, 7, NULL);
+    for (size_t i = 0; i < sizeof u / sizeof *u; i++) {
         const draw d = k->sample(a.at, u[i]);
         CHECK(d.pdf == 0 && d.i < 7 && d.x >= 0 && d.x <= 1 && d.rest >= 0 && d.rest < 1,
               "u = %g: entry %u, x = %g, density %g, rest %g", (double)u[i], d.i, (double)d.x, (double)d.pdf, (double)d.rest);
         if (k == &kinds[PWC] && u[i] != 1.0f) {
-            const float p = mcs_pwc_pdf((const mcs_pwc *)a.at, u[i]), v = mcs_pwc_invert((const mcs_pwc *)a.at, u[i]);
+            const float p = mcs_pwc_pdf((const mcs_pwc *)a.at, u[i]);
+            const float v = mcs_pwc_invert((const mcs_pwc *)a.at, u[i]);
             CHECK(p == 0 && v >= 0 && v < 1, "x = %g: pdf %g, invert %g", (double)u[i], (double)p, (double)v);
         }
         if (k == &kinds[PWL] && u[i] != 1.0f) {
-            const float p = mcs_pwl_pdf((const mcs_pwl *)a.at, u[i]), v = mcs_pwl_invert((const mcs_pwl *)a.at, u[i]);
+            const float p = mcs_pwl_pdf((const mcs_pwl *)a.at, u[i]);
+            const float v = mcs_pwl_invert((const mcs_pwl *)a.at, u[i]);
             CHECK(p == 0 && v >= 0 && v < 1, "x = %g: pdf %g, invert %g", (double)u[i], (double)p, (double)v);
         }
     }
@@ -692,16 +741,15 @@ static void test_bad_u(const kind *k) {
 
 static void test_relocation(const kind *k) {
     static draw before[US];
-    arena a, b;
-    int j;
     load(&sets[PEAK], k->extra);
-    a = build(k, sets[PEAK].n, NULL);
-    for (j = 0; j < US; j++) before[j] = k->sample(a.at, us[j]);
-    b = arena_make(a.bytes);
+    arena a = build(k, sets[PEAK].n, NULL);
+    for (int j = 0; j < US; j++) before[j] = k->sample(a.at, us[j]);
+    arena b = arena_make(a.bytes);
     memcpy(b.at, a.at, a.bytes);
     memset(a.at, 0xff, a.bytes);
-    for (j = 0; j < US; j++) {
-        const draw c = before[j], d = k->sample(b.at, us[j]);
+    for (int j = 0; j < US; j++) {
+        const draw c = before[j];
+        const draw d = k->sample(b.at, us[j]);
         CHECK(c.i == d.i && c.x == d.x && c.pdf == d.pdf && c.rest == d.rest, "u = %a: the copy differs", (double)us[j]);
     }
     arena_free(&a);
@@ -714,24 +762,24 @@ static void test_alias_bits(uint32_t n) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 157);
     arena a = arena_make(mcs_alias_bytes(n));
     const mcs_alias *t = (const mcs_alias *)a.at;
-    uint32_t i;
-    for (i = 0; i < n; i++) weight[i] = 0.1f + hash01(i);
+    for (uint32_t i = 0; i < n; i++) weight[i] = 0.1f + hash01(i);
     CHECK(mcs_alias_build((mcs_alias *)a.at, a.bytes, weight, n) == MCS_OK, "build");
-    for (i = 0; i < 8000; i++) {
-        const uint32_t r1 = mcs_pcg32_next(&r), r2 = mcs_pcg32_next(&r);
+    for (uint32_t i = 0; i < 8000; i++) {
+        const uint32_t r1 = mcs_pcg32_next(&r);
+        const uint32_t r2 = mcs_pcg32_next(&r);
         const uint64_t b = i & 1 ? UINT64_MAX / n * (r1 % (n + 1)) + r2 % (2 * n) : (uint64_t)r1 << 32 | r2;
         const mcs_pick c = mcs_alias_sample_bits(t, (uint32_t)(b >> 32), (uint32_t)b);
-        const mcsi_column *k;
-        uint64_t carry = 0, digits = 0;
-        double place, kept, rest;
-        int d;
-        for (d = 0; d < 4; d++) {
+        uint64_t carry = 0;
+        uint64_t digits = 0;
+        for (int d = 0; d < 4; d++) {
             carry += (b >> 16 * d & 0xffff) * n;
             digits = digits >> 16 | (carry & 0xffff) << 48;
             carry >>= 16;
         }
-        k = mcsi_columns(t) + carry, place = (double)(digits >> 32) / 2, kept = k->cut;
-        rest = place < kept ? place / kept : (place - kept) / (0x1p31 - kept);
+        const mcsi_column *k = mcsi_columns(t) + carry;
+        const double place = (double)(digits >> 32) / 2;
+        const double kept = k->cut;
+        const double rest = place < kept ? place / kept : (place - kept) / (0x1p31 - kept);
         CHECK(c.i == (place < kept ? carry : k->alias), "n = %u, bits %016llx: entry %u, column %llu", n, (unsigned long long)b,
               c.i, (unsigned long long)carry);
         CHECK(fabs(c.u - rest) <= 1.0001 * eps * rest, "n = %u, bits %016llx: rest %a, not %a", n, (unsigned long long)b,
@@ -742,8 +790,8 @@ static void test_alias_bits(uint32_t n) {
 
 /* The table's integers, of entries below 2^-7, where a float pmf holds them exactly. */
 static void load_integers(const mcs_pwc *t, uint32_t n, uint32_t *cdf) {
-    uint32_t i;
-    for (i = 0, cdf[0] = 0; i < n; i++) cdf[i + 1] = cdf[i] + (uint32_t)(mcs_discrete_pmf(t, i) * 0x1p31f);
+    cdf[0] = 0;
+    for (uint32_t i = 0; i < n; i++) cdf[i + 1] = cdf[i] + (uint32_t)(mcs_discrete_pmf(t, i) * 0x1p31f);
     CHECK(cdf[n] == 1u << 31, "pmf adds up to %u of 2^31", cdf[n]);
 }
 static uint32_t *integers_of(uint32_t n) {
@@ -757,28 +805,31 @@ static uint32_t *integers_of(uint32_t n) {
  * pwc is (i + rest)/n, rounded to double and to float and moved by a float into its cell. */
 static void test_discrete_bits(uint32_t n) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 163);
-    arena a = arena_make(mcs_pwc_bytes(n)), b = arena_make(mcs_pwl_bytes(n));
+    arena a = arena_make(mcs_pwc_bytes(n));
+    arena b = arena_make(mcs_pwl_bytes(n));
     const mcs_pwc *t = (const mcs_pwc *)a.at;
     const mcs_pwl *l = (const mcs_pwl *)b.at;
-    uint32_t *const cdf = integers_of(n), i, k;
-    for (i = 0; i <= n; i++) weight[i] = i % 5 ? 0.1f + hash01(i) : 0;
+    uint32_t *const cdf = integers_of(n);
+    for (uint32_t i = 0; i <= n; i++) weight[i] = i % 5 ? 0.1f + hash01(i) : 0;
     CHECK(mcs_pwc_build((mcs_pwc *)a.at, a.bytes, weight, n) == MCS_OK &&
               mcs_pwl_build((mcs_pwl *)b.at, b.bytes, weight, n) == MCS_OK,
           "build");
     load_integers(t, n, cdf);
-    for (i = 0; i < 100000; i++) {
-        const uint32_t r1 = mcs_pcg32_next(&r), r2 = mcs_pcg32_next(&r);
+    for (uint32_t i = 0; i < 100000; i++) {
+        const uint32_t r1 = mcs_pcg32_next(&r);
+        const uint32_t r2 = mcs_pcg32_next(&r);
         const uint64_t v = i & 1 ? ((uint64_t)cdf[r1 % (n + 1)] << 33) + r2 % 5 - 2 : (uint64_t)r1 << 32 | r2;
         const mcs_pick d = mcs_discrete_sample_bits(t, (uint32_t)(v >> 32), (uint32_t)v);
         const mcs_cell c = mcs_pwc_sample_bits(t, (uint32_t)(v >> 32), (uint32_t)v);
-        uint32_t lo = 0, hi = n;
-        ld rest, x;
+        uint32_t lo = 0;
+        uint32_t hi = n;
         while (hi - lo > 1) {
-            k = lo + (hi - lo) / 2;
+            const uint32_t k = lo + (hi - lo) / 2;
             if (cdf[k] <= v >> 33) lo = k;
             else hi = k;
         }
-        rest = (ld)(v - ((uint64_t)cdf[lo] << 33)) / ((cdf[lo + 1] - cdf[lo]) * 0x1p33L), x = (lo + rest) / n;
+        const ld rest = (ld)(v - ((uint64_t)cdf[lo] << 33)) / ((cdf[lo + 1] - cdf[lo]) * 0x1p33L);
+        const ld x = (lo + rest) / n;
         CHECK(d.i == lo && c.i == lo, "n = %u, bits %016llx: entries %u and %u, not %u", n, (unsigned long long)v, d.i, c.i, lo);
         CHECK(d.pmf == mcs_discrete_pmf(t, lo) && c.pdf == mcs_pwc_pdf(t, c.x) && weight[lo] > 0,
               "n = %u, bits %016llx: pmf %g, pdf %g", n, (unsigned long long)v, (double)d.pmf, (double)c.pdf);
@@ -787,26 +838,32 @@ static void test_discrete_bits(uint32_t n) {
         CHECK(c.x >= 0 && c.x < 1 && fabs((double)(c.x - x)) <= 2.0001 * eps * (double)x, "n = %u, bits %016llx: x %a, not %a", n,
               (unsigned long long)v, (double)c.x, (double)x);
     }
-    for (i = 0; i < 100000; i++) { /* the forms with a float, of which test_pwc and test_pwl know more, are those of its bits */
+    for (uint32_t i = 0; i < 100000;
+         i++) { /* the forms with a float, of which test_pwc and test_pwl know more, are those of its bits */
         const uint32_t b1 = mcs_pcg32_next(&r) & 0xffffff00u >> (i & 7);
         const float u = (float)(b1 >> 1) * 0x1p-31f;
-        const mcs_pick d = mcs_discrete_sample(t, u), e = mcs_discrete_sample_bits(t, b1, 0);
-        const mcs_cell c = mcs_pwc_sample(t, u), f = mcs_pwc_sample_bits(t, b1, 0), g = mcs_pwl_sample(l, u),
-                       h = mcs_pwl_sample_bits(l, b1, 0);
+        const mcs_pick d = mcs_discrete_sample(t, u);
+        const mcs_pick e = mcs_discrete_sample_bits(t, b1, 0);
+        const mcs_cell c = mcs_pwc_sample(t, u);
+        const mcs_cell f = mcs_pwc_sample_bits(t, b1, 0);
+        const mcs_cell g = mcs_pwl_sample(l, u);
+        const mcs_cell h = mcs_pwl_sample_bits(l, b1, 0);
         CHECK(d.i == e.i && d.u == e.u && d.pmf == e.pmf && c.i == f.i && c.x == f.x && c.pdf == f.pdf && g.i == h.i &&
                   g.x == h.x && g.pdf == h.pdf,
               "n = %u, u = %a: other draws by bits", n, (double)u);
     }
-    for (k = 0; k < 2; k++) { /* one entry that holds all 2^64, up to the last; of pwl, with no density there */
+    for (uint32_t k = 0; k < 2; k++) { /* one entry that holds all 2^64, up to the last; of pwl, with no density there */
         const float one[2] = {1, k ? 0.0f : 1.0f};
-        const mcs_cell c = (CHECK(mcs_pwl_build((mcs_pwl *)b.at, b.bytes, one, 1) == MCS_OK, "build"),
-                            mcs_pwl_sample_bits(l, 0xffffffffu, 0xffffffffu));
+        CHECK(mcs_pwl_build((mcs_pwl *)b.at, b.bytes, one, 1) == MCS_OK, "build");
+        const mcs_cell c = mcs_pwl_sample_bits(l, 0xffffffffu, 0xffffffffu);
         CHECK(c.x == 0x0.ffffffp0f && c.pdf >= 0, "the last bits: x %a, pdf %g", (double)c.x, (double)c.pdf);
     }
     CHECK(mcs_pwc_build((mcs_pwc *)a.at, a.bytes, weight + 1, 1) == MCS_OK, "build");
     CHECK(mcs_discrete_sample_bits(t, 0xffffffffu, 0xffffffffu).u == 0x0.ffffffp0f, "the last bits: rest");
     CHECK(mcs_pwc_sample_bits(t, 0xffffffffu, 0xffffffffu).x == 0x0.ffffffp0f, "the last bits: x");
-    arena_free(&a), arena_free(&b), free(cdf);
+    arena_free(&a);
+    arena_free(&b);
+    free(cdf);
 }
 
 /* The u to reuse has its digits at a million entries: of draws from one entry, 64 cells of it, and 64 cells of what is behind
@@ -818,52 +875,57 @@ static void test_reused_digits(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 167);
     arena a = arena_make(mcs_pwc_bytes(N));
     const mcs_pwc *t = (const mcs_pwc *)a.at;
-    uint32_t *const cdf = integers_of(N), i, j, k, equal;
+    uint32_t *const cdf = integers_of(N);
+    uint32_t i;
     for (i = 0; i < N; i++) weight[i] = 0.1f + hash01(i);
     CHECK(mcs_pwc_build((mcs_pwc *)a.at, a.bytes, weight, N) == MCS_OK, "build");
     load_integers(t, N, cdf);
-    for (j = 0; j < ENTRIES; j++) {
-        double cells[64] = {0}, digits[64] = {0}, expected[64], p, q;
-        i = mcs_pcg32_next(&r) % N, equal = 0;
-        for (k = 0; k < DRAWS; k++) {
+    for (uint32_t j = 0; j < ENTRIES; j++) {
+        double cells[64] = {0};
+        double digits[64] = {0};
+        i = mcs_pcg32_next(&r) % N;
+        uint32_t equal = 0;
+        for (uint32_t k = 0; k < DRAWS; k++) {
             const uint64_t place = (uint64_t)mcs_pcg32_next(&r) << 32 | mcs_pcg32_next(&r);
             const uint64_t v = ((uint64_t)cdf[i] << 33) + (uint64_t)((ld)place * 0x1p-64L * ((cdf[i + 1] - cdf[i]) * 0x1p33L));
             const mcs_pick d = mcs_discrete_sample_bits(t, (uint32_t)(v >> 32), (uint32_t)v);
             const double fine = (double)d.u * 0x1p14;
             CHECK(d.i == i, "entry %u drawn, not %u", d.i, i);
-            cells[(int)((double)d.u * 64)] += 1, digits[(int)((fine - floor(fine)) * 64)] += 1, rest[k] = d.u;
+            cells[(int)((double)d.u * 64)] += 1;
+            digits[(int)((fine - floor(fine)) * 64)] += 1;
+            rest[k] = d.u;
         }
         qsort(rest, DRAWS, sizeof *rest, by_value);
-        for (k = 1; k < DRAWS; k++) equal += rest[k] == rest[k - 1];
-        for (k = 0; k < 64; k++) expected[k] = DRAWS / 64;
-        p = chi2_test(cells, expected, 64, NULL, NULL), q = chi2_test(digits, expected, 64, NULL, NULL);
+        for (uint32_t k = 1; k < DRAWS; k++) equal += rest[k] == rest[k - 1];
+        double expected[64];
+        for (uint32_t k = 0; k < 64; k++) expected[k] = DRAWS / 64;
+        const double p = chi2_test(cells, expected, 64, NULL, NULL);
+        const double q = chi2_test(digits, expected, 64, NULL, NULL);
         CHECK(p >= level && q >= level, "entry %u: chi-square of the rest p = %g, of its last digits %g", i, p, q);
         CHECK(equal <= 40, "entry %u: %u of %d numbers come again", i, equal, DRAWS);
     }
-    arena_free(&a), free(cdf);
+    arena_free(&a);
+    free(cdf);
 }
 
 /* The same bytes whatever the memory held, for every number of entries up to 70 and some others, dark lists among them. */
 static void test_same_bytes(const kind *k) {
     const uint32_t many[] = {127, 128, 129, 1000, 4095, 4096, 4097, 65537};
-    uint32_t c, i;
-    for (c = 0; c < 70 + sizeof many / sizeof *many; c++) {
+    for (uint32_t c = 0; c < 70 + sizeof many / sizeof *many; c++) {
         const uint32_t n = c < 70 ? c + 1 : many[c - 70];
-        int style;
-        for (style = 0; style < 3; style++) {
-            arena a[ARENA_PASTS];
-            int past;
-            for (i = 0; i < n + k->extra; i++) weight[i] = style == 0 ? hash01(i) : style == 1 && i % 3 == 0 ? 1e30f : 0;
+        for (int style = 0; style < 3; style++) {
+            for (uint32_t i = 0; i < n + k->extra; i++) weight[i] = style == 0 ? hash01(i) : style == 1 && i % 3 == 0 ? 1e30f : 0;
             if (style == 1) weight[n / 2] = NAN;
-            for (past = 0; past < ARENA_PASTS; past++) {
-                int rc;
-                a[past] = arena_make(k->bytes(n)), arena_past(&a[past], past);
-                rc = k->build(a[past].at, a[past].bytes, weight, n);
+            arena a[ARENA_PASTS];
+            for (int past = 0; past < ARENA_PASTS; past++) {
+                a[past] = arena_make(k->bytes(n));
+                arena_past(&a[past], past);
+                const int rc = k->build(a[past].at, a[past].bytes, weight, n);
                 CHECK(rc >= 0 && arena_intact(&a[past]), "n = %u: build returns %d", n, rc);
                 CHECK(arena_differ(&a[0], &a[past]) == a[0].bytes, "n = %u, list %d: byte %zu of %zu is another one", n, style,
                       arena_differ(&a[0], &a[past]), a[0].bytes);
             }
-            for (past = 0; past < ARENA_PASTS; past++) arena_free(&a[past]);
+            for (int past = 0; past < ARENA_PASTS; past++) arena_free(&a[past]);
         }
     }
 }
@@ -882,13 +944,13 @@ static void test_long(const kind *k, uint32_t n) {
     void *const t = malloc(bytes);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 151);
     double total = 0;
-    uint32_t i;
     int wrong = 0;
     if (!w || !t) exit(puts("no memory"));
-    for (i = 0; i < n; i++) w[i] = i & 1 ? 1.99f : 0.01f;
+    for (uint32_t i = 0; i < n; i++) w[i] = i & 1 ? 1.99f : 0.01f;
     CHECK(k->build(t, bytes, w, n) == MCS_OK, "build");
-    for (i = 0; i <= DRAWS; i++) {
-        const uint32_t b1 = i < DRAWS ? mcs_pcg32_next(&rng) : 0xffffffffu, b2 = i < DRAWS ? mcs_pcg32_next(&rng) : 0xffffffffu;
+    for (uint32_t i = 0; i <= DRAWS; i++) {
+        const uint32_t b1 = i < DRAWS ? mcs_pcg32_next(&rng) : 0xffffffffu;
+        const uint32_t b2 = i < DRAWS ? mcs_pcg32_next(&rng) : 0xffffffffu;
         const mcs_pick c = k == &kinds[ALIAS] ? mcs_alias_sample_bits((const mcs_alias *)t, b1, b2)
                                               : mcs_discrete_sample_bits((const mcs_pwc *)t, b1, b2);
         const float pmf = k == &kinds[ALIAS] ? mcs_alias_pmf((const mcs_alias *)t, c.i) : mcs_discrete_pmf((const mcs_pwc *)t, c.i);
@@ -901,7 +963,8 @@ static void test_long(const kind *k, uint32_t n) {
     }
     CHECK(wrong == 0, "%d wrong picks", wrong);
     CHECK(fabs(total / DRAWS - 1) <= 4 * sqrt(49.3 / DRAWS), "n = %u: mean of 1/(n pmf) is %g", n, total / DRAWS);
-    free(w), free(t);
+    free(w);
+    free(t);
 }
 /* n 2^31 above 2^54, where the room for shares, n 2^31 - n, rounds up as double: shares must still add up. */
 static void test_huge_alias(void) {
@@ -910,17 +973,16 @@ static void test_huge_alias(void) {
     float *const w = malloc(n * sizeof *w);
     mcs_alias *const t = malloc(bytes);
     double total = 0;
-    uint32_t i;
     if (!w || !t) exit(puts("no memory"));
-    for (i = 0; i < n; i++) w[i] = i ? 1e-30f : 1e30f;
+    for (uint32_t i = 0; i < n; i++) w[i] = i ? 1e-30f : 1e30f;
     CHECK(mcs_alias_build(t, bytes, w, n) == MCS_OK, "build");
-    for (i = 0; i < n; i++) total += (double)mcs_alias_pmf(t, i);
+    for (uint32_t i = 0; i < n; i++) total += (double)mcs_alias_pmf(t, i);
     CHECK(fabs(total - 1) <= 0x1p-20, "probabilities add up to %g", total);
-    free(w), free(t);
+    free(w);
+    free(t);
 }
 
 int main(int argc, char **argv) {
-    int k;
     mcst_start(argc, argv);
     make_us();
     mcst_group("pwc and discrete");
@@ -948,7 +1010,7 @@ int main(int argc, char **argv) {
     if (mcst_case("against exact integrals; bad values; errors")) test_build_fn();
     if (mcst_case("exact for degree 7")) test_degree_seven();
     mcst_group("table memory and bad input");
-    for (k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; k++) {
         if (k != DISCRETE && mcst_case("%s: refused builds", kinds[k].name)) test_errors(&kinds[k]);
         if (mcst_case("%s: bad and zero weights", kinds[k].name)) test_bad_weights(&kinds[k]);
         if (mcst_case("%s: u outside [0,1)", kinds[k].name)) test_bad_u(&kinds[k]);

@@ -8,16 +8,18 @@
 
 static void random_direction(uint64_t *state, float lowest, float w[3]) { /* cosines from 1 to `lowest`, evenly in the logarithm */
     float u, v;
-    double s;
     mcst_uniform(state, 1, &u, &v);
     w[2] = (float)pow((double)lowest, (double)u);
-    s = sqrt((1 - (double)w[2]) * (1 + (double)w[2]));
-    w[0] = (float)(s * cos(6.283185307179586 * (double)v)), w[1] = (float)(s * sin(6.283185307179586 * (double)v));
+    const double s = sqrt((1 - (double)w[2]) * (1 + (double)w[2]));
+    w[0] = (float)(s * cos(6.283185307179586 * (double)v));
+    w[1] = (float)(s * sin(6.283185307179586 * (double)v));
 }
 
 static mcs_vec3 vec3(const float *w) {
     mcs_vec3 v;
-    v.x = w[0], v.y = w[1], v.z = w[2];
+    v.x = w[0];
+    v.y = w[1];
+    v.z = w[2];
     return v;
 }
 
@@ -32,16 +34,24 @@ static ld ggx_t(ld ax, ld ay, o_vec3 w) { return sqrtl(ax * ax * w.x * w.x + ay 
  * squared 5, two sums 7; |h|^2 4, a quotient 1: 12 of q, 25 of its square; 1/pi, two 1/alpha, two products and one more 6: 31. */
 static void ggx_values(float ax, float ay, uint64_t seed) {
     const mcs_ggx m = mcs_ggx_make(ax, ay);
-    const ld a = (ld)ax, b = (ld)ay;
-    float o[3], i[3];
-    int k;
-    for (k = 0; k < 2000; k++) {
-        random_direction(&seed, 1e-6f, o), random_direction(&seed, 1e-6f, i);
+    const ld a = (ld)ax;
+    const ld b = (ld)ay;
+    for (int k = 0; k < 2000; k++) {
+        float o[3];
+        random_direction(&seed, 1e-6f, o);
+        float i[3];
+        random_direction(&seed, 1e-6f, i);
         {
-            const o_vec3 wo = mcst_o3(o), wi = mcst_o3(i);
-            const ld to = ggx_t(a, b, wo), ti = ggx_t(a, b, wi), d = o_ggx_d(a, b, wo), g1 = 2 * wo.z / (wo.z + to),
-                     g2 = 2 * wo.z * wi.z / (wo.z * ti + wi.z * to);
-            const float got_d = mcs_ggx_d(&m, vec3(o)), got1 = mcs_ggx_g1(&m, vec3(o)), got2 = mcs_ggx_g2(&m, vec3(o), vec3(i));
+            const o_vec3 wo = mcst_o3(o);
+            const o_vec3 wi = mcst_o3(i);
+            const ld to = ggx_t(a, b, wo);
+            const ld ti = ggx_t(a, b, wi);
+            const ld d = o_ggx_d(a, b, wo);
+            const ld g1 = 2 * wo.z / (wo.z + to);
+            const ld g2 = 2 * wo.z * wi.z / (wo.z * ti + wi.z * to);
+            const float got_d = mcs_ggx_d(&m, vec3(o));
+            const float got1 = mcs_ggx_g1(&m, vec3(o));
+            const float got2 = mcs_ggx_g2(&m, vec3(o), vec3(i));
             if (d < (ld)FLT_MAX && d > (ld)FLT_MIN)
                 CHECK(relative(got_d, d) <= 32 * EPS, "D at %g %g %g: %g, not %Lg", (double)o[0], (double)o[1], (double)o[2],
                       (double)got_d, d);
@@ -63,24 +73,28 @@ static void ggx_values(float ax, float ay, uint64_t seed) {
 static void wide_alphas(const mcst_row *row, float ax, float ay) {
     const int bounded = strstr(row->name, "bounded") != NULL;
     uint64_t seed = mcst_seed_for(row->name, "wide", ax > ay);
-    int k, tried = 0;
-    for (k = 0; k < 20000; k++) {
-        float p[MCST_P], u[2], v[2], out[5];
-        double slope, turn;
-        o_vec2 at;
-        o_vec3 h;
-        ld want;
+    int tried = 0;
+    for (int k = 0; k < 20000; k++) {
+        float v[2];
         mcst_uniform(&seed, 1, &v[0], &v[1]);
-        p[0] = ax, p[1] = ay, p[2] = 0;
+        float p[MCST_P];
+        p[0] = ax;
+        p[1] = ay;
+        p[2] = 0;
         random_direction(&seed, 1e-4f, p + 3);
-        slope = pow(10, 2.5 * (double)v[0] - 1.5), turn = 6.283185307179586 * (double)v[1];
-        h = o_unit(o_vec((ld)(slope * cos(turn)), (ld)(slope * sin(turn)), 1));
+        const double slope = pow(10, 2.5 * (double)v[0] - 1.5);
+        const double turn = 6.283185307179586 * (double)v[1];
+        const o_vec3 h = o_unit(o_vec((ld)(slope * cos(turn)), (ld)(slope * sin(turn)), 1));
+        o_vec2 at;
         if (bounded) at = o_ggx_bounded_h_invert((ld)ax, (ld)ay, mcst_o3(p + 3), h);
         else at = o_ggx_vndf_h_invert((ld)ax, (ld)ay, mcst_o3(p + 3), h);
-        u[0] = (float)at.x, u[1] = (float)at.y;
+        float u[2];
+        u[0] = (float)at.x;
+        u[1] = (float)at.y;
         if (!(u[0] >= 0 && u[0] < 1 && u[1] >= 0 && u[1] < 1)) continue; /* no half-vector of this wo */
+        float out[5];
         row->fn[0].sample(p, &u[0], &u[1], out);
-        want = row->truth.pdf_u(p, (ld)u[0], (ld)u[1]);
+        const ld want = row->truth.pdf_u(p, (ld)u[0], (ld)u[1]);
         if (!(out[3] > 0 && want > 0)) continue; /* lost */
         tried++;
         CHECK(relative(out[3], want) <= 1e-6L, "wo %g %g %g, u %a %a: %.9g, not %.9Lg", (double)p[3], (double)p[4], (double)p[5],
@@ -95,9 +109,9 @@ static void ends_of_alpha(void) {
     static const float alpha[][2] = {{1e-7f, 1e-7f}, {1e-9f, 1e-7f}, {0x1p-149f, 1e-7f}, {3e-7f, 3e-7f}, {5e-6f, 5e-6f},
                                      {1e4f, 1e4f},   {1e5f, 1e4f},   {FLT_MAX, 1e4f},    {5e3f, 5e3f},   {INFINITY, 1e4f}};
     const mcs_vec3 up = {0, 0, 1};
-    size_t i;
-    for (i = 0; i < MCST_COUNT(alpha); i++) {
-        const mcs_ggx x = mcs_ggx_make(alpha[i][0], 0.5f), y = mcs_ggx_make(0.5f, alpha[i][0]);
+    for (size_t i = 0; i < MCST_COUNT(alpha); i++) {
+        const mcs_ggx x = mcs_ggx_make(alpha[i][0], 0.5f);
+        const mcs_ggx y = mcs_ggx_make(0.5f, alpha[i][0]);
         const ld want = 1 / (O_PI * 0.5L * (ld)alpha[i][1]);
         CHECK(relative(mcs_ggx_d(&x, up), want) <= 8 * EPS && relative(mcs_ggx_d(&y, up), want) <= 8 * EPS,
               "alpha %g: %g and %g, not %Lg", (double)alpha[i][0], (double)mcs_ggx_d(&x, up), (double)mcs_ggx_d(&y, up), want);
@@ -113,17 +127,21 @@ static void ends_of_alpha(void) {
  * and its product with the norm (6: see D above), |p|^2 3, squared and with g 8, the quotient by 4 wo.h 1: 16 EPS. */
 static void cancelling_cosines(const mcst_row *row, float a, float b) {
     uint64_t seed = mcst_seed_for(row->name, "cancel", a > b);
-    int k, tried = 0;
-    for (k = 0; k < 60000; k++) {
-        float p[MCST_P], u[2], v[2], out[5];
-        ld x[3], want;
-        o_vec3 wo;
-        mcst_uniform(&seed, 1, &u[0], &u[1]), mcst_uniform(&seed, 1, &v[0], &v[1]);
+    int tried = 0;
+    for (int k = 0; k < 60000; k++) {
+        float u[2];
+        mcst_uniform(&seed, 1, &u[0], &u[1]);
+        float v[2];
+        mcst_uniform(&seed, 1, &v[0], &v[1]);
+        float p[MCST_P];
         mcst_fill(row, a, b, (float)(0.25 * pow(10, -3 * (double)v[0])), 6.2831853f * v[1], p);
-        want = row->truth.pdf_u(p, (ld)u[0], (ld)u[1]);
+        const ld want = row->truth.pdf_u(p, (ld)u[0], (ld)u[1]);
         if (!(want > 0)) continue;
-        row->truth.map(p, (ld)u[0], (ld)u[1], x), wo = mcst_o3(p + 3);
+        ld x[3];
+        row->truth.map(p, (ld)u[0], (ld)u[1], x);
+        const o_vec3 wo = mcst_o3(p + 3);
         if (o_dot(wo, o_half(wo, o_vec(x[0], x[1], x[2]))) > 0.125L) continue;
+        float out[5];
         row->fn[0].sample(p, &u[0], &u[1], out);
         if (!(out[3] > 0)) continue;
         tried++;
@@ -141,30 +159,31 @@ static void cancelling_cosines(const mcst_row *row, float a, float b) {
  * without correction. */
 static void reflection_at_rounded_half(void) {
     uint64_t seed = mcst_seed_for("ashikhmin", "length", 0);
-    double xx = 0, xy = 0;
-    int k, n = 0;
-    for (k = 0; k < 1500000; k++) {
+    double xx = 0;
+    double xy = 0;
+    int n = 0;
+    for (int k = 0; k < 1500000; k++) {
         const float wo[3] = {0.6f * 0.70710678f, 0.8f * 0.70710678f, 0.70710678f};
         float u[4];
-        mcs_ashikhmin m;
-        mcs_vec3 h;
-        mcs_brdf s;
-        o_vec3 exact, unit, across;
-        ld off, c, sine, err;
         mcst_uniform(&seed, 2, &u[0], &u[2]);
         u[0] = 1 - u[0] * u[0];
         if (!(u[0] < 1)) continue;
-        m = mcs_ashikhmin_make((float)pow(10, 5 * (double)u[1]), (float)pow(10, 5 * (double)u[3] - 2));
-        h = mcs_ashikhmin_h_sample(&m, u[0], u[2]).w;
-        off = o_dot(o_v3(h.x, h.y, h.z), o_v3(h.x, h.y, h.z)) - 1;
+        const mcs_ashikhmin m = mcs_ashikhmin_make((float)pow(10, 5 * (double)u[1]), (float)pow(10, 5 * (double)u[3] - 2));
+        mcs_vec3 h = mcs_ashikhmin_h_sample(&m, u[0], u[2]).w;
+        const ld off = o_dot(o_v3(h.x, h.y, h.z), o_v3(h.x, h.y, h.z)) - 1;
         if (fabsl(off) < 2 * EPS) continue;
-        s = mcs_ashikhmin_sample(&m, vec3(wo), u[0], u[2]);
+        mcs_brdf s = mcs_ashikhmin_sample(&m, vec3(wo), u[0], u[2]);
         if (!(s.pdf > 0)) continue;
-        unit = o_unit(o_v3(h.x, h.y, h.z)), exact = o_reflect(mcst_o3(wo), unit), c = o_dot(unit, exact);
-        across = o_add(unit, o_scale(-c, exact)), sine = o_len(across);
+        const o_vec3 unit = o_unit(o_v3(h.x, h.y, h.z));
+        const o_vec3 exact = o_reflect(mcst_o3(wo), unit);
+        const ld c = o_dot(unit, exact);
+        const o_vec3 across = o_add(unit, o_scale(-c, exact));
+        const ld sine = o_len(across);
         if (sine * c < 0.3L) continue; /* nothing goes across */
-        err = o_dot(o_add(o_v3(s.wi.x, s.wi.y, s.wi.z), o_scale(-1, exact)), across) / sine;
-        n++, xx += (double)(2 * c * sine * off * (2 * c * sine * off)), xy += (double)(2 * c * sine * off * err);
+        const ld err = o_dot(o_add(o_v3(s.wi.x, s.wi.y, s.wi.z), o_scale(-1, exact)), across) / sine;
+        n++;
+        xx += (double)(2 * c * sine * off * (2 * c * sine * off));
+        xy += (double)(2 * c * sine * off * err);
     }
     CHECK(n >= 1000, "%d half-vectors of that length", n);
     CHECK(fabs(xy / xx) <= 0.5, "%g of the rounding of the length goes into the direction", xy / xx);
@@ -176,14 +195,12 @@ static void reflection_at_rounded_half(void) {
  * whose rounding is 1 more, the quotient 1: 2.75. */
 static void cones(void) {
     uint64_t seed = mcst_seed_for("cone", "sine", 0);
-    float u, v;
-    int i;
-    for (i = 0; i < 100000; i++) {
-        float s, k;
-        ld want;
+    for (int i = 0; i < 100000; i++) {
+        float u, v;
         mcst_uniform(&seed, 1, &u, &v);
-        s = i % 2 ? u : (float)pow(10, -30 * (double)u), k = mcs_cone_from_sin2(s);
-        want = (ld)s / (1 + sqrtl(1 - (ld)s));
+        const float s = i % 2 ? u : (float)pow(10, -30 * (double)u);
+        const float k = mcs_cone_from_sin2(s);
+        const ld want = (ld)s / (1 + sqrtl(1 - (ld)s));
         if (s > 0) CHECK(relative(k, want) <= 3 * EPS, "sin^2 = %g: %g, not %Lg", (double)s, (double)k, want);
     }
     CHECK(mcs_cone_from_sin2(0) == 0 && mcs_cone_from_sin2(-1) == 0 && mcs_cone_from_sin2(1) == 1 && mcs_cone_from_sin2(2) == 1,
@@ -193,12 +210,11 @@ static void cones(void) {
 
 /* To 1e-12, as its comment says: two series to x^13 and x^14 on an eighth of a turn leave x^15/15! = 2e-14, arguments 4e-16. */
 static void detour_angles(void) {
-    int i;
-    for (i = 0; i <= 100000; i++) {
+    for (int i = 0; i <= 100000; i++) {
         const double t = i / 100000.0;
         double s, c;
-        ld sine, cosine;
         mcsi_sincos_d(t, &s, &c);
+        ld sine, cosine;
         o_sincos2pi((ld)t, &sine, &cosine);
         CHECK(fabsl((ld)s - sine) <= 1e-12L && fabsl((ld)c - cosine) <= 1e-12L, "t = %g: off by %Lg and %Lg", t, (ld)s - sine,
               (ld)c - cosine);
@@ -208,11 +224,12 @@ static void detour_angles(void) {
 /* Steps 1/g and 1/g^2, g^3 = g + 1: each is a multiple of 2^-32, off by half of one, and a coordinate is cut to 2^-24. */
 static void r2_steps(void) {
     ld g = 1.3L;
-    uint32_t i;
-    for (i = 0; i < 30; i++) g -= (g * g * g - g - 1) / (3 * g * g - 1);
-    for (i = 1; i <= 4096; i++) {
-        const mcs_vec2 first = mcs_r2(0, 5), p = mcs_r2(i, 5);
-        const ld x = (ld)p.x - (ld)first.x - (ld)i / g, y = (ld)p.y - (ld)first.y - (ld)i / (g * g);
+    for (uint32_t i = 0; i < 30; i++) g -= (g * g * g - g - 1) / (3 * g * g - 1);
+    for (uint32_t i = 1; i <= 4096; i++) {
+        const mcs_vec2 first = mcs_r2(0, 5);
+        const mcs_vec2 p = mcs_r2(i, 5);
+        const ld x = (ld)p.x - (ld)first.x - (ld)i / g;
+        const ld y = (ld)p.y - (ld)first.y - (ld)i / (g * g);
         const ld bound = (ld)i * 0x1p-33L + 0x1p-24L;
         CHECK(fabsl(x - rintl(x)) <= bound && fabsl(y - rintl(y)) <= bound, "point %u: off by %Lg and %Lg", i, x - rintl(x),
               y - rintl(y));
@@ -223,15 +240,19 @@ static void r2_steps(void) {
 static void constants(const char *name, double bound) {
     const mcst_row *row = mcst_find(name);
     uint64_t seed = mcst_seed_for(name, "constants", 0);
-    int k;
-    for (k = 0; k < 3000; k++) {
-        float p[MCST_P], u[2], out[5], pdf;
-        ld want, off;
-        mcst_grid_get(row, (size_t)k % mcst_grid_count(row), p), mcst_uniform(&seed, 1, &u[0], &u[1]);
-        row->fn[0].sample(p, &u[0], &u[1], out), want = row->truth.pdf_u(p, (ld)u[0], (ld)u[1]);
+    for (int k = 0; k < 3000; k++) {
+        float p[MCST_P];
+        mcst_grid_get(row, (size_t)k % mcst_grid_count(row), p);
+        float u[2];
+        mcst_uniform(&seed, 1, &u[0], &u[1]);
+        float out[5];
+        row->fn[0].sample(p, &u[0], &u[1], out);
+        ld want = row->truth.pdf_u(p, (ld)u[0], (ld)u[1]);
         CHECK(relative(out[3], want) <= bound * 1e-6L, "%s: pdf of u %.9g, not %.9Lg", name, (double)out[3], want);
-        row->fn[0].pdf(p, out, &pdf), want = row->truth.pdf(p, out);
-        off = row->dim == 3 ? fabsl(o_len(mcst_o3(out)) - 1) : 0; /* densities of directions are of unit ones */
+        float pdf;
+        row->fn[0].pdf(p, out, &pdf);
+        want = row->truth.pdf(p, out);
+        const ld off = row->dim == 3 ? fabsl(o_len(mcst_o3(out)) - 1) : 0; /* densities of directions are of unit ones */
         if (want > 0) CHECK(relative(pdf, want) <= bound * 1e-6L + off, "%s: pdf of x %.9g, not %.9Lg", name, (double)pdf, want);
     }
 }
@@ -270,8 +291,7 @@ static void even_phong(void) {
 
 static void opposed(void) {
     const float w[][3] = {{0, 0, 1}, {0.6f, 0, 0.8f}, {1, 0, 0}, {-0.48f, 0.6f, 0.64f}};
-    size_t i;
-    for (i = 0; i < MCST_COUNT(w); i++) {
+    for (size_t i = 0; i < MCST_COUNT(w); i++) {
         const float back[3] = {-w[i][0], -w[i][1], -w[i][2]};
         const mcs_vec3 h = mcs_half(vec3(w[i]), vec3(back));
         CHECK(h.x == 0 && h.y == 0 && h.z == 1, "(%g, %g, %g)", (double)h.x, (double)h.y, (double)h.z);
@@ -280,11 +300,13 @@ static void opposed(void) {
 
 /* The place in a stratum is the middle of one of equal parts: turned round, bits and strata give the same from the other end. */
 static void jitter(void) {
-    uint32_t k, i;
-    for (k = 0; k <= 20; k++)
-        for (i = 0; i < 1000; i++) {
-            const uint32_t n = 1u << k, bits = mcs_hash(i, k), at = bits % n;
-            const float a = mcsi_jitter(at, n, bits), b = mcsi_jitter(n - 1 - at, n, ~bits);
+    for (uint32_t k = 0; k <= 20; k++)
+        for (uint32_t i = 0; i < 1000; i++) {
+            const uint32_t n = 1u << k;
+            const uint32_t bits = mcs_hash(i, k);
+            const uint32_t at = bits % n;
+            const float a = mcsi_jitter(at, n, bits);
+            const float b = mcsi_jitter(n - 1 - at, n, ~bits);
             CHECK((double)a + (double)b == 1, "%u of %u, bits %u: %.9g and %.9g", at, n, bits, (double)a, (double)b);
         }
 }
@@ -293,10 +315,9 @@ static void jitter(void) {
 static void philox_counters(void) {
     static const uint64_t first[] = {0xfffffffdu, 0xfffffffffu, 0xfffffffffffffffdu, 0x1fffffff8u};
     float u[4 * 40];
-    size_t i, k;
-    for (i = 0; i < MCST_COUNT(first); i++) {
+    for (size_t i = 0; i < MCST_COUNT(first); i++) {
         mcs_philox_fill_n(77, first[i], MCST_COUNT(u), u);
-        for (k = 0; k < MCST_COUNT(u); k++)
+        for (size_t k = 0; k < MCST_COUNT(u); k++)
             CHECK(u[k] == mcs_u01(mcs_philox(77, first[i] + k / 4, 0).v[k % 4]), "counter %llx, number %zu",
                   (unsigned long long)first[i], k);
     }
@@ -316,9 +337,8 @@ static void tiny_cells(void) {
     const float f[] = {3e38f, 0, 0x1p-149f, 0x1p-149f, 0, 0};
     arena a = arena_make(mcs_pwl_bytes(5));
     mcs_pwl *t = (mcs_pwl *)(void *)a.at;
-    int i;
     CHECK(mcs_pwl_build(t, a.bytes, f, 5) == MCS_OK, "build");
-    for (i = 0; i < 5; i++)
+    for (int i = 0; i < 5; i++)
         CHECK((mcs_pwl_pdf(t, ((float)i + 0.5f) / 5) > 0) == (i < 4), "cell %d: density %g", i,
               (double)mcs_pwl_pdf(t, ((float)i + 0.5f) / 5));
     arena_free(&a);
@@ -329,13 +349,16 @@ static void zeros_behind(void) {
     uint64_t seed = mcst_seed_for("pwc", "zeros", 0);
     arena a = arena_make(mcs_pwc_bytes(7));
     mcs_pwc *t = (mcs_pwc *)(void *)a.at;
-    int i, k;
-    for (i = 0; i < 20000; i++) {
-        float f[7] = {0, 0, 0, 0, 0, 0, 0}, u, v;
+    for (int i = 0; i < 20000; i++) {
+        float f[7] = {0, 0, 0, 0, 0, 0, 0};
         double sum = 0;
-        for (k = 0; k < 4; k++) mcst_uniform(&seed, 1, &u, &v), f[k] = (float)pow(10, 6 * (double)u);
+        for (int k = 0; k < 4; k++) {
+            float u, v;
+            mcst_uniform(&seed, 1, &u, &v);
+            f[k] = (float)pow(10, 6 * (double)u);
+        }
         CHECK(mcs_pwc_build(t, a.bytes, f, 7) == MCS_OK, "build");
-        for (k = 0; k < 7; k++) sum += (double)mcs_discrete_pmf(t, (uint32_t)k);
+        for (int k = 0; k < 7; k++) sum += (double)mcs_discrete_pmf(t, (uint32_t)k);
         CHECK(mcs_discrete_pmf(t, 4) == 0 && mcs_discrete_pmf(t, 5) == 0 && mcs_discrete_pmf(t, 6) == 0, "%g %g %g %g: %g",
               (double)f[0], (double)f[1], (double)f[2], (double)f[3], (double)mcs_discrete_pmf(t, 6));
         CHECK(fabs(sum - 1) <= 4 * EPS, "%g %g %g %g: all together %g", (double)f[0], (double)f[1], (double)f[2], (double)f[3],
@@ -351,12 +374,11 @@ static void alias_of_many(void) {
     float *w = (float *)malloc(n * sizeof *w);
     arena a = arena_make(mcs_alias_bytes(n));
     mcs_alias *t = (mcs_alias *)(void *)a.at;
-    uint32_t i;
     int lost = 0;
     if (!w) exit(2);
-    for (i = 0; i < n; i++) w[i] = i ? 1e-30f : 1e30f;
+    for (uint32_t i = 0; i < n; i++) w[i] = i ? 1e-30f : 1e30f;
     CHECK(mcs_alias_build(t, a.bytes, w, n) == MCS_OK, "build");
-    for (i = 0; i < n; i++) lost += !(mcs_alias_pmf(t, i) > 0);
+    for (uint32_t i = 0; i < n; i++) lost += !(mcs_alias_pmf(t, i) > 0);
     CHECK(lost == 0 && mcs_alias_pmf(t, n - 1) < 1e-6f, "%d of %u have no share; the last one has %g", lost, n,
           (double)mcs_alias_pmf(t, n - 1));
     free(w);
@@ -367,17 +389,20 @@ static void alias_of_many(void) {
 static void searches(void) {
     enum { N = 40 };
     uint64_t seed = mcst_seed_for("cdf", "search", 0);
-    int round;
-    for (round = 0; round < 20000; round++) {
+    for (int round = 0; round < 20000; round++) {
         const uint32_t n = 1 + (uint32_t)(mcst_mix(&seed) % N);
-        uint32_t cdf[N + 1], i, lo, hi, want, U;
-        for (cdf[0] = 0, i = 1; i <= n; i++) cdf[i] = cdf[i - 1] + (uint32_t)(mcst_mix(&seed) % 4 ? mcst_mix(&seed) % 1000 : 0);
+        uint32_t cdf[N + 1];
+        cdf[0] = 0;
+        for (uint32_t i = 1; i <= n; i++) cdf[i] = cdf[i - 1] + (uint32_t)(mcst_mix(&seed) % 4 ? mcst_mix(&seed) % 1000 : 0);
         if (cdf[n] == 0) continue;
+        uint32_t U;
         do U = mcst_mix(&seed) % 2 ? cdf[mcst_mix(&seed) % (n + 1)] : (uint32_t)(mcst_mix(&seed) % cdf[n]);
         while (U >= cdf[n]);
+        uint32_t want;
         for (want = n; cdf[want] > U;) want--;
-        lo = (uint32_t)(mcst_mix(&seed) % (want + 1)), hi = want + (uint32_t)(mcst_mix(&seed) % (n - want));
-        i = mcsi_cdf_search(cdf, n, lo, hi, U);
+        const uint32_t lo = (uint32_t)(mcst_mix(&seed) % (want + 1));
+        const uint32_t hi = want + (uint32_t)(mcst_mix(&seed) % (n - want));
+        const uint32_t i = mcsi_cdf_search(cdf, n, lo, hi, U);
         CHECK(i == want, "%u in [%u, %u] of %u: %u, not %u", U, lo, hi, n, i, want);
     }
 }
@@ -385,7 +410,8 @@ static void searches(void) {
 /* 0 and 1 belong to the first and the last cell, what lies outside to none. */
 static void ends_of_tables(void) {
     const float f[] = {3, 1, 2, 5, 4, 7};
-    arena a = arena_make(mcs_pwc_bytes(5)), b = arena_make(mcs_pwl_bytes(5));
+    arena a = arena_make(mcs_pwc_bytes(5));
+    arena b = arena_make(mcs_pwl_bytes(5));
     mcs_pwc *c = (mcs_pwc *)(void *)a.at;
     mcs_pwl *l = (mcs_pwl *)(void *)b.at;
     const float top = 0.99999994f;
@@ -402,7 +428,8 @@ static void ends_of_tables(void) {
           "pwl: %g to %g", (double)mcs_pwl_invert(l, 0), (double)mcs_pwl_invert(l, 1));
     CHECK(mcs_discrete_pmf(c, 5) == 0 && mcs_discrete_pmf(c, UINT32_MAX) == 0, "entries beyond the last: %g",
           (double)mcs_discrete_pmf(c, 5));
-    arena_free(&a), arena_free(&b);
+    arena_free(&a);
+    arena_free(&b);
 }
 
 /* ---- rows of a map ---- */
@@ -417,52 +444,53 @@ static ld border(uint32_t k, uint32_t h) {
  * 1, a quotient 1) and the error of its length, the guess from the angle only to 2^-23 turns: a row off that is not set right
  * shows. */
 static void rows_beside_borders(uint32_t h) {
-    mcs_image image;
     float *light = (float *)malloc(2 * (size_t)h * sizeof *light);
     arena a = arena_make(mcs_env_bytes(2, h));
     mcs_env *e = (mcs_env *)(void *)a.at;
     uint64_t seed = mcst_seed_for("env", "rows", h);
-    uint32_t k;
-    int i, beside = 0;
+    int beside = 0;
     if (!light) exit(2);
+    uint32_t k;
     for (k = 0; k < 2 * h; k++) light[k] = (float)(1 + k % 3);
-    image = mcs_image_make(light, 2, h, 1);
+    const mcs_image image = mcs_image_make(light, 2, h, 1);
     CHECK(mcs_env_build(e, a.bytes, &image) == MCS_OK, "build");
-    for (i = 0; i < 300000; i++) {
-        float u, v, w[3];
-        double theta;
-        ld t, slack;
-        uint32_t m, row;
-        o_vec3 o;
+    for (int i = 0; i < 300000; i++) {
+        float u, v;
         mcst_uniform(&seed, 1, &u, &v);
         k = 1 + (uint32_t)(mcst_mix(&seed) % (h - 1));
-        theta = ST_PI * k / h, theta += fmin(theta, ST_PI - theta) * ldexp((double)u - 0.5, -18 - (int)(mcst_mix(&seed) % 6));
+        double theta = ST_PI * k / h;
+        theta += fmin(theta, ST_PI - theta) * ldexp((double)u - 0.5, -18 - (int)(mcst_mix(&seed) % 6));
+        float w[3];
         w[0] = (float)(sin(theta) * cos(6.283185307179586 * (double)v));
         w[1] = (float)(sin(theta) * sin(6.283185307179586 * (double)v));
         w[2] = (float)cos(theta);
-        o = o_v3(w[0], w[1], fabsf(w[2]));
-        t = o_one_minus_cos(o), slack = t * (4 * EPS + fabsl(o_dot(o, o) - 1));
-        m = w[2] < 0 ? h - k : k; /* from the nearer pole the border that it lies beside, or the one before */
-        if (2 * m > h) m = h - m; /* across the equator */
+        const o_vec3 o = o_v3(w[0], w[1], fabsf(w[2]));
+        const ld t = o_one_minus_cos(o);
+        const ld slack = t * (4 * EPS + fabsl(o_dot(o, o) - 1));
+        uint32_t m = w[2] < 0 ? h - k : k; /* from the nearer pole the border that it lies beside, or the one before */
+        if (2 * m > h) m = h - m;          /* across the equator */
         if (fabsl(t - border(m, h)) <= slack || 2 * m == h) continue;
         if (t < border(m, h)) m--;
         beside++;
-        row = mcs_env_texel(e, vec3(w)).row;
+        const uint32_t row = mcs_env_texel(e, vec3(w)).row;
         CHECK(row == (w[2] < 0 ? h - 1 - m : m), "(%a, %a, %a): row %u, not %u", (double)w[0], (double)w[1], (double)w[2], row,
               w[2] < 0 ? h - 1 - m : m);
     }
     CHECK(beside >= 10000, "%d directions", beside);
     /* What holds whatever the angle's rounding is: the angle only has to be right to 2^-23 turns, 1 - cos says which row it is. */
-    for (i = 0; i < 200000; i++) {
-        const uint32_t last = (h - 1) / 2, m = (uint32_t)(mcst_mix(&seed) % (last + 1));
-        const int down = i & 1, off = (int)(mcst_mix(&seed) % 3) - 1;
-        float u, v, t;
-        uint32_t row;
+    for (int i = 0; i < 200000; i++) {
+        const uint32_t last = (h - 1) / 2;
+        const uint32_t m = (uint32_t)(mcst_mix(&seed) % (last + 1));
+        const int down = i & 1;
+        const int off = (int)(mcst_mix(&seed) % 3) - 1;
+        float u, v;
         mcst_uniform(&seed, 1, &u, &v);
-        t = (float)(border(m, h) + (fminl(border(m + 1, h), 1) - border(m, h)) * (ld)(i & 2 ? u * 0x1p-6f : 1 - u * 0x1p-6f));
+        const float t =
+            (float)(border(m, h) + (fminl(border(m + 1, h), 1) - border(m, h)) * (ld)(i & 2 ? u * 0x1p-6f : 1 - u * 0x1p-6f));
         if (!((ld)t > border(m, h) && ((ld)t < border(m + 1, h) || m == last))) continue; /* beyond a border */
-        u = (float)(acos(1 - (double)t) / (2 * ST_PI) + off * 0x1p-23), u = u > 0 ? u : 0;
-        row = mcsi_env_row_at(e, down ? -t : t, u);
+        u = (float)(acos(1 - (double)t) / (2 * ST_PI) + off * 0x1p-23);
+        u = u > 0 ? u : 0;
+        const uint32_t row = mcsi_env_row_at(e, down ? -t : t, u);
         CHECK(row == (down ? h - 1 - m : m), "1 - cos %a, %d of 2^-23 turns off: row %u, not %u", (double)t, off, row,
               down ? h - 1 - m : m);
     }
@@ -474,8 +502,8 @@ static void rows_beside_borders(uint32_t h) {
 
 static mcs_env *map_of(arena *a, const float *light, uint32_t w, uint32_t h) {
     const mcs_image image = mcs_image_make(light, w, h, 1);
-    mcs_env *e;
-    *a = arena_make(mcs_env_bytes(w, h)), e = (mcs_env *)(void *)a->at;
+    *a = arena_make(mcs_env_bytes(w, h));
+    mcs_env *e = (mcs_env *)(void *)a->at;
     CHECK(mcs_env_build(e, a->bytes, &image) == MCS_OK, "build");
     return e;
 }
@@ -483,14 +511,13 @@ static mcs_env *map_of(arena *a, const float *light, uint32_t w, uint32_t h) {
 /* The only light in every place of a row of some chunks. */
 static void lone_texels(void) {
     enum { W = 200, H = 3 };
-    float light[W * H];
-    uint32_t c;
-    for (c = 0; c < W; c++) {
+    for (uint32_t c = 0; c < W; c++) {
+        float light[W * H];
+        memset(light, 0, sizeof light);
+        light[W + c] = 1;
         arena a;
-        mcs_env *e;
-        mcs_texel t;
-        memset(light, 0, sizeof light), light[W + c] = 1;
-        e = map_of(&a, light, W, H), t = mcs_env_sample(e, 0.3f, 0.7f);
+        mcs_env *e = map_of(&a, light, W, H);
+        mcs_texel t = mcs_env_sample(e, 0.3f, 0.7f);
         CHECK(t.col == c && t.row == 1 && t.pdf > 0 && mcs_env_pdf(e, t.w) == t.pdf, "column %u: drawn %u, %u, density %g", c,
               t.col, t.row, (double)t.pdf);
         arena_free(&a);
@@ -500,13 +527,12 @@ static void lone_texels(void) {
 /* Rows of two levels, each of which fills a chunk, are not even. */
 static void rows_of_two_levels(void) {
     enum { W = 128, H = 4 };
+    int right = 0;
     float light[W * H];
+    for (int i = 0; i < W * H; i++) light[i] = i % W < W / 2 ? 1.0f : 3.0f;
     arena a;
-    mcs_env *e;
-    int i, right = 0;
-    for (i = 0; i < W * H; i++) light[i] = i % W < W / 2 ? 1.0f : 3.0f;
-    e = map_of(&a, light, W, H);
-    for (i = 0; i < 1000; i++) right += mcs_env_sample(e, ((float)i + 0.5f) / 1000, 0.4f).col >= W / 2;
+    mcs_env *e = map_of(&a, light, W, H);
+    for (int i = 0; i < 1000; i++) right += mcs_env_sample(e, ((float)i + 0.5f) / 1000, 0.4f).col >= W / 2;
     CHECK(right >= 749 && right <= 751, "%d of 1000 in the brighter half, not 750", right);
     arena_free(&a);
 }
@@ -514,20 +540,17 @@ static void rows_of_two_levels(void) {
 /* Random bits on the very border of two texels belong to the second, half a unit before it to the first. */
 static void borders_of_texels(void) {
     enum { W = 100, H = 12 };
-    float light[W * H];
     uint64_t seed = mcst_seed_for("env", "texels", 0);
+    float light[W * H];
+    for (uint32_t c = 0; c < W * H; c++) light[c] = mcst_mix(&seed) % 3 ? (float)(1 + mcst_mix(&seed) % 1000) : 0.0f;
     arena a;
-    mcs_env *e;
-    mcsi_env_view v;
-    uint32_t r, c;
-    for (c = 0; c < W * H; c++) light[c] = mcst_mix(&seed) % 3 ? (float)(1 + mcst_mix(&seed) % 1000) : 0.0f;
-    e = map_of(&a, light, W, H), v = mcsi_env_whole(e);
-    for (r = 0; r < H; r++) {
+    mcs_env *e = map_of(&a, light, W, H);
+    const mcsi_env_view v = mcsi_env_whole(e);
+    for (uint32_t r = 0; r < H; r++) {
         const uint32_t *cdf = mcsi_env_cdf(e, r);
-        for (c = 0; c < W; c++) {
-            mcs_texel t;
+        for (uint32_t c = 0; c < W; c++) {
             if (cdf[c] == cdf[c + 1]) continue;
-            t = mcs_env_sample_bits(e, 2 * cdf[c], v.rows[r] + v.rows[r + 1]);
+            mcs_texel t = mcs_env_sample_bits(e, 2 * cdf[c], v.rows[r] + v.rows[r + 1]);
             CHECK(t.col == c && t.row == r, "border %u of row %u: %u, %u", c, r, t.col, t.row);
             t = mcs_env_sample_bits(e, 2 * cdf[c + 1] - 1, 2 * v.rows[r]);
             CHECK(t.col == c && t.row == r, "before border %u of row %u: %u, %u", c + 1, r, t.col, t.row);
@@ -539,19 +562,20 @@ static void borders_of_texels(void) {
 /* Of a constant map arrays look the texels up: rows alone, columns alone, both. */
 static void texels_of_even_maps(void) {
     enum { N = 50 };
-    float light[8 * 4], u1[N], u2[N];
-    uint32_t col[N], row[N];
     uint64_t seed = mcst_seed_for("env", "even", 0);
+    float light[8 * 4];
+    for (int i = 0; i < 8 * 4; i++) light[i] = 2;
     arena a;
-    mcs_env *e;
-    int i, form;
-    for (i = 0; i < 8 * 4; i++) light[i] = 2;
-    e = map_of(&a, light, 8, 4);
+    mcs_env *e = map_of(&a, light, 8, 4);
+    float u1[N], u2[N];
     mcst_uniform(&seed, N, u1, u2);
-    for (form = 1; form < 4; form++) {
-        memset(col, 0xa5, sizeof col), memset(row, 0xa5, sizeof row);
+    for (int form = 1; form < 4; form++) {
+        uint32_t col[N];
+        memset(col, 0xa5, sizeof col);
+        uint32_t row[N];
+        memset(row, 0xa5, sizeof row);
         mcs_env_sample_n(e, N, u1, u2, NULL, NULL, NULL, NULL, form & 1 ? col : NULL, form & 2 ? row : NULL);
-        for (i = 0; i < N; i++) {
+        for (int i = 0; i < N; i++) {
             const mcs_texel t = mcs_env_sample(e, u1[i], u2[i]);
             CHECK((!(form & 1) || col[i] == t.col) && (!(form & 2) || row[i] == t.row), "outputs %d: %u, %u, not %u, %u", form,
                   col[i], row[i], t.col, t.row);
@@ -562,10 +586,11 @@ static void texels_of_even_maps(void) {
 
 /* Borders of rows: the series ends at t^17 with t below pi/4, what is left out is below 1e-18; 16 roundings of 2^-53. */
 static void borders_of_rows(void) {
-    int i;
-    for (i = 0; i <= 100000; i++) {
-        const double x = i / 100000.0, got = mcsi_one_minus_cos_pi(x);
-        const ld s = sinl(0.5L * O_PI * (ld)x), want = 2 * s * s;
+    for (int i = 0; i <= 100000; i++) {
+        const double x = i / 100000.0;
+        const double got = mcsi_one_minus_cos_pi(x);
+        const ld s = sinl(0.5L * O_PI * (ld)x);
+        const ld want = 2 * s * s;
         CHECK(fabsl((ld)got - want) <= 16 * 0x1p-53L * want, "x = %g: %.17g, not %.17Lg", x, got, want);
     }
 }
@@ -578,32 +603,38 @@ static void share_of_the_lobe(void) {
     static const float alphas[][2] = {{1, 1}, {0.08f, 0.08f}, {0.03f, 0.03f}, {0.02f, 0.01f}, {0.01f, 0.01f}, {1e-3f, 1e-3f}};
     static const float mattes[] = {0, 0.25f, 1};
     float light[32 * 16];
-    mcs_image image = mcs_image_make(light, 32, 16, 1);
-    arena map = arena_make(mcs_env_bytes(32, 16)), tiles, memory = arena_make(mcs_product_bytes(16));
+    const mcs_image image = mcs_image_make(light, 32, 16, 1);
+    arena map = arena_make(mcs_env_bytes(32, 16));
+    arena memory = arena_make(mcs_product_bytes(16));
     mcs_env *e = (mcs_env *)(void *)map.at;
     mcs_product *p = (mcs_product *)(void *)memory.at;
-    mcs_tiles *t;
-    int i, j, k;
-    for (i = 0; i < 32 * 16; i++) light[i] = (float)(1 + i % 5);
+    for (int i = 0; i < 32 * 16; i++) light[i] = (float)(1 + i % 5);
     CHECK(mcs_env_build(e, map.bytes, &image) == MCS_OK, "map");
-    tiles = arena_make(mcs_tiles_bytes(e, 16)), t = (mcs_tiles *)(void *)tiles.at;
+    arena tiles = arena_make(mcs_tiles_bytes(e, 16));
+    mcs_tiles *t = (mcs_tiles *)(void *)tiles.at;
     CHECK(mcs_tiles_build(t, tiles.bytes, e, 16) == MCS_OK, "tiles");
-    for (i = 0; i < 6; i++)
-        for (j = 0; j < 3; j++)
-            for (k = 0; k < 3; k++) {
-                const mcs_vec3 up = {0, 0, 1}, wo = {0.6f, 0, 0.8f};
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++) {
+                const mcs_vec3 up = {0, 0, 1};
+                const mcs_vec3 wo = {0.6f, 0, 0.8f};
                 mcs_reflection r;
-                ld m, want;
                 memset(&r, 0, sizeof r);
-                r.frame = mcs_frame_make(up), r.wo = wo, r.alpha_x = alphas[i][0], r.alpha_y = alphas[i][1];
-                r.matte = mattes[j], r.profile = k == 0 ? MCS_PROFILE_GGX : k == 1 ? MCS_PROFILE_GAUSS : MCS_PROFILE_PHONG;
+                r.frame = mcs_frame_make(up);
+                r.wo = wo;
+                r.alpha_x = alphas[i][0];
+                r.alpha_y = alphas[i][1];
+                r.matte = mattes[j];
+                r.profile = k == 0 ? MCS_PROFILE_GGX : k == 1 ? MCS_PROFILE_GAUSS : MCS_PROFILE_PHONG;
                 CHECK(mcs_product_build(p, memory.bytes, t, e, &r) == MCS_OK, "product");
-                m = (k ? 3 : 1) / (14 * 512.0L * (ld)alphas[i][0] * (ld)alphas[i][1] * 0.8L) - 0.03L;
-                want = m > 0 ? (1 - (ld)mattes[j]) * fminl(m / (1 + m), 0.95L) : 0;
+                const ld m = (k ? 3 : 1) / (14 * 512.0L * (ld)alphas[i][0] * (ld)alphas[i][1] * 0.8L) - 0.03L;
+                const ld want = m > 0 ? (1 - (ld)mattes[j]) * fminl(m / (1 + m), 0.95L) : 0;
                 CHECK(fabsl((ld)p->brdf_share - want) <= 16 * EPS, "alphas %g %g, matte %g, profile %d: %g, not %Lg",
                       (double)alphas[i][0], (double)alphas[i][1], (double)mattes[j], k, (double)p->brdf_share, want);
             }
-    arena_free(&map), arena_free(&tiles), arena_free(&memory);
+    arena_free(&map);
+    arena_free(&tiles);
+    arena_free(&memory);
 }
 
 /* However little a tile weighs beside another, in its row or in another one, it can be drawn, and where it weighs nothing it
@@ -611,56 +642,62 @@ static void share_of_the_lobe(void) {
 static void tiny_tiles(void) {
     enum { ROWS = 16, TILES = 2 * ROWS * ROWS };
     static float weight[TILES];
-    float light[32 * 16];
-    arena map, tiles, memory = arena_make(mcs_product_bytes(ROWS));
+    arena memory = arena_make(mcs_product_bytes(ROWS));
     mcs_product *p = (mcs_product *)(void *)memory.at;
-    mcs_tiles *t;
-    mcs_env *e;
-    uint32_t k;
-    for (k = 0; k < 32 * 16; k++) light[k] = (float)(1 + k % 5);
-    e = map_of(&map, light, 32, 16);
-    tiles = arena_make(mcs_tiles_bytes(e, ROWS)), t = (mcs_tiles *)(void *)tiles.at;
+    float light[32 * 16];
+    for (uint32_t k = 0; k < 32 * 16; k++) light[k] = (float)(1 + k % 5);
+    arena map;
+    mcs_env *e = map_of(&map, light, 32, 16);
+    arena tiles = arena_make(mcs_tiles_bytes(e, ROWS));
+    mcs_tiles *t = (mcs_tiles *)(void *)tiles.at;
     CHECK(mcs_tiles_build(t, tiles.bytes, e, ROWS) == MCS_OK, "tiles");
     memset(weight, 0, sizeof weight);
-    weight[5 * ROWS + 7] = 1, weight[9 * ROWS + 7] = 1e-12f, weight[9 * ROWS + 3] = 1e-12f;
+    weight[5 * ROWS + 7] = 1;
+    weight[9 * ROWS + 7] = 1e-12f;
+    weight[9 * ROWS + 3] = 1e-12f;
     CHECK(mcs_product_build_weights(p, memory.bytes, t, e, weight) == MCS_OK, "product");
-    for (k = 0; k < TILES; k++)
+    for (uint32_t k = 0; k < TILES; k++)
         CHECK((mcs_product_pdf(p, mcs_tiles_direction(t, e, k)) > 0) == (weight[k] > 0), "tile %u of weight %g: density %g", k,
               (double)weight[k], (double)mcs_product_pdf(p, mcs_tiles_direction(t, e, k)));
-    for (k = 0; k < 4; k++) {
+    for (uint32_t k = 0; k < 4; k++) {
         const mcs_texel x = mcs_product_sample(p, k & 1 ? 0.5f : 0, k & 2 ? 0.5f : 0);
         CHECK(x.pdf > 0 && relative(mcs_product_pdf(p, x.w), (ld)x.pdf) <= 1e-5L, "draw %u: density %g, of its direction %g", k,
               (double)x.pdf, (double)mcs_product_pdf(p, x.w));
     }
-    arena_free(&map), arena_free(&tiles), arena_free(&memory);
+    arena_free(&map);
+    arena_free(&tiles);
+    arena_free(&memory);
 }
 
 /* A fine grid: 8 x 8 values column by column, bilinear between, then what its rows of nodes weigh by trapezoids over the columns.
  * Relative to its mean, from the sums: some 20 roundings of floats, most of them of the sums. */
 static void fine_grids(void) {
     enum { M = MCSI_NODES };
-    float v[MCSI_GRID + MCSI_NODES];
     uint64_t seed = mcst_seed_for("product", "fine", 0);
-    int round, i, j, k;
-    for (round = 0; round < 2000; round++) {
-        float u[2];
-        double mean = 0, x, y, got;
-        ld want;
-        for (k = 0; k < MCSI_GRID; k++) v[k] = (float)(1 + mcst_mix(&seed) % 1000);
-        for (i = 0; i < M; i++) {
+    float v[MCSI_GRID + MCSI_NODES];
+    for (int round = 0; round < 2000; round++) {
+        double mean = 0;
+        for (int k = 0; k < MCSI_GRID; k++) v[k] = (float)(1 + mcst_mix(&seed) % 1000);
+        for (int i = 0; i < M; i++) {
             double sum = 0.5 * ((double)v[i] + (double)v[(M - 1) * M + i]);
-            for (j = 1; j < M - 1; j++) sum += (double)v[j * M + i];
-            v[MCSI_GRID + i] = (float)sum, mean += (i == 0 || i == M - 1 ? 0.5 : 1) * sum / ((M - 1) * (M - 1));
+            for (int j = 1; j < M - 1; j++) sum += (double)v[j * M + i];
+            v[MCSI_GRID + i] = (float)sum;
+            mean += (i == 0 || i == M - 1 ? 0.5 : 1) * sum / ((M - 1) * (M - 1));
         }
+        float u[2];
         mcst_uniform(&seed, 1, &u[0], &u[1]);
         if (round % 3 == 0) u[0] = round % 2 ? 1.0f : 0.0f;
         if (round % 5 == 0) u[1] = round % 4 < 2 ? 1.0f : 0.0f;
-        x = (M - 1) * (double)u[0], y = (M - 1) * (double)u[1];
-        j = x < M - 2 ? (int)x : M - 2, i = y < M - 2 ? (int)y : M - 2, x -= j, y -= i;
-        want = (ld)((1 - x) * ((1 - y) * (double)v[j * M + i] + y * (double)v[j * M + i + 1]) +
-                    x * ((1 - y) * (double)v[(j + 1) * M + i] + y * (double)v[(j + 1) * M + i + 1])) /
-               (ld)mean;
-        got = (double)mcsi_fine_density(v, u[0], u[1]);
+        double x = (M - 1) * (double)u[0];
+        double y = (M - 1) * (double)u[1];
+        const int j = x < M - 2 ? (int)x : M - 2;
+        const int i = y < M - 2 ? (int)y : M - 2;
+        x -= j;
+        y -= i;
+        const ld want = (ld)((1 - x) * ((1 - y) * (double)v[j * M + i] + y * (double)v[j * M + i + 1]) +
+                             x * ((1 - y) * (double)v[(j + 1) * M + i] + y * (double)v[(j + 1) * M + i + 1])) /
+                        (ld)mean;
+        const double got = (double)mcsi_fine_density(v, u[0], u[1]);
         /* values of up to 1000 times the least, differences of which are rounded; places to 7 * 2^-24 */
         CHECK(fabsl((ld)got - want) <= 20 * EPS * want + 40 * EPS * 1000 / (ld)mean, "at %g, %g: %g, not %Lg", (double)u[0],
               (double)u[1], got, want);
@@ -668,11 +705,17 @@ static void fine_grids(void) {
 }
 
 static mcs_reflection glossy(float alpha) {
-    const mcs_vec3 n = {0.6f, 0, 0.8f}, wo = {0.6f, 0, 0.8f};
+    const mcs_vec3 n = {0.6f, 0, 0.8f};
+    const mcs_vec3 wo = {0.6f, 0, 0.8f};
     mcs_reflection r;
     memset(&r, 0, sizeof r);
-    r.frame.s.x = 0.8f, r.frame.s.z = -0.6f, r.frame.t.y = 1, r.frame.n = n;
-    r.wo = wo, r.alpha_x = r.alpha_y = alpha, r.matte = 0.25f;
+    r.frame.s.x = 0.8f;
+    r.frame.s.z = -0.6f;
+    r.frame.t.y = 1;
+    r.frame.n = n;
+    r.wo = wo;
+    r.alpha_x = r.alpha_y = alpha;
+    r.matte = 0.25f;
     return r;
 }
 
@@ -687,35 +730,41 @@ typedef struct {
 static lit_surface surface_under(const float *light, uint32_t w, uint32_t h, float alpha) {
     lit_surface s;
     s.e = map_of(&s.map, light, w, h);
-    s.tiles = arena_make(mcs_tiles_bytes(s.e, 16)), s.t = (mcs_tiles *)(void *)s.tiles.at;
-    s.memory = arena_make(mcs_product_bytes(16)), s.p = (mcs_product *)(void *)s.memory.at;
+    s.tiles = arena_make(mcs_tiles_bytes(s.e, 16));
+    s.t = (mcs_tiles *)(void *)s.tiles.at;
+    s.memory = arena_make(mcs_product_bytes(16));
+    s.p = (mcs_product *)(void *)s.memory.at;
     s.r = glossy(alpha);
     CHECK(mcs_tiles_build(s.t, s.tiles.bytes, s.e, 16) == MCS_OK, "tiles");
     CHECK(mcs_product_build(s.p, s.memory.bytes, s.t, s.e, &s.r) == MCS_OK && !(s.p->brdf_share > 0), "product");
     return s;
 }
 
-static void surface_free(lit_surface *s) { arena_free(&s->map), arena_free(&s->tiles), arena_free(&s->memory); }
+static void surface_free(lit_surface *s) {
+    arena_free(&s->map);
+    arena_free(&s->tiles);
+    arena_free(&s->memory);
+}
 
 /* Even light and a surface that both stay the same when y changes sign: so does the density, by columns from both ends of the map.
  * Weights of tiles are integers over 2^24 of a row, of which there are 32; a place among the light is known to 2^-21 of the map,
  * 2^-16 of a tile, whose density changes by a few times itself at most: 1e-4. */
 static void mirrored(float alpha) {
     enum { W = 64, H = 32 };
-    float light[W * H];
     uint64_t seed = mcst_seed_for("product", "mirror", alpha > 0.1f);
-    lit_surface s;
-    int i;
-    for (i = 0; i < W * H; i++) light[i] = (float)(2 + i / W % 3);
-    s = surface_under(light, W, H, alpha);
-    for (i = 0; i < 5000; i++) {
-        mcs_dir a, b;
+    float light[W * H];
+    for (int i = 0; i < W * H; i++) light[i] = (float)(2 + i / W % 3);
+    lit_surface s = surface_under(light, W, H, alpha);
+    for (int i = 0; i < 5000; i++) {
         float u1, u2;
-        double p, q, f, g;
         mcst_uniform(&seed, 1, &u1, &u2);
-        a = b = mcs_sphere_sample(u1, i % 4 ? u2 : u2 * 0.03f), b.w.y = -b.w.y;
-        p = (double)mcs_product_pdf(s.p, a.w), q = (double)mcs_product_pdf(s.p, b.w);
-        f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, a.w), g = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, b.w);
+        mcs_dir a, b;
+        a = b = mcs_sphere_sample(u1, i % 4 ? u2 : u2 * 0.03f);
+        b.w.y = -b.w.y;
+        const double p = (double)mcs_product_pdf(s.p, a.w);
+        const double q = (double)mcs_product_pdf(s.p, b.w);
+        const double f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, a.w);
+        const double g = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, b.w);
         CHECK(fabs(p - q) <= 1e-4 * p, "(%g, %g, %g): %g, mirrored %g", (double)a.w.x, (double)a.w.y, (double)a.w.z, p, q);
         CHECK(fabs(f - g) <= 1e-4 * f, "(%g, %g, %g): one-shot %g, mirrored %g", (double)a.w.x, (double)a.w.y, (double)a.w.z, f, g);
     }
@@ -725,20 +774,18 @@ static void mirrored(float alpha) {
 /* Rows without light within tiles that have some. */
 static void black_rows(void) {
     enum { W = 64, H = 32 };
-    float light[W * H];
     uint64_t seed = mcst_seed_for("product", "black rows", 0);
-    lit_surface s;
-    int i, lit = 0;
-    for (i = 0; i < W * H; i++) light[i] = i / W % 2 ? 1.0f : 0.0f;
-    s = surface_under(light, W, H, 0.5f);
-    for (i = 0; i < 3000; i++) {
+    int lit = 0;
+    float light[W * H];
+    for (int i = 0; i < W * H; i++) light[i] = i / W % 2 ? 1.0f : 0.0f;
+    lit_surface s = surface_under(light, W, H, 0.5f);
+    for (int i = 0; i < 3000; i++) {
         float u1, u2;
-        mcs_vec3 w;
-        double p, f;
-        int black;
         mcst_uniform(&seed, 1, &u1, &u2);
-        w = mcs_sphere_sample(u1, u2).w, black = mcs_env_texel(s.e, w).row % 2 == 0;
-        p = (double)mcs_product_pdf(s.p, w), f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, w);
+        mcs_vec3 w = mcs_sphere_sample(u1, u2).w;
+        const int black = mcs_env_texel(s.e, w).row % 2 == 0;
+        const double p = (double)mcs_product_pdf(s.p, w);
+        const double f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, w);
         CHECK(black ? p == 0 && f == 0 : p >= 0 && f >= 0, "(%g, %g, %g): %g, one-shot %g", (double)w.x, (double)w.y, (double)w.z,
               p, f);
         lit += p > 0;
@@ -751,19 +798,17 @@ static void black_rows(void) {
  * is that of its direction, to the rounding of its place as above. */
 static void one_shot_draws(void) {
     enum { W = 64, H = 32 };
-    float light[W * H];
     uint64_t seed = mcst_seed_for("product", "one-shot", 0);
-    lit_surface s;
-    int i, lost = 0;
-    for (i = 0; i < W * H; i++) light[i] = mcst_mix(&seed) % 40 ? 0.0f : (float)(1 + mcst_mix(&seed) % 100);
-    s = surface_under(light, W, H, 0.5f);
-    for (i = 0; i < 20000; i++) {
-        mcs_texel x;
+    int lost = 0;
+    float light[W * H];
+    for (int i = 0; i < W * H; i++) light[i] = mcst_mix(&seed) % 40 ? 0.0f : (float)(1 + mcst_mix(&seed) % 100);
+    lit_surface s = surface_under(light, W, H, 0.5f);
+    for (int i = 0; i < 20000; i++) {
         float u[4];
-        double p;
         mcst_uniform(&seed, 2, u, u + 2);
         if (i % 100 == 0) s.r.frame = mcs_frame_make(mcs_sphere_sample(u[0], u[2]).w);
-        x = mcs_oneshot_sample(s.t, s.e, &s.r, u[1], u[3]), p = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, x.w);
+        mcs_texel x = mcs_oneshot_sample(s.t, s.e, &s.r, u[1], u[3]);
+        const double p = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, x.w);
         lost += !(x.pdf > 0);
         CHECK(fabs(p - (double)x.pdf) <= 1e-4 * (double)x.pdf, "u %a %a: density %g, of its direction %g", (double)u[1],
               (double)u[3], (double)x.pdf, p);
@@ -781,22 +826,21 @@ int main(int argc, char **argv) {
         float a, b;
     } halves[] = {{"ward_gmd", 1, 1}, {"beckmann", 3, 3},  {"ggx", 1, 1},       {"ggx", 0.5f, 2},
                   {"ggx", 3, 3},      {"ashikhmin", 1, 1}, {"ashikhmin", 0, 0}, {"ashikhmin", 3, 0.5f}};
-    size_t i;
     mcst_start(argc, argv);
     mcst_group("values, GGX");
-    for (i = 0; i < MCST_COUNT(mcst_grid_alpha); i++)
+    for (size_t i = 0; i < MCST_COUNT(mcst_grid_alpha); i++)
         if (mcst_case("D, G1, G2 of %g %g", (double)mcst_grid_alpha[i][0], (double)mcst_grid_alpha[i][1]))
             ggx_values(mcst_grid_alpha[i][0], mcst_grid_alpha[i][1], mcst_seed_for("ggx", "values", i));
-    for (i = 0; i < 8; i++)
+    for (size_t i = 0; i < 8; i++)
         if (mcst_case("%s of a wide alpha along %s", visible[i / 2], i % 2 ? "y" : "x"))
             wide_alphas(mcst_find(visible[i / 2]), i % 2 ? 1.0f : 100.0f, i % 2 ? 100.0f : 0.5f);
     if (mcst_case("ends of alpha")) ends_of_alpha();
     mcst_group("values, a cosine that cancels");
-    for (i = 0; i < MCST_COUNT(halves); i++)
+    for (size_t i = 0; i < MCST_COUNT(halves); i++)
         if (mcst_case("%s %g %g", halves[i].row, (double)halves[i].a, (double)halves[i].b))
             cancelling_cosines(mcst_find(halves[i].row), halves[i].a, halves[i].b);
     mcst_group("values, others");
-    for (i = 0; i < 6; i++)
+    for (size_t i = 0; i < 6; i++)
         if (mcst_case("constants of %s", even[i])) constants(even[i], i < 2 ? 0.1 : 0.15);
     if (mcst_case("beyond the ends")) beyond_the_ends();
     if (mcst_case("Phong's lobe of power 0 at the horizon")) even_phong();
@@ -814,7 +858,7 @@ int main(int argc, char **argv) {
     if (mcst_case("zeros behind the last entry")) zeros_behind();
     if (mcst_case("alias shares of 2^23 + 1 entries")) alias_of_many();
     mcst_group("values, rows of a map");
-    for (i = 0; i < MCST_COUNT(heights); i++)
+    for (size_t i = 0; i < MCST_COUNT(heights); i++)
         if (mcst_case("%u rows", heights[i])) rows_beside_borders(heights[i]);
     if (mcst_case("borders of rows")) borders_of_rows();
     mcst_group("values, texels of a map");

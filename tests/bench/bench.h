@@ -47,14 +47,16 @@ static inline double bench_seconds(void) {
 }
 
 static int bench_ascending(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
 static inline bench_spread bench_spread_of(double *v, int n) { /* sorts v */
-    bench_spread s;
     qsort(v, (size_t)n, sizeof *v, bench_ascending);
-    s.min = v[0], s.max = v[n - 1];
+    bench_spread s;
+    s.min = v[0];
+    s.max = v[n - 1];
     s.median = n % 2 ? v[n / 2] : 0.5 * (v[n / 2 - 1] + v[n / 2]);
     return s;
 }
@@ -62,15 +64,14 @@ static inline bench_spread bench_spread_of(double *v, int n) { /* sorts v */
 /* sink += the sum of an array of results; sums that are not finite are left out */
 static inline void bench_consume(size_t n, const float *v) {
     double sum = 0;
-    size_t i;
-    for (i = 0; i < n; i++) sum += (double)v[i];
+    for (size_t i = 0; i < n; i++) sum += (double)v[i];
     if (sum - sum == 0) bench.sink = bench.sink + sum;
 }
 
 static inline void bench_cpu(char *name, size_t size) {
     FILE *f = fopen("/proc/cpuinfo", "r");
-    char line[256];
     snprintf(name, size, "unknown processor");
+    char line[256];
     while (f && fgets(line, sizeof line, f)) {
         const char *value = strchr(line, ':');
         if (strncmp(line, "model name", 10) || !value) continue;
@@ -83,8 +84,7 @@ static inline void bench_cpu(char *name, size_t size) {
 
 static inline int bench_make_directory(const char *path) {
     char part[512];
-    size_t i;
-    for (i = 0; i < sizeof part - 1; i++) {
+    for (size_t i = 0; i < sizeof part - 1; i++) {
         if (i && (path[i] == '/' || !path[i])) {
             part[i] = 0;
             if (mkdir(part, 0777) && errno != EEXIST) return -1;
@@ -96,11 +96,9 @@ static inline int bench_make_directory(const char *path) {
 }
 
 static inline void bench_start(int argc, char **argv, const char *name) {
-    char cpu[128];
     const char *units = "";
-    int i;
     bench.out = "build/bench";
-    for (i = 1; i < argc; i++) {
+    for (int i = 1; i < argc; i++) {
         if (!strcmp(argv[i], "--quick")) bench.quick = 1;
         else if (!strcmp(argv[i], "--out") && i + 1 < argc) bench.out = argv[++i];
         else {
@@ -112,6 +110,7 @@ static inline void bench_start(int argc, char **argv, const char *name) {
         fprintf(stderr, "%s: cannot make %s: %s\n", name, bench.out, strerror(errno));
         exit(2);
     }
+    char cpu[128];
     bench_cpu(cpu, sizeof cpu);
 #if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__))
     __builtin_cpu_init();
@@ -146,7 +145,7 @@ static inline FILE *bench_csv(const char *file, const char *columns) {
 
 /* Closes a file of bench_csv; exits when not all of it was written. */
 static inline void bench_close(FILE *f, const char *file) {
-    int bad = ferror(f);
+    const int bad = ferror(f);
     if (fclose(f) || bad) {
         fprintf(stderr, "cannot write %s\n", bench_path(file));
         exit(2);
@@ -158,8 +157,8 @@ __attribute__((format(printf, 1, 2)))
 #endif
 static inline void
 bench_progress(const char *format, ...) { /* an empty text wipes the line */
-    va_list args;
     if (!isatty(STDERR_FILENO)) return;
+    va_list args;
     va_start(args, format);
     fputs("\r\033[K", stderr);
     vfprintf(stderr, format, args);

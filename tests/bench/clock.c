@@ -11,22 +11,28 @@ static double processor_ms(void) {
 }
 
 int main(int argc, char **argv) {
-    const int rounds = argc > 2 ? atoi(argv[1]) : 0, commands = argc - 2;
+    const int rounds = argc > 2 ? atoi(argv[1]) : 0;
+    const int commands = argc - 2;
+    if (rounds < 1) {
+        fprintf(stderr, "usage: clock ROUNDS COMMAND...\n");
+        return 2;
+    }
     double *ms;
-    int r, c;
-    if (rounds < 1) return fprintf(stderr, "usage: clock ROUNDS COMMAND...\n"), 2;
     ms = malloc((size_t)rounds * (size_t)commands * sizeof *ms);
     if (!ms) return 2;
-    for (r = 0; r < rounds; r++) {
-        for (c = 0; c < commands; c++) {
+    for (int r = 0; r < rounds; r++) {
+        for (int c = 0; c < commands; c++) {
             const double began = processor_ms();
             bench_progress("include: round %d of %d, command %d of %d", r + 1, rounds, c + 1, commands);
-            if (system(argv[c + 2])) return fprintf(stderr, "clock: failed: %s\n", argv[c + 2]), 1;
+            if (system(argv[c + 2])) {
+                fprintf(stderr, "clock: failed: %s\n", argv[c + 2]);
+                return 1;
+            }
             ms[c * rounds + r] = processor_ms() - began;
         }
     }
     bench_progress("%s", "");
-    for (c = 0; c < commands; c++) {
+    for (int c = 0; c < commands; c++) {
         const bench_spread s = bench_spread_of(ms + c * rounds, rounds);
         printf("%.1f %.1f %.1f\n", s.median, s.min, s.max);
     }

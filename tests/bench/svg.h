@@ -31,8 +31,7 @@ typedef struct {
 
 /* Widens [*lo, *hi] (empty while lo > hi) to hold the values that a log or linear axis can show. */
 static inline void svg_range(int n, const double *v, int is_log, double *lo, double *hi) {
-    int i;
-    for (i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++) {
         if (!isfinite(v[i]) || (is_log && v[i] <= 0)) continue;
         if (*lo > *hi) *lo = *hi = v[i];
         if (v[i] < *lo) *lo = v[i];
@@ -52,13 +51,14 @@ static inline void svg_text(svg_plot *p, const char *s) {
 }
 
 static inline double svg_at(const svg_plot *p, int axis, double v) {
-    double lo = p->min[axis], hi = p->max[axis], t;
-    t = p->log[axis] ? (log(v) - log(lo)) / (log(hi) - log(lo)) : (v - lo) / (hi - lo);
+    const double lo = p->min[axis];
+    const double hi = p->max[axis];
+    const double t = p->log[axis] ? (log(v) - log(lo)) / (log(hi) - log(lo)) : (v - lo) / (hi - lo);
     return axis ? SVG_B - t * (SVG_B - SVG_T) : SVG_L + t * (SVG_R - SVG_L);
 }
 
 static inline void svg_tick(svg_plot *p, int axis, double v, int labelled) {
-    double at = svg_at(p, axis, v);
+    const double at = svg_at(p, axis, v);
     const int e = (int)floor(log10(fabs(v) > 0 ? fabs(v) : 1) + 1e-9);
     if (!(v >= p->min[axis] * (1 - 1e-9) && v <= p->max[axis] * (1 + 1e-9)) && v != 0) return;
     fprintf(p->out, "<path d=\"M%.1f %.1f%c%.1f\" stroke=\"%s\"/>\n", axis ? (double)SVG_L : at, axis ? at : (double)SVG_B,
@@ -75,21 +75,25 @@ static inline void svg_tick(svg_plot *p, int axis, double v, int labelled) {
 }
 
 static inline void svg_axis(svg_plot *p, int axis) {
-    double lo = p->min[axis], hi = p->max[axis];
+    const double lo = p->min[axis];
+    const double hi = p->max[axis];
     if (p->log[axis]) {
-        int first = (int)floor(log10(lo)), last = (int)ceil(log10(hi)), e, m;
-        double decades = log10(hi / lo);
-        int step = decades > 20 ? 5 : decades > 10 ? 2 : 1;
-        for (e = first; e <= last; e++) {
-            for (m = 1; m < 10; m++) {
-                int labelled = m == 1 ? e % step == 0 : decades < 1.3 ? m < 6 || m == 8 : decades < 3 && (m == 2 || m == 5);
+        const int first = (int)floor(log10(lo));
+        const int last = (int)ceil(log10(hi));
+        const double decades = log10(hi / lo);
+        const int step = decades > 20 ? 5 : decades > 10 ? 2 : 1;
+        for (int e = first; e <= last; e++) {
+            for (int m = 1; m < 10; m++) {
+                const int labelled = m == 1 ? e % step == 0 : decades < 1.3 ? m < 6 || m == 8 : decades < 3 && (m == 2 || m == 5);
                 if (m == 1 || decades < 8) svg_tick(p, axis, (double)m * pow(10, e), labelled);
             }
         }
     } else {
-        double raw = (hi - lo) / 7, unit = pow(10, floor(log10(raw))), step = raw / unit > 5 ? 10 : raw / unit > 2 ? 5 : 2, v;
+        const double raw = (hi - lo) / 7;
+        const double unit = pow(10, floor(log10(raw)));
+        double step = raw / unit > 5 ? 10 : raw / unit > 2 ? 5 : 2;
         step *= raw / unit > 1 ? unit : unit / 2;
-        for (v = ceil(lo / step - 1e-9); v * step <= hi * (1 + 1e-9); v++) svg_tick(p, axis, v * step + 0.0, 1);
+        for (double v = ceil(lo / step - 1e-9); v * step <= hi * (1 + 1e-9); v++) svg_tick(p, axis, v * step + 0.0, 1);
     }
 }
 
@@ -97,8 +101,12 @@ static inline void svg_begin(svg_plot *p, const char *file, const char *title, c
                              int ylog, double xmin, double xmax, double ymin, double ymax) {
     p->out = fopen(file, "w");
     p->series = p->row = p->boxes = 0;
-    p->log[0] = xlog, p->log[1] = ylog;
-    p->min[0] = xmin, p->max[0] = xmax, p->min[1] = ymin, p->max[1] = ymax;
+    p->log[0] = xlog;
+    p->log[1] = ylog;
+    p->min[0] = xmin;
+    p->max[0] = xmax;
+    p->min[1] = ymin;
+    p->max[1] = ymax;
     if (!p->out) return;
     fprintf(p->out, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\"", SVG_W, SVG_H,
             SVG_W, SVG_H);
@@ -136,7 +144,8 @@ static inline void svg_style(svg_plot *p, int series) {
     static const char *const colour[SVG_SHAPES] = {"#000000", "#0072b2", "#d55e00", "#009e73",
                                                    "#cc79a7", "#56b4e9", "#8a6d00", "#7f3c8d"};
     const char *c = colour[series % SVG_SHAPES];
-    int open = series % SVG_SHAPES > 4 || series / SVG_SHAPES % 2; /* crosses have no inside; from the ninth on, hollow marks */
+    const int open =
+        series % SVG_SHAPES > 4 || series / SVG_SHAPES % 2; /* crosses have no inside; from the ninth on, hollow marks */
     fprintf(p->out, "<g stroke=\"%s\" fill=\"%s\" stroke-width=\"1.8\">\n", c, open ? "white" : c);
 }
 
@@ -146,13 +155,14 @@ static inline void svg_stroke(svg_plot *p, int series, double x, double y) { /* 
 }
 
 static inline void svg_series(svg_plot *p, const char *name, int n, const double *x, const double *y, int kind) {
-    int i, s = p->series++, joined = 0;
-    double ly = SVG_T + 14.0 + 24.0 * p->row++;
+    const int s = p->series++;
+    int joined = 0;
+    const double ly = SVG_T + 14.0 + 24.0 * p->row++;
     if (!p->out) return;
     svg_style(p, s);
     fprintf(p->out, "<g clip-path=\"url(#frame)\">\n");
     if (kind != SVG_POINTS) {
-        for (i = 0; i < n; i++) {
+        for (int i = 0; i < n; i++) {
             if (!isfinite(x[i]) || !isfinite(y[i]) || (p->log[0] && x[i] <= 0) || (p->log[1] && y[i] <= 0)) continue;
             if (!joined++) svg_stroke(p, s, svg_at(p, 0, x[i]), svg_at(p, 1, y[i]));
             else fprintf(p->out, "L%.1f %.1f", svg_at(p, 0, x[i]), svg_at(p, 1, y[i]));
@@ -160,7 +170,7 @@ static inline void svg_series(svg_plot *p, const char *name, int n, const double
         if (joined) fprintf(p->out, "\"/>\n");
     }
     fprintf(p->out, "</g>\n");
-    for (i = 0; i < n && kind != SVG_LINE_ONLY; i++)
+    for (int i = 0; i < n && kind != SVG_LINE_ONLY; i++)
         if (x[i] >= p->min[0] && x[i] <= p->max[0] && y[i] >= p->min[1] && y[i] <= p->max[1])
             svg_mark(p, s, svg_at(p, 0, x[i]), svg_at(p, 1, y[i]));
     if (kind != SVG_POINTS) {
@@ -174,15 +184,17 @@ static inline void svg_series(svg_plot *p, const char *name, int n, const double
 }
 
 static inline void svg_keep_box(svg_plot *p, double left, double right, double top, double bottom) {
-    double *box;
     if (p->boxes == SVG_BOXES) return;
-    box = p->box[p->boxes];
-    box[0] = left, box[1] = right, box[2] = top, box[3] = bottom, p->boxes++;
+    double *box = p->box[p->boxes];
+    box[0] = left;
+    box[1] = right;
+    box[2] = top;
+    box[3] = bottom;
+    p->boxes++;
 }
 
 static inline void svg_keep_off(svg_plot *p, int n, const double *x, const double *y) {
-    int i;
-    for (i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++) {
         const double at[2] = {svg_at(p, 0, x[i]), svg_at(p, 1, y[i])};
         svg_keep_box(p, at[0] - 6, at[0] + 6, at[1] - 6, at[1] + 6);
     }
@@ -192,11 +204,12 @@ static inline void svg_label(svg_plot *p, double x, double y, const char *s) {
     /* tried in this order; from the point, negative: the text ends there */
     static const int place[][2] = {{9, 4}, {-9, 4}, {9, 16}, {9, -8}, {-9, 16}, {-9, -8}, {9, -20}, {-9, -20}};
     const double width = 6.7 * (double)strlen(s); /* of the widest of the fonts, at 12 pixels */
-    int i, k;
     if (!p->out) return;
-    for (i = 0; i < (int)(sizeof place / sizeof *place); i++) {
-        const double left = svg_at(p, 0, x) + place[i][0] - (place[i][0] < 0 ? width : 0), base = svg_at(p, 1, y) + place[i][1];
+    for (int i = 0; i < (int)(sizeof place / sizeof *place); i++) {
+        const double left = svg_at(p, 0, x) + place[i][0] - (place[i][0] < 0 ? width : 0);
+        const double base = svg_at(p, 1, y) + place[i][1];
         if (left < SVG_L || left + width > SVG_R || base > SVG_B || base < SVG_T + 12) continue;
+        int k;
         for (k = 0; k < p->boxes; k++)
             if (left < p->box[k][1] && left + width > p->box[k][0] && base - 10 < p->box[k][3] && base + 3 > p->box[k][2]) break;
         if (k < p->boxes) continue;
@@ -212,7 +225,7 @@ static inline void svg_label(svg_plot *p, double x, double y, const char *s) {
 }
 
 static inline void svg_note(svg_plot *p, const char *s) {
-    double ly = SVG_T + 19.0 + 24.0 * p->row++;
+    const double ly = SVG_T + 19.0 + 24.0 * p->row++;
     if (!p->out) return;
     fprintf(p->out, "<text fill=\"#303030\" font-size=\"13\" x=\"%d\" y=\"%.1f\">", SVG_R + 16, ly);
     svg_text(p, s);
@@ -221,10 +234,9 @@ static inline void svg_note(svg_plot *p, const char *s) {
 
 /* 0 when the whole file was written. */
 static inline int svg_end(svg_plot *p) {
-    int bad;
     if (!p->out) return -1;
     fprintf(p->out, "</svg>\n");
-    bad = ferror(p->out);
+    const int bad = ferror(p->out);
     return fclose(p->out) || bad ? -1 : 0;
 }
 #endif

@@ -27,27 +27,31 @@ typedef struct {
 
 static inline text_sample text_line(float x, float pdf) {
     text_sample s;
-    s.x = x, s.y = s.z = 0, s.pdf = pdf;
+    s.x = x;
+    s.y = s.z = 0;
+    s.pdf = pdf;
     return s;
 }
 static inline text_sample text_linear(float a, float b, float u) {
-    float x = a == b ? u : (a - sqrtf(a * a + (b * b - a * a) * u)) / (a - b);
+    const float x = a == b ? u : (a - sqrtf(a * a + (b * b - a * a) * u)) / (a - b);
     return text_line(x, 2 * ((1 - x) * a + x * b) / (a + b));
 }
 static inline text_sample text_tent(float r, float u) {
-    float x = u < 0.5f ? r * (sqrtf(2 * u) - 1) : r * (1 - sqrtf(2 * (1 - u)));
+    const float x = u < 0.5f ? r * (sqrtf(2 * u) - 1) : r * (1 - sqrtf(2 * (1 - u)));
     return text_line(x, (1 - fabsf(x) / r) / r);
 }
 static inline text_sample text_exponential(float rate, float u) {
-    float x = -logf(1 - u) / rate;
+    const float x = -logf(1 - u) / rate;
     return text_line(x, rate * expf(-rate * x));
 }
 static inline text_sample text_truncexp(float rate, float xmax, float u) {
-    float c = 1 - expf(-rate * xmax), x = -logf(1 - u * c) / rate;
+    const float c = 1 - expf(-rate * xmax);
+    const float x = -logf(1 - u * c) / rate;
     return text_line(x, rate * expf(-rate * x) / c);
 }
 static inline float text_erfinv(float x) {
-    float w = -logf((1 - x) * (1 + x)), p;
+    float w = -logf((1 - x) * (1 + x));
+    float p;
     if (w < 5) {
         w = w - 2.5f;
         p = 2.81022636e-08f;
@@ -74,54 +78,70 @@ static inline float text_erfinv(float x) {
     return p * x;
 }
 static inline text_sample text_normal(float mean, float sd, float u) {
-    float x = mean + sd * 1.41421356f * text_erfinv(2 * u - 1), d = x - mean;
+    const float x = mean + sd * 1.41421356f * text_erfinv(2 * u - 1);
+    const float d = x - mean;
     return text_line(x, expf(-d * d / (2 * sd * sd)) / (sd * sqrtf(2 * TEXT_PI)));
 }
 static inline text_sample text_logistic(float mean, float s, float u) {
-    float x = mean + s * logf(u / (1 - u)), e = expf(-fabsf(x - mean) / s);
+    const float x = mean + s * logf(u / (1 - u));
+    const float e = expf(-fabsf(x - mean) / s);
     return text_line(x, e / (s * (1 + e) * (1 + e)));
 }
 static inline text_sample text_power(float n, float u) {
-    float x = powf(u, 1 / (n + 1));
+    const float x = powf(u, 1 / (n + 1));
     return text_line(x, (n + 1) * powf(x, n));
 }
 static inline text_sample text_evenpower(float n, float u) { /* the signed root: powf of a negative number is NaN */
-    float v = 2 * u - 1, x = copysignf(powf(fabsf(v), 1 / (n + 1)), v);
+    const float v = 2 * u - 1;
+    const float x = copysignf(powf(fabsf(v), 1 / (n + 1)), v);
     return text_line(x, 0.5f * (n + 1) * powf(fabsf(x), n));
 }
 
 /* ---- plane and directions ---- */
 
 static inline text_sample text_disk(float R, float u1, float u2) {
-    float r = R * sqrtf(u1), phi = 2 * TEXT_PI * u2;
+    const float r = R * sqrtf(u1);
+    const float phi = 2 * TEXT_PI * u2;
     text_sample s;
-    s.x = r * cosf(phi), s.y = r * sinf(phi), s.z = 0;
+    s.x = r * cosf(phi);
+    s.y = r * sinf(phi);
+    s.z = 0;
     s.pdf = 1 / (TEXT_PI * R * R);
     return s;
 }
 static inline text_sample text_concentric(float R, float u1, float u2) {
-    float a = 2 * u1 - 1, b = 2 * u2 - 1, r, phi;
+    const float a = 2 * u1 - 1;
+    const float b = 2 * u2 - 1;
     text_sample s;
     s.x = s.y = s.z = 0;
     s.pdf = 1 / (TEXT_PI * R * R);
     if (a == 0 && b == 0) return s;
-    if (fabsf(a) > fabsf(b)) r = a, phi = TEXT_PI / 4 * (b / a);
-    else r = b, phi = TEXT_PI / 2 - TEXT_PI / 4 * (a / b);
-    s.x = R * r * cosf(phi), s.y = R * r * sinf(phi);
+    float r, phi;
+    if (fabsf(a) > fabsf(b)) {
+        r = a;
+        phi = TEXT_PI / 4 * (b / a);
+    } else {
+        r = b;
+        phi = TEXT_PI / 2 - TEXT_PI / 4 * (a / b);
+    }
+    s.x = R * r * cosf(phi);
+    s.y = R * r * sinf(phi);
     return s;
 }
 static inline text_sample text_direction(float sine, float cosine, float phi, float pdf) {
     text_sample s;
-    s.x = sine * cosf(phi), s.y = sine * sinf(phi), s.z = cosine;
+    s.x = sine * cosf(phi);
+    s.y = sine * sinf(phi);
+    s.z = cosine;
     s.pdf = pdf;
     return s;
 }
 static inline text_sample text_sphere(float u1, float u2) {
-    float z = 1 - 2 * u1;
+    const float z = 1 - 2 * u1;
     return text_direction(sqrtf(1 - z * z), z, 2 * TEXT_PI * u2, 1 / (4 * TEXT_PI));
 }
 static inline text_sample text_hemisphere(float u1, float u2) {
-    float z = 1 - u1;
+    const float z = 1 - u1;
     return text_direction(sqrtf(1 - z * z), z, 2 * TEXT_PI * u2, 1 / (2 * TEXT_PI));
 }
 static inline text_sample text_cosine(float u1, float u2) {
@@ -131,14 +151,15 @@ static inline text_sample text_cosine(float u1, float u2) {
     return s;
 }
 static inline text_sample text_cone(float k, float u1, float u2) {
-    float least = 1 - k, z = (1 - u1) + u1 * least;
+    const float least = 1 - k;
+    const float z = (1 - u1) + u1 * least;
     return text_direction(sqrtf(1 - z * z), z, 2 * TEXT_PI * u2, 1 / (2 * TEXT_PI * (1 - least)));
 }
 
 /* ---- lobes ---- */
 
 static inline text_sample text_phong_lobe(float n, float u1, float u2) {
-    float theta = acosf(powf(1 - u1, 1 / (n + 1)));
+    const float theta = acosf(powf(1 - u1, 1 / (n + 1)));
     return text_direction(sinf(theta), cosf(theta), 2 * TEXT_PI * u2, (n + 1) / (2 * TEXT_PI) * powf(cosf(theta), n));
 }
 /* phi with tan(phi) = stretch tan(2 pi u), in the quadrant of 2 pi u */
@@ -149,57 +170,87 @@ static inline float text_azimuth(float stretch, float u) {
     return phi;
 }
 static inline text_sample text_ward_h_iso(float a, float u1, float u2) {
-    float theta = atanf(a * sqrtf(-logf(1 - u1))), c = cosf(theta), t = tanf(theta);
+    const float theta = atanf(a * sqrtf(-logf(1 - u1)));
+    const float c = cosf(theta);
+    const float t = tanf(theta);
     return text_direction(sinf(theta), c, 2 * TEXT_PI * u2, expf(-t * t / (a * a)) / (TEXT_PI * a * a * c * c * c));
 }
 static inline text_sample text_ward_h(float ax, float ay, float u1, float u2) {
-    float phi = text_azimuth(ay / ax, u2), x = cosf(phi), y = sinf(phi), e = x * x / (ax * ax) + y * y / (ay * ay);
-    float theta = atanf(sqrtf(-logf(1 - u1) / e)), c = cosf(theta), t = tanf(theta);
+    const float phi = text_azimuth(ay / ax, u2);
+    const float x = cosf(phi);
+    const float y = sinf(phi);
+    const float e = x * x / (ax * ax) + y * y / (ay * ay);
+    const float theta = atanf(sqrtf(-logf(1 - u1) / e));
+    const float c = cosf(theta);
+    const float t = tanf(theta);
     return text_direction(sinf(theta), c, phi, expf(-t * t * e) / (TEXT_PI * ax * ay * c * c * c));
 }
 static inline text_sample text_beckmann_h_iso(float a, float u1, float u2) {
-    float theta = atanf(sqrtf(-a * a * logf(1 - u1))), c = cosf(theta), t = tanf(theta);
-    float d = expf(-t * t / (a * a)) / (TEXT_PI * a * a * c * c * c * c);
+    const float theta = atanf(sqrtf(-a * a * logf(1 - u1)));
+    const float c = cosf(theta);
+    const float t = tanf(theta);
+    const float d = expf(-t * t / (a * a)) / (TEXT_PI * a * a * c * c * c * c);
     return text_direction(sinf(theta), c, 2 * TEXT_PI * u2, d * c);
 }
 static inline text_sample text_beckmann_h(float ax, float ay, float u1, float u2) {
-    float phi = text_azimuth(ay / ax, u2), x = cosf(phi), y = sinf(phi), e = x * x / (ax * ax) + y * y / (ay * ay);
-    float theta = atanf(sqrtf(-logf(1 - u1) / e)), c = cosf(theta), t = tanf(theta);
-    float d = expf(-t * t * e) / (TEXT_PI * ax * ay * c * c * c * c);
+    const float phi = text_azimuth(ay / ax, u2);
+    const float x = cosf(phi);
+    const float y = sinf(phi);
+    const float e = x * x / (ax * ax) + y * y / (ay * ay);
+    const float theta = atanf(sqrtf(-logf(1 - u1) / e));
+    const float c = cosf(theta);
+    const float t = tanf(theta);
+    const float d = expf(-t * t * e) / (TEXT_PI * ax * ay * c * c * c * c);
     return text_direction(sinf(theta), c, phi, d * c);
 }
 static inline text_sample text_ggx_h_iso(float a, float u1, float u2) {
-    float theta = atanf(a * sqrtf(u1 / (1 - u1))), c = cosf(theta), q = (a * a - 1) * c * c + 1;
+    const float theta = atanf(a * sqrtf(u1 / (1 - u1)));
+    const float c = cosf(theta);
+    const float q = (a * a - 1) * c * c + 1;
     return text_direction(sinf(theta), c, 2 * TEXT_PI * u2, a * a * c / (TEXT_PI * q * q));
 }
 static inline text_sample text_ggx_h(float ax, float ay, float u1, float u2) {
-    float phi = text_azimuth(ay / ax, u2), x = cosf(phi), y = sinf(phi), e = x * x / (ax * ax) + y * y / (ay * ay);
-    float theta = atanf(sqrtf(u1 / (1 - u1) / e)), c = cosf(theta), t = tanf(theta), q = c * c * (1 + t * t * e);
+    const float phi = text_azimuth(ay / ax, u2);
+    const float x = cosf(phi);
+    const float y = sinf(phi);
+    const float e = x * x / (ax * ax) + y * y / (ay * ay);
+    const float theta = atanf(sqrtf(u1 / (1 - u1) / e));
+    const float c = cosf(theta);
+    const float t = tanf(theta);
+    const float q = c * c * (1 + t * t * e);
     return text_direction(sinf(theta), c, phi, c / (TEXT_PI * ax * ay * q * q));
 }
 static inline text_sample text_ashikhmin_h_iso(float n, float u1, float u2) {
-    float c = powf(1 - u1, 1 / (n + 1));
+    const float c = powf(1 - u1, 1 / (n + 1));
     return text_direction(sqrtf(1 - c * c), c, 2 * TEXT_PI * u2, (n + 1) / (2 * TEXT_PI) * powf(c, n));
 }
 static inline text_sample text_ashikhmin_h(float nu, float nv, float u1, float u2) {
-    float phi = text_azimuth(sqrtf((nu + 1) / (nv + 1)), u2), x = cosf(phi), y = sinf(phi), e = nu * x * x + nv * y * y;
-    float c = powf(1 - u1, 1 / (e + 1));
+    const float phi = text_azimuth(sqrtf((nu + 1) / (nv + 1)), u2);
+    const float x = cosf(phi);
+    const float y = sinf(phi);
+    const float e = nu * x * x + nv * y * y;
+    const float c = powf(1 - u1, 1 / (e + 1));
     return text_direction(sqrtf(1 - c * c), c, phi, sqrtf((nu + 1) * (nv + 1)) / (2 * TEXT_PI) * powf(c, e));
 }
 
 /* ---- reflected ---- */
 
 static inline text_sample text_reflect(text_vec wo, text_sample h) {
-    float d = wo.x * h.x + wo.y * h.y + wo.z * h.z;
+    const float d = wo.x * h.x + wo.y * h.y + wo.z * h.z;
     text_sample s;
-    s.x = 2 * d * h.x - wo.x, s.y = 2 * d * h.y - wo.y, s.z = 2 * d * h.z - wo.z;
+    s.x = 2 * d * h.x - wo.x;
+    s.y = 2 * d * h.y - wo.y;
+    s.z = 2 * d * h.z - wo.z;
     s.pdf = d > 0 && s.z > 0 ? h.pdf / (4 * d) : 0;
     return s;
 }
 static inline text_sample text_phong(float n, text_vec wo, float u1, float u2) {
-    text_sample l = text_phong_lobe(n, u1, u2), s;
+    text_sample l = text_phong_lobe(n, u1, u2);
     text_vec r = {-wo.x, -wo.y, wo.z};
-    float sign = copysignf(1, r.z), a = -1 / (sign + r.z), b = r.x * r.y * a;
+    const float sign = copysignf(1, r.z);
+    const float a = -1 / (sign + r.z);
+    const float b = r.x * r.y * a;
+    text_sample s;
     s.x = (1 + sign * r.x * r.x * a) * l.x + b * l.y + r.x * l.z;
     s.y = sign * b * l.x + (sign + r.y * r.y * a) * l.y + r.y * l.z;
     s.z = -sign * r.x * l.x - r.y * l.y + r.z * l.z;
@@ -210,40 +261,54 @@ static inline text_sample text_phong(float n, text_vec wo, float u1, float u2) {
 /* ---- visible normals ---- */
 
 static inline float text_ggx_d(float ax, float ay, text_sample h) {
-    float q = h.x * h.x / (ax * ax) + h.y * h.y / (ay * ay) + h.z * h.z;
+    const float q = h.x * h.x / (ax * ax) + h.y * h.y / (ay * ay) + h.z * h.z;
     return 1 / (TEXT_PI * ax * ay * q * q);
 }
 static inline text_sample text_normalised(float x, float y, float z) {
-    float l = sqrtf(x * x + y * y + z * z);
+    const float l = sqrtf(x * x + y * y + z * z);
     text_sample s;
-    s.x = x / l, s.y = y / l, s.z = z / l, s.pdf = 0;
+    s.x = x / l;
+    s.y = y / l;
+    s.z = z / l;
+    s.pdf = 0;
     return s;
 }
 static inline text_sample text_ggx_vndf_h(float ax, float ay, text_vec v, float u1, float u2) {
-    text_sample e = text_normalised(ax * v.x, ay * v.y, v.z), h;
-    float l = e.x * e.x + e.y * e.y, k = 1 / sqrtf(l);
+    text_sample e = text_normalised(ax * v.x, ay * v.y, v.z);
+    const float l = e.x * e.x + e.y * e.y;
+    const float k = 1 / sqrtf(l);
     text_vec t1 = {l > 0 ? -e.y * k : 1, l > 0 ? e.x * k : 0, 0};
     text_vec t2 = {e.y * t1.z - e.z * t1.y, e.z * t1.x - e.x * t1.z, e.x * t1.y - e.y * t1.x};
-    float r = sqrtf(u1), phi = 2 * TEXT_PI * u2, a = r * cosf(phi), b = r * sinf(phi), s = 0.5f * (1 + e.z), c, g1, d;
+    const float r = sqrtf(u1);
+    const float phi = 2 * TEXT_PI * u2;
+    const float a = r * cosf(phi);
+    float b = r * sinf(phi);
+    const float s = 0.5f * (1 + e.z);
     b = (1 - s) * sqrtf(1 - a * a) + s * b;
-    c = sqrtf(fmaxf(0, 1 - a * a - b * b));
-    h = text_normalised(ax * (a * t1.x + b * t2.x + c * e.x), ay * (a * t1.y + b * t2.y + c * e.y),
-                        fmaxf(0, a * t1.z + b * t2.z + c * e.z));
-    g1 = 1 / (1 + (-1 + sqrtf(1 + (ax * ax * v.x * v.x + ay * ay * v.y * v.y) / (v.z * v.z))) / 2);
-    d = v.x * h.x + v.y * h.y + v.z * h.z;
+    const float c = sqrtf(fmaxf(0, 1 - a * a - b * b));
+    text_sample h = text_normalised(ax * (a * t1.x + b * t2.x + c * e.x), ay * (a * t1.y + b * t2.y + c * e.y),
+                                    fmaxf(0, a * t1.z + b * t2.z + c * e.z));
+    const float g1 = 1 / (1 + (-1 + sqrtf(1 + (ax * ax * v.x * v.x + ay * ay * v.y * v.y) / (v.z * v.z))) / 2);
+    const float d = v.x * h.x + v.y * h.y + v.z * h.z;
     h.pdf = g1 * fmaxf(0, d) * text_ggx_d(ax, ay, h) / v.z;
     return h;
 }
 static inline float text_bound(float ax, float ay, text_vec v) {
-    float a = fminf(fminf(ax, ay), 1), s = 1 + sqrtf(v.x * v.x + v.y * v.y), a2 = a * a, s2 = s * s;
+    const float a = fminf(fminf(ax, ay), 1);
+    const float s = 1 + sqrtf(v.x * v.x + v.y * v.y);
+    const float a2 = a * a;
+    const float s2 = s * s;
     return (1 - a2) * s2 / (s2 + a2 * v.z * v.z);
 }
 static inline text_sample text_ggx_bounded_h(float ax, float ay, text_vec v, float u1, float u2) {
-    text_sample i = text_normalised(ax * v.x, ay * v.y, v.z), h;
-    float k = text_bound(ax, ay, v), b = k * i.z, phi = 2 * TEXT_PI * u1, z = (1 - u2) * (1 + b) - b;
-    float sine = sqrtf(fminf(fmaxf(1 - z * z, 0), 1)), t;
-    h = text_normalised(ax * (i.x + sine * cosf(phi)), ay * (i.y + sine * sinf(phi)), i.z + z);
-    t = sqrtf(ax * v.x * ax * v.x + ay * v.y * ay * v.y + v.z * v.z);
+    text_sample i = text_normalised(ax * v.x, ay * v.y, v.z);
+    const float k = text_bound(ax, ay, v);
+    const float b = k * i.z;
+    const float phi = 2 * TEXT_PI * u1;
+    const float z = (1 - u2) * (1 + b) - b;
+    const float sine = sqrtf(fminf(fmaxf(1 - z * z, 0), 1));
+    text_sample h = text_normalised(ax * (i.x + sine * cosf(phi)), ay * (i.y + sine * sinf(phi)), i.z + z);
+    const float t = sqrtf(ax * v.x * ax * v.x + ay * v.y * ay * v.y + v.z * v.z);
     h.pdf = text_ggx_d(ax, ay, h) / (2 * (k * v.z + t)) * 4 * (v.x * h.x + v.y * h.y + v.z * h.z);
     return h;
 }
@@ -254,11 +319,10 @@ typedef struct {
     uint64_t state, inc;
 } text_pcg32;
 static inline uint32_t text_pcg32_next(text_pcg32 *rng) {
-    uint64_t old = rng->state;
-    uint32_t x, rot;
+    const uint64_t old = rng->state;
     rng->state = old * 6364136223846793005u + rng->inc;
-    x = (uint32_t)(((old >> 18u) ^ old) >> 27u);
-    rot = (uint32_t)(old >> 59u);
+    const uint32_t x = (uint32_t)(((old >> 18u) ^ old) >> 27u);
+    const uint32_t rot = (uint32_t)(old >> 59u);
     return (x >> rot) | (x << ((32u - rot) & 31u));
 }
 static inline float text_pcg32_float(text_pcg32 *rng) { return (float)text_pcg32_next(rng) * 0x1p-32f; }

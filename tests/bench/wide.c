@@ -7,9 +7,8 @@
 #if BENCH_W == 8
 #define LOOP(name, statement)                                              \
     static void name(size_t n, const float *in, float *out, float *out2) { \
-        size_t i;                                                          \
         (void)out2;                                                        \
-        for (i = 0; i < n; i += 8) {                                       \
+        for (size_t i = 0; i < n; i += 8) {                                \
             const V x = LOAD(in + i);                                      \
             statement;                                                     \
         }                                                                  \

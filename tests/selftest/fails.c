@@ -2,7 +2,7 @@
 #include "mcs_test.h"
 
 int main(int argc, char **argv) {
-    double zero = 0;
+    const double zero = 0;
     mcst_start(argc, argv);
     mcst_group("selftest");
     if (mcst_case("holds")) CHECK(zero <= 1, "zero = %g", zero);

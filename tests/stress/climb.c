@@ -31,12 +31,18 @@ static float ulps(float x, int n) {
 static float clamped(double x, double least, double most) { return (float)fmin(fmax(x, least), most); }
 
 static void set_direction(float w[3], double cosine, double azimuth) {
-    const double c = fmin(fmax(cosine, 1.0001e-15), 1), s = sqrt((1 - c) * (1 + c));
-    w[0] = (float)(s * cos(azimuth)), w[1] = (float)(s * sin(azimuth)), w[2] = (float)c;
+    const double c = fmin(fmax(cosine, 1.0001e-15), 1);
+    const double s = sqrt((1 - c) * (1 + c));
+    w[0] = (float)(s * cos(azimuth));
+    w[1] = (float)(s * sin(azimuth));
+    w[2] = (float)c;
 }
 /* A sine of wo below 1e-24 may count as 0. */
 static int unit_enough(const float w[3]) {
-    const double x = (double)w[0], y = (double)w[1], z = (double)w[2], r2 = x * x + y * y;
+    const double x = (double)w[0];
+    const double y = (double)w[1];
+    const double z = (double)w[2];
+    const double r2 = x * x + y * y;
     return !(r2 > 0 && r2 < 1e-48) && w[2] >= 1e-15f && fabs(sqrt(x * x + y * y + z * z) - 1) <= EPS;
 }
 static void any_direction(float w[3]) { set_direction(w, one_in(2) ? flat() : pow(10, -15 * flat()), 6.283185307179586 * flat()); }
@@ -69,7 +75,9 @@ static float move_u(float u) {
 static const mcst_claim *claim; /* what is under attack */
 
 static float any_parameter(int i) {
-    const double least = claim->least[i], most = claim->most[i], floor_ = fmax(least, 1e-30);
+    const double least = claim->least[i];
+    const double most = claim->most[i];
+    const double floor_ = fmax(least, 1e-30);
     if (!(most > least)) return (float)least;
     if (least == 0 && one_in(20)) return 0;
     if (one_in(2)) return clamped(pow(10, 4 * flat() - 2.5), least, most); /* what materials have */
@@ -91,7 +99,8 @@ static void any_point(const mcst_row *row, point *t) {
     t->p[1] = row->params > 1 && one_in(3) ? clamped((double)t->p[0], claim->least[1], claim->most[1]) : any_parameter(1);
     t->p[5] = 1;
     if (row->has_wo) any_direction(t->p + 3);
-    t->u[0] = any_u(), t->u[1] = any_u();
+    t->u[0] = any_u();
+    t->u[1] = any_u();
     any_direction(t->w);
     if (!one_in(4)) sample_at(row, t);
 }
@@ -113,20 +122,30 @@ static void move_point(const mcst_row *row, int figure, point *t) {
 /* The greatest density: of a grid of u, then uphill from there. Only its logarithm counts. */
 static double peak_of(const mcst_row *row, const float *p) {
     enum { GRID = 16 };
-    ld at[2] = {0.5L, 0.5L}, peak = 0, step;
-    int i, j;
-    for (i = 0; i < GRID; i++)
-        for (j = 0; j < GRID; j++) {
-            const ld u1 = 1 - (ld)((GRID - i) * (GRID - i)) / (GRID * GRID), u2 = ((ld)j + 0.25L) / GRID;
+    ld at[2] = {0.5L, 0.5L};
+    ld peak = 0;
+    for (int i = 0; i < GRID; i++)
+        for (int j = 0; j < GRID; j++) {
+            const ld u1 = 1 - (ld)((GRID - i) * (GRID - i)) / (GRID * GRID);
+            const ld u2 = ((ld)j + 0.25L) / GRID;
             const ld pdf = row->truth.pdf_u(p, u1, u2);
-            if (pdf > peak && pdf < 1e300L) peak = pdf, at[0] = u1, at[1] = u2;
+            if (pdf > peak && pdf < 1e300L) {
+                peak = pdf;
+                at[0] = u1;
+                at[1] = u2;
+            }
         }
-    for (step = 1.0L / GRID; step > 1e-6L; step *= 0.6L)
-        for (i = 0; i < 8; i++) {
+    for (ld step = 1.0L / GRID; step > 1e-6L; step *= 0.6L)
+        for (int i = 0; i < 8; i++) {
             static const int way[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
-            const ld u1 = fminl(fmaxl(at[0] + step * way[i][0], 0), 1 - (ld)EPS), u2 = at[1] + step * way[i][1];
+            const ld u1 = fminl(fmaxl(at[0] + step * way[i][0], 0), 1 - (ld)EPS);
+            const ld u2 = at[1] + step * way[i][1];
             const ld pdf = row->truth.pdf_u(p, u1, u2 - floorl(u2));
-            if (pdf > peak && pdf < 1e300L) peak = pdf, at[0] = u1, at[1] = u2 - floorl(u2);
+            if (pdf > peak && pdf < 1e300L) {
+                peak = pdf;
+                at[0] = u1;
+                at[1] = u2 - floorl(u2);
+            }
         }
     return (double)peak;
 }
@@ -135,10 +154,9 @@ static double peak_of(const mcst_row *row, const float *p) {
  * for only where the score would be above `least` without it. Densities above FLT_MAX saturate; subnormal ones are only small. */
 static double in_units(const mcst_row *row, const float *p, float got, qd want, qd density, double least) {
     const double error = fabs((double)(((qd)got - want) / want));
-    double peak;
     if (!(want < (qd)FLT_MAX && want > (qd)FLT_MIN)) return 0;
     if (!(error / 1e-6 > least)) return error / 1e-6;
-    peak = fmax(peak_of(row, p), (double)density);
+    const double peak = fmax(peak_of(row, p), (double)density);
     return (error - 0x1p-126 * peak / (double)density) / (1e-6 * (1 + log(peak / (double)density)));
 }
 /* The exponent e of a Gaussian half-vector; 0 of another row. */
@@ -156,9 +174,12 @@ static double at_direction(const mcst_row *row, const setting *s, const float *p
 
 /* What the weight of a sample belongs to: the half-vector of the exact point and the float direction wi. */
 static qd weight_of_sample(const setting *s, qd u1, qd u2, q3 wi) {
-    const qd zo = s->wo.z, a = s->a, b = s->b;
+    const qd zo = s->wo.z;
+    const qd a = s->a;
+    const qd b = s->b;
     const q3 h = s->half ? half_vector_map(s, u1, u2) : wi;
-    const qd d = dot(s->wo, h), c = h.z;
+    const qd d = dot(s->wo, h);
+    const qd c = h.z;
     switch (s->id) {
     case ID_phong: return (a + 2) / (a + 1) * wi.z;
     case ID_ward_gmd: return 2 * wi.z / (zo + wi.z);
@@ -182,8 +203,8 @@ static double weight_error(float got, qd want) {
 static double score_of(const mcst_row *row, int figure, const point *t, double least) {
     const setting s = setting_of(row, t->p);
     q3 x = vec(t->w[0], t->w[1], t->w[2]);
-    qd pdf, f;
-    float out[5] = {0}, got = 0;
+    float out[5] = {0};
+    float got = 0;
     if (is_of_u(figure)) row->fn[0].sample(t->p, &t->u[0], &t->u[1], out);
     if (figure == CLAIM_LENGTH) {
         const double l2 = (double)out[0] * (double)out[0] + (double)out[1] * (double)out[1] + (double)out[2] * (double)out[2];
@@ -193,6 +214,7 @@ static double score_of(const mcst_row *row, int figure, const point *t, double l
         if (!(out[3] > 0) || out[2] < 1e-15f) return 0;
         return weight_error(out[4], weight_of_sample(&s, t->u[0], t->u[1], vec(out[0], out[1], out[2])));
     }
+    qd pdf;
     if (figure == CLAIM_PDF_U) {
         exact_map(row, &s, t->u[0], t->u[1], &x);
         if (row->shape == MCST_IS_BRDF && !(out[3] > 0) && x.z <= 40 * (qd)EPS) return 0; /* lost, or nearly */
@@ -208,7 +230,7 @@ static double score_of(const mcst_row *row, int figure, const point *t, double l
         if (row->shape == MCST_IS_VLOBE && got == 0) return 0; /* the rim of the cap */
         return at_direction(row, &s, t->p, x, got, pdf, pdf, least);
     }
-    f = exact_value(&s, x);
+    const qd f = exact_value(&s, x);
     if (figure == CLAIM_EVAL) {
         row->fn[0].eval(t->p, t->w, &got);
         return at_direction(row, &s, t->p, x, got, f, pdf, least);
@@ -234,49 +256,53 @@ static const struct {
 
 static double climb(const mcst_row *row, int figure, int starts, int steps, point *at) {
     double best = -1;
-    int i;
-    for (i = 0; i < (int)MCST_COUNT(known) && one_in(2); i++)
-        if (strcmp(known[i].row, row->name) == 0) *at = known[i].at, best = score_of(row, figure, at, best);
-    for (i = 0; i < starts; i++) {
+    for (int i = 0; i < (int)MCST_COUNT(known) && one_in(2); i++)
+        if (strcmp(known[i].row, row->name) == 0) {
+            *at = known[i].at;
+            best = score_of(row, figure, at, best);
+        }
+    for (int i = 0; i < starts; i++) {
         point t;
-        double score;
         any_point(row, &t);
-        score = score_of(row, figure, &t, best);
-        if (score > best) best = score, *at = t;
+        const double score = score_of(row, figure, &t, best);
+        if (score > best) {
+            best = score;
+            *at = t;
+        }
     }
-    for (i = 0; i < steps; i++) {
+    for (int i = 0; i < steps; i++) {
         point t = *at;
-        double score;
         move_point(row, figure, &t);
-        score = score_of(row, figure, &t, best);
-        if (score > best) best = score, *at = t;
+        const double score = score_of(row, figure, &t, best);
+        if (score > best) {
+            best = score;
+            *at = t;
+        }
     }
     return best;
 }
 
 int main(int argc, char **argv) {
     const double scale = mcst_scale();
-    size_t i;
-    int k, n;
     exact_start();
     if (scale >= 1) mcst.seed = (uint64_t)time(NULL) / 86400;
     mcst_start(argc, argv);
-    for (i = 0; i < MCST_COUNT(mcst_claims); i++) {
+    for (size_t i = 0; i < MCST_COUNT(mcst_claims); i++) {
         const mcst_row *row = mcst_rows;
-        char group[64];
         claim = &mcst_claims[i];
         while (strcmp(row->name, claim->row) != 0) row++;
         if (row->dim < 3) continue;
+        char group[64];
         snprintf(group, sizeof group, row->params ? "%s %g to %g" : "%s", row->name, claim->least[0], claim->most[0]);
         mcst_group(group);
-        for (k = 0; k < CLAIMS; k++) {
+        for (int k = 0; k < CLAIMS; k++) {
             const int climbs = (int)ceil(CLIMBS * scale);
             double worst = 0;
-            point at;
             char where[320] = "";
             if (claim->claim[k] == 0 || !mcst_case("%s", mcst_claim_name[k])) continue;
             state = mcst_seed_for(row->name, mcst_claim_name[k], 0);
-            for (n = 0; n < climbs; n++) {
+            for (int n = 0; n < climbs; n++) {
+                point at;
                 const double score = climb(row, k, 100, 500, &at);
                 if (score > worst) {
                     worst = score;

@@ -17,7 +17,9 @@ static qd pi; /* exact_start() sets it */
 
 static inline q3 vec(qd x, qd y, qd z) {
     q3 v;
-    v.x = x, v.y = y, v.z = z;
+    v.x = x;
+    v.y = y;
+    v.z = z;
     return v;
 }
 static inline qd dot(q3 a, q3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -29,7 +31,8 @@ static inline qd square(qd x) { return x * x; }
 
 /* The direction with versine m = 1 - cos(theta), by the half angle: a versine of 2^-149 is no less than any other. */
 static inline q3 at_versine(qd m, qd phi) {
-    const qd half = m / 2, sine = 2 * sqrtq(half * (1 - half));
+    const qd half = m / 2;
+    const qd sine = 2 * sqrtq(half * (1 - half));
     return vec(sine * cosq(phi), sine * sinq(phi), 1 - m);
 }
 static inline q3 at_tangent2(qd tan2, qd phi) {
@@ -56,16 +59,20 @@ static inline qd ggx_d(qd ax, qd ay, q3 h) {
     return h.z > 0 ? 1 / (pi * ax * ay * c * c * c * c * square(1 + tan2_of(h) * per_alpha2(ax, ay, h))) : 0;
 }
 static inline qd ashikhmin_h(qd nu, qd nv, q3 h) {
-    const qd r2 = h.x * h.x + h.y * h.y, c = h.z / len(h), s = r2 > 0 ? (nu * h.x * h.x + nv * h.y * h.y) / r2 : 0;
+    const qd r2 = h.x * h.x + h.y * h.y;
+    const qd c = h.z / len(h);
+    const qd s = r2 > 0 ? (nu * h.x * h.x + nv * h.y * h.y) / r2 : 0;
     return h.z > 0 ? sqrtq((nu + 1) * (nv + 1)) / (2 * pi) * expq(s * logq(c)) : 0;
 }
 static inline qd ggx_lambda(qd ax, qd ay, q3 w) { return (sqrtq(1 + alpha2_of(ax, ay, w) * tan2_of(w)) - 1) / 2; }
 static inline qd beckmann_lambda(qd ax, qd ay, q3 w) {
-    const qd spread = sqrtq(alpha2_of(ax, ay, w) * tan2_of(w)), a = 1 / spread;
+    const qd spread = sqrtq(alpha2_of(ax, ay, w) * tan2_of(w));
+    const qd a = 1 / spread;
     return spread > 0 ? (expq(-a * a) / (a * sqrtq(pi)) - erfcq(a)) / 2 : 0;
 }
 static inline qd bound(qd ax, qd ay, q3 wo) { /* Eto and Tokuyoshi 2023 */
-    const qd a = fminq(fminq(ax, ay), 1), s = 1 + sqrtq(wo.x * wo.x + wo.y * wo.y);
+    const qd a = fminq(fminq(ax, ay), 1);
+    const qd s = 1 + sqrtq(wo.x * wo.x + wo.y * wo.y);
     return (1 - a * a) * s * s / (s * s + a * a * wo.z * wo.z);
 }
 /* The view direction where the surface is a hemisphere. */
@@ -76,15 +83,17 @@ static inline q3 stretched(qd ax, qd ay, q3 wo) {
 static inline q3 mirror(q3 wo, q3 h) { return add(times(2 * dot(wo, h), h), times(-1, wo)); }
 
 static inline qd normal_quantile(qd u) { /* bisection to a start, then Newton: the cumulative is erfc(-z / sqrt 2) / 2 */
-    qd lo = -14, hi = 14, z;
-    int i;
+    qd lo = -14;
+    qd hi = 14;
     if (u > 0.5) return -normal_quantile(1 - u);
-    for (i = 0; i < 12; i++) {
+    qd z;
+    for (int i = 0; i < 12; i++) {
         z = (lo + hi) / 2;
         if (erfcq(-z / sqrtq(2)) / 2 < u) lo = z;
         else hi = z;
     }
-    for (i = 0, z = (lo + hi) / 2; i < 7; i++) z -= (erfcq(-z / sqrtq(2)) / 2 - u) * sqrtq(2 * pi) * expq(z * z / 2);
+    z = (lo + hi) / 2;
+    for (int i = 0; i < 7; i++) z -= (erfcq(-z / sqrtq(2)) / 2 - u) * sqrtq(2 * pi) * expq(z * z / 2);
     return z;
 }
 
@@ -103,9 +112,16 @@ static inline setting setting_of(const mcst_row *row, const float *p) {
     s.id = (int)(row - mcst_rows);
     s.half = row->shape == MCST_IS_BRDF && s.id != ID_phong;
     s.visible = strstr(row->name, "vndf") ? 1 : strstr(row->name, "bounded") ? 2 : 0;
-    s.a = p[0], s.b = p[1];
-    if (row->coord == MCST_SLOPES) s.a = fminf(fmaxf(p[0], 1e-7f), 1e4f), s.b = fminf(fmaxf(p[1], 1e-7f), 1e4f);
-    if (row->coord == MCST_COSPOWER) s.a = fminf(p[0], 1e9f), s.b = fminf(p[1], 1e9f);
+    s.a = p[0];
+    s.b = p[1];
+    if (row->coord == MCST_SLOPES) {
+        s.a = fminf(fmaxf(p[0], 1e-7f), 1e4f);
+        s.b = fminf(fmaxf(p[1], 1e-7f), 1e4f);
+    }
+    if (row->coord == MCST_COSPOWER) {
+        s.a = fminf(p[0], 1e9f);
+        s.b = fminf(p[1], 1e9f);
+    }
     s.wo = vec(p[3], p[4], p[5]);
     return s;
 }
@@ -135,8 +151,10 @@ static inline qd half_vector_density(const setting *s, q3 h) {
     const qd c = h.z / len(h);
     if (!(h.z > 0)) return 0;
     if (s->visible) {
-        const q3 i = stretched(s->a, s->b, s->wo), m = vec(h.x / s->a, h.y / s->b, h.z);
-        const qd od = dot(s->wo, h) / len(h), t = len(vec(s->a * s->wo.x, s->b * s->wo.y, s->wo.z));
+        const q3 i = stretched(s->a, s->b, s->wo);
+        const q3 m = vec(h.x / s->a, h.y / s->b, h.z);
+        const qd od = dot(s->wo, h) / len(h);
+        const qd t = len(vec(s->a * s->wo.x, s->b * s->wo.y, s->wo.z));
         if (!(od > 0 && s->wo.z > 0)) return 0;
         if (s->visible == 1) return ggx_d(s->a, s->b, h) * od / (s->wo.z * (1 + ggx_lambda(s->a, s->b, s->wo)));
         if (2 * dot(i, m) * m.z / dot(m, m) - i.z < -bound(s->a, s->b, s->wo) * i.z) return 0; /* below the cap */
@@ -147,8 +165,11 @@ static inline qd half_vector_density(const setting *s, q3 h) {
 }
 
 static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2, q3 *x) {
-    const qd a = s->a, b = s->b, least = 0x1p-25;
-    const qd d = 2 * u1 - 1, e = 2 * u2 - 1;
+    const qd a = s->a;
+    const qd b = s->b;
+    const qd least = 0x1p-25;
+    const qd d = 2 * u1 - 1;
+    const qd e = 2 * u2 - 1;
     *x = vec(0, 0, 0);
     switch (s->id) {
     case ID_linear: x->x = u1 > 0 ? u1 * (a + b) / (a + sqrtq(a * a * (1 - u1) + b * b * u1)) : 0; return;
@@ -159,12 +180,15 @@ static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2
     case ID_logistic: x->x = a + b * logq(fmaxq(u1, least) / (1 - u1)); return;
     case ID_power: x->x = u1 > 0 ? expq(logq(u1) / (a + 1)) : 0; return;
     case ID_evenpower: x->x = d != 0 ? copysignq(expq(logq(fabsq(d)) / (a + 1)), d) : 0; return;
-    case ID_disk: x->x = a * sqrtq(u1) * cosq(2 * pi * u2), x->y = a * sqrtq(u1) * sinq(2 * pi * u2); return;
+    case ID_disk:
+        x->x = a * sqrtq(u1) * cosq(2 * pi * u2);
+        x->y = a * sqrtq(u1) * sinq(2 * pi * u2);
+        return;
     case ID_concentric: {
-        const qd r = fabsq(d) > fabsq(e) ? d : e, phi = r == 0                ? 0
-                                                        : fabsq(d) > fabsq(e) ? pi / 4 * (e / d)
-                                                                              : pi / 2 - pi / 4 * (d / e);
-        x->x = a * r * cosq(phi), x->y = a * r * sinq(phi);
+        const qd r = fabsq(d) > fabsq(e) ? d : e;
+        const qd phi = r == 0 ? 0 : fabsq(d) > fabsq(e) ? pi / 4 * (e / d) : pi / 2 - pi / 4 * (d / e);
+        x->x = a * r * cosq(phi);
+        x->y = a * r * sinq(phi);
         return;
     }
     case ID_sphere: *x = at_versine(2 * u1, 2 * pi * u2); return;
@@ -186,7 +210,9 @@ static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2
 }
 
 static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
-    const qd a = s->a, b = s->b, z = b > 0 ? (x.x - a) / b : 0;
+    const qd a = s->a;
+    const qd b = s->b;
+    const qd z = b > 0 ? (x.x - a) / b : 0;
     switch (s->id) {
     case ID_linear: return x.x >= 0 && x.x <= 1 ? 2 * (a * (1 - x.x) + b * x.x) / (a + b) : 0;
     case ID_tent: return fabsq(x.x) <= a ? (1 - fabsq(x.x) / a) / a : 0;
@@ -202,7 +228,9 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
     case ID_hemisphere: return x.z > 0 ? 1 / (2 * pi) : 0;
     case ID_cosine: return x.z > 0 ? x.z / pi : 0;
     case ID_cone: { /* the versine is tan(theta/2) sin(theta) */
-        const qd r2 = x.x * x.x + x.y * x.y, l = len(x), m = x.z > 0 ? r2 / (l * (l + x.z)) : 1 - x.z / l;
+        const qd r2 = x.x * x.x + x.y * x.y;
+        const qd l = len(x);
+        const qd m = x.z > 0 ? r2 / (l * (l + x.z)) : 1 - x.z / l;
         return m <= a ? 1 / (2 * pi * a) : 0;
     }
     case ID_phong_lobe: return x.z > 0 ? (a + 1) / (2 * pi) * expq(-a / 2 * log1pq(tan2_of(x))) : 0;
@@ -227,7 +255,11 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
 /* f of a BRDF, wo and wi above the surface. */
 static inline qd exact_value(const setting *s, q3 wi) {
     const q3 h = add(s->wo, wi);
-    const qd zo = s->wo.z, zi = wi.z, a = s->a, b = s->b, gauss = expq(-tan2_of(h) * per_alpha2(a, b, h)) / (pi * a * b);
+    const qd zo = s->wo.z;
+    const qd zi = wi.z;
+    const qd a = s->a;
+    const qd b = s->b;
+    const qd gauss = expq(-tan2_of(h) * per_alpha2(a, b, h)) / (pi * a * b);
     switch (s->id) {
     case ID_phong: {
         const q3 r = vec(-s->wo.x, -s->wo.y, s->wo.z);

@@ -27,11 +27,14 @@ typedef struct {
 static double all_evaluations;
 
 static int proper(tally *t, float v) { /* finite and not negative */
-    t->nans += isnan(v) != 0, t->infinities += isinf(v) != 0, t->negative += v < 0;
+    t->nans += isnan(v) != 0;
+    t->infinities += isinf(v) != 0;
+    t->negative += v < 0;
     return v >= 0 && v <= FLT_MAX;
 }
 static int finite(tally *t, float v) {
-    t->nans += isnan(v) != 0, t->infinities += isinf(v) != 0;
+    t->nans += isnan(v) != 0;
+    t->infinities += isinf(v) != 0;
     return fabsf(v) <= FLT_MAX;
 }
 
@@ -41,20 +44,29 @@ typedef struct {
 } arguments;
 
 static void make_arguments(const mcst_row *row, uint64_t *state, arguments *a) {
-    const uint64_t pick = mcst_mix(state), which = mcst_mix(state);
-    const float *g = row->grid[pick % row->grid_size], *o = mcst_incidence[(pick >> 32) % MCST_COUNT(mcst_incidence)];
+    const uint64_t pick = mcst_mix(state);
+    const uint64_t which = mcst_mix(state);
+    const float *g = row->grid[pick % row->grid_size];
+    const float *o = mcst_incidence[(pick >> 32) % MCST_COUNT(mcst_incidence)];
     const uint64_t mask = which & (which >> 12); /* each bit set in a quarter of the cases */
-    float azimuth, r;
-    int i;
-    a->p[0] = g[0], a->p[1] = g[1], a->p[2] = 0;
-    r = sqrtf((1 - o[0]) * (1 + o[0]));
-    a->p[3] = pick & 0x100000 ? r * 0.6f : -r * 0.8f, a->p[4] = pick & 0x100000 ? -r * 0.8f : r * 0.6f, a->p[5] = o[0];
+    a->p[0] = g[0];
+    a->p[1] = g[1];
+    a->p[2] = 0;
+    float r = sqrtf((1 - o[0]) * (1 + o[0]));
+    a->p[3] = pick & 0x100000 ? r * 0.6f : -r * 0.8f;
+    a->p[4] = pick & 0x100000 ? -r * 0.8f : r * 0.6f;
+    a->p[5] = o[0];
     mcst_uniform(state, 1, &a->u[0], &a->u[1]);
+    float azimuth;
     mcst_uniform(state, 1, &azimuth, &a->x[2]);
     r = sqrtf((1 - a->x[2]) * (1 + a->x[2]));
-    a->x[0] = r * (2 * azimuth - 1), a->x[1] = r * 2 * sqrtf(azimuth * (1 - azimuth));
-    if (!row->has_wo) a->p[3] = a->p[4] = 0, a->p[5] = 1;
-    for (i = 0; i < 11; i++) {
+    a->x[0] = r * (2 * azimuth - 1);
+    a->x[1] = r * 2 * sqrtf(azimuth * (1 - azimuth));
+    if (!row->has_wo) {
+        a->p[3] = a->p[4] = 0;
+        a->p[5] = 1;
+    }
+    for (int i = 0; i < 11; i++) {
         float *slot = i < 6 ? &a->p[i] : i < 8 ? &a->u[i - 6] : &a->x[i - 8];
         if (i == 2 || (i < 6 && i >= row->params && !(row->has_wo && i >= 3))) continue;
         if (mask >> i & 1) *slot = st_hostile(mcst_mix(state));
@@ -64,8 +76,8 @@ static void make_arguments(const mcst_row *row, uint64_t *state, arguments *a) {
 /* By the header: 1 bad, 0 good, -1 open. */
 static int worse(int a, int b) { return a == 1 || b == 1 ? 1 : a ? a : b; }
 static int setting_bad(const mcst_row *row, const float *p) {
-    int bad = 0, i;
-    for (i = 0; i < row->params; i++) bad = worse(bad, st_parameter_bad(row, i, p[i]));
+    int bad = 0;
+    for (int i = 0; i < row->params; i++) bad = worse(bad, st_parameter_bad(row, i, p[i]));
     if (row->coord == MCST_UNIT && p[0] == 0 && p[1] == 0) bad = 1;
     if (row->has_wo) bad = worse(bad, st_above_bad(p[3], p[4], p[5]));
     return bad;
@@ -85,8 +97,8 @@ static int point_bad(const mcst_row *row, const float *x) {
 
 /* s: x, y, z, pdf, weight of a sample. */
 static void check_sample(const mcst_row *row, tally *t, const arguments *a, int bad, const float s[5]) {
-    int i, sound = 1;
-    for (i = 0; i < row->dim; i++) sound &= finite(t, s[i]);
+    int sound = 1;
+    for (int i = 0; i < row->dim; i++) sound &= finite(t, s[i]);
     sound &= proper(t, s[3]) & proper(t, s[4]);
     CHECK(sound, SHOWN);
     if (row->dim == 3) {
@@ -94,7 +106,8 @@ static void check_sample(const mcst_row *row, tally *t, const arguments *a, int 
         const double l2 = (double)s[0] * (double)s[0] + (double)s[1] * (double)s[1] + (double)s[2] * (double)s[2];
         const double o2 = (double)a->p[3] * (double)a->p[3] + (double)a->p[4] * (double)a->p[4] + (double)a->p[5] * (double)a->p[5];
         const double off = row->shape != MCST_IS_BRDF || st_above_bad(a->p[3], a->p[4], a->p[5]) == 1 ? 0 : fabs(sqrt(o2) - 1);
-        const int due = off <= 0x1p-22, unit = fabs(sqrt(l2) - 1) <= 4 * 0x1p-24 + off;
+        const int due = off <= 0x1p-22;
+        const int unit = fabs(sqrt(l2) - 1) <= 4 * 0x1p-24 + off;
         t->not_unit += due && !unit;
         CHECK(!due || unit, SHOWN);
     }
@@ -125,33 +138,38 @@ static void print_tally(const char *name, const tally *t) {
 
 /* Every function of a row, 8 lanes with arguments of their own. */
 static void check_lanes(const mcst_row *row, const mcst_fns *fn, uint64_t seed, long rounds, tally *t) {
-    float p[MCST_P * LANES], u[2 * LANES], x[3 * LANES], s[5 * LANES], v[3][2 * LANES];
-    arguments a[LANES];
-    long k;
-    int i, l;
+    float s[5 * LANES];
     memset(s, 0, sizeof s);
-    for (k = 0; k < rounds; k++) {
-        for (l = 0; l < LANES; l++) {
+    float p[MCST_P * LANES], u[2 * LANES], x[3 * LANES], v[3][2 * LANES];
+    arguments a[LANES];
+    for (long k = 0; k < rounds; k++) {
+        for (int l = 0; l < LANES; l++) {
             make_arguments(row, &seed, &a[l]);
-            for (i = 0; i < MCST_P; i++) p[i * LANES + l] = a[l].p[i];
-            for (i = 0; i < 2; i++) u[i * LANES + l] = a[l].u[i];
-            for (i = 0; i < 3; i++) x[i * LANES + l] = a[l].x[i];
+            for (int i = 0; i < MCST_P; i++) p[i * LANES + l] = a[l].p[i];
+            for (int i = 0; i < 2; i++) u[i * LANES + l] = a[l].u[i];
+            for (int i = 0; i < 3; i++) x[i * LANES + l] = a[l].x[i];
         }
         fn->sample(p, u, u + LANES, s);
         fn->pdf(p, x, v[0]);
-        if (fn->invert) fn->invert(p, x, v[1]);
-        else fn->eval(p, x, v[1]), fn->weight(p, x, v[2]);
-        for (l = 0; l < LANES; l++) {
-            const int setting = setting_bad(row, a[l].p), at = worse(setting, point_bad(row, a[l].x));
+        if (fn->invert) {
+            fn->invert(p, x, v[1]);
+        } else {
+            fn->eval(p, x, v[1]);
+            fn->weight(p, x, v[2]);
+        }
+        for (int l = 0; l < LANES; l++) {
+            const int setting = setting_bad(row, a[l].p);
+            const int at = worse(setting, point_bad(row, a[l].x));
             float one[5];
-            for (i = 0; i < 5; i++) one[i] = s[i * LANES + l];
+            for (int i = 0; i < 5; i++) one[i] = s[i * LANES + l];
             check_sample(row, t, &a[l], u_bad(row, a[l].u) ? 1 : setting, one);
             check_value(t, &a[l], at, v[0][l]);
             if (fn->invert) {
-                for (i = 0; i < row->inputs; i++) {
+                for (int i = 0; i < row->inputs; i++) {
                     const float back = v[1][i * LANES + l];
                     const int inside = back >= 0 && back < 1;
-                    t->nans += isnan(back) != 0, t->outside += !inside;
+                    t->nans += isnan(back) != 0;
+                    t->outside += !inside;
                     CHECK(inside, "invert%d %a: p %a %a, wo %a %a %a, x %a %a %a", i + 1, (double)back, (double)a[l].p[0],
                           (double)a[l].p[1], (double)a[l].p[3], (double)a[l].p[4], (double)a[l].p[5], (double)a[l].x[0],
                           (double)a[l].x[1], (double)a[l].x[2]);
@@ -168,31 +186,35 @@ static void check_lanes(const mcst_row *row, const mcst_fns *fn, uint64_t seed, 
 /* The array forms: one setting a call, arrays of any length. */
 static void check_arrays(const mcst_row *row, uint64_t seed, long calls, tally *t) {
     static float u[2][ARRAY], x[3][ARRAY], out[5][ARRAY], value[2][ARRAY];
-    long k;
-    for (k = 0; k < calls; k++) {
+    for (long k = 0; k < calls; k++) {
         const uint64_t z = mcst_mix(&seed);
         const size_t n = z % ARRAY + 1;
         float *const to[5] = {out[0], out[1], out[2], out[3], out[4]};
-        arguments all, one;
-        size_t i;
-        int j, setting;
+        arguments all;
         make_arguments(row, &seed, &all);
-        for (i = 0; i < n; i++) {
-            for (j = 0; j < 2; j++) u[j][i] = (z >> (3 * j)) % 4 ? all.u[j] : st_hostile(mcst_mix(&seed));
-            for (j = 0; j < 3; j++) x[j][i] = all.x[j];
+        arguments one;
+        for (size_t i = 0; i < n; i++) {
+            for (int j = 0; j < 2; j++) u[j][i] = (z >> (3 * j)) % 4 ? all.u[j] : st_hostile(mcst_mix(&seed));
+            for (int j = 0; j < 3; j++) x[j][i] = all.x[j];
             if (i % 4 == 0) make_arguments(row, &seed, &one);
-            all.u[0] = one.u[i % 2], all.u[1] = one.u[1 - i % 2], all.x[0] = one.x[i % 2], all.x[1] = one.x[1 - i % 2];
+            all.u[0] = one.u[i % 2];
+            all.u[1] = one.u[1 - i % 2];
+            all.x[0] = one.x[i % 2];
+            all.x[1] = one.x[1 - i % 2];
             all.x[2] = one.x[2];
         }
         memset(out, 0, sizeof out);
         row->sample_n(all.p, n, u[0], u[1], to);
-        if (row->pdf_n) row->pdf_n(all.p, n, x[0], x[1], x[2], value[0]), row->eval_n(all.p, n, x[0], x[1], x[2], value[1]);
-        setting = setting_bad(row, all.p);
-        for (i = 0; i < n; i++) {
+        if (row->pdf_n) {
+            row->pdf_n(all.p, n, x[0], x[1], x[2], value[0]);
+            row->eval_n(all.p, n, x[0], x[1], x[2], value[1]);
+        }
+        const int setting = setting_bad(row, all.p);
+        for (size_t i = 0; i < n; i++) {
             float s[5];
-            for (j = 0; j < 5; j++) s[j] = out[j][i];
-            for (j = 0; j < 2; j++) all.u[j] = u[j][i];
-            for (j = 0; j < 3; j++) all.x[j] = x[j][i];
+            for (int j = 0; j < 5; j++) s[j] = out[j][i];
+            for (int j = 0; j < 2; j++) all.u[j] = u[j][i];
+            for (int j = 0; j < 3; j++) all.x[j] = x[j][i];
             check_sample(row, t, &all, u_bad(row, all.u) ? 1 : setting, s);
             if (!row->pdf_n) continue;
             check_value(t, &all, worse(setting, point_bad(row, all.x)), value[0][i]);
@@ -211,14 +233,18 @@ static mcs8_f eight(const float *v) {
 }
 static mcs8_vec3 eight3(float v[][LANES]) {
     mcs8_vec3 r;
-    r.x = eight(v[0]), r.y = eight(v[1]), r.z = eight(v[2]);
+    r.x = eight(v[0]);
+    r.y = eight(v[1]);
+    r.z = eight(v[2]);
     return r;
 }
 static double dot(float a[3][LANES], float b[3][LANES], int l) {
     return (double)a[0][l] * (double)b[0][l] + (double)a[1][l] * (double)b[1][l] + (double)a[2][l] * (double)b[2][l];
 }
 static void put(float out[3][LANES], mcs8_vec3 v) {
-    memcpy(out[0], &v.x, sizeof v.x), memcpy(out[1], &v.y, sizeof v.y), memcpy(out[2], &v.z, sizeof v.z);
+    memcpy(out[0], &v.x, sizeof v.x);
+    memcpy(out[1], &v.y, sizeof v.y);
+    memcpy(out[2], &v.z, sizeof v.z);
 }
 
 enum { COS_D, SCHLICK, BALANCE, POWER_, MIX, REFLECT_PDF, GGX_D, GGX_G1, GGX_G2, FROM_SIN2, VALUES };
@@ -228,42 +254,50 @@ static const char *const value_name[VALUES] = {"cos_d",       "schlick", "mis_ba
 
 static void check_vectors(uint64_t seed, long rounds, tally *t) {
     const mcst_row *row = mcst_find("ggx");
-    float in[11][LANES], out[7][3][LANES], value[VALUES][LANES]; /* arguments as in `arguments`, in order */
-    arguments a;
-    long k;
-    int i, j, l;
-    for (k = 0; k < rounds; k++) {
-        mcs8_frame f;
-        mcs8_ggx m;
-        mcs8_vec3 v, w;
-        mcs8_f r[VALUES];
-        for (l = 0; l < LANES; l++) {
+    float in[11][LANES], out[7][3][LANES];
+    for (long k = 0; k < rounds; k++) {
+        for (int l = 0; l < LANES; l++) {
+            arguments a;
             make_arguments(row, &seed, &a);
-            for (i = 0; i < 11; i++) in[i][l] = i < 6 ? a.p[i] : i < 8 ? a.u[i - 6] : a.x[i - 8];
+            for (int i = 0; i < 11; i++) in[i][l] = i < 6 ? a.p[i] : i < 8 ? a.u[i - 6] : a.x[i - 8];
         }
-        v = eight3(in + 3), w = eight3(in + 8), m = mcs8_ggx_make(eight(in[0]), eight(in[1]));
-        f = mcs8_frame_make(v);
-        put(out[0], f.s), put(out[1], f.t), put(out[2], f.n);
-        put(out[3], mcs8_to_world(&f, w)), put(out[4], mcs8_to_local(&f, w));
-        put(out[5], mcs8_reflect(v, w)), put(out[6], mcs8_half(v, w));
-        r[COS_D] = mcs8_cos_d(v, w), r[SCHLICK] = mcs8_schlick(eight(in[6]), eight(in[10]));
-        r[BALANCE] = mcs8_mis_balance(eight(in[6]), eight(in[7])), r[POWER_] = mcs8_mis_power(eight(in[6]), eight(in[7]));
+        const mcs8_vec3 v = eight3(in + 3);
+        const mcs8_vec3 w = eight3(in + 8);
+        mcs8_ggx m = mcs8_ggx_make(eight(in[0]), eight(in[1]));
+        mcs8_frame f = mcs8_frame_make(v);
+        put(out[0], f.s);
+        put(out[1], f.t);
+        put(out[2], f.n);
+        put(out[3], mcs8_to_world(&f, w));
+        put(out[4], mcs8_to_local(&f, w));
+        put(out[5], mcs8_reflect(v, w));
+        put(out[6], mcs8_half(v, w));
+        mcs8_f r[VALUES];
+        r[COS_D] = mcs8_cos_d(v, w);
+        r[SCHLICK] = mcs8_schlick(eight(in[6]), eight(in[10]));
+        r[BALANCE] = mcs8_mis_balance(eight(in[6]), eight(in[7]));
+        r[POWER_] = mcs8_mis_power(eight(in[6]), eight(in[7]));
         r[MIX] = mcs8_mix_pdf(eight(in[6]), eight(in[7]), eight(in[8]));
         r[REFLECT_PDF] = mcs8_reflect_pdf(eight(in[6]), eight(in[9]));
-        r[GGX_D] = mcs8_ggx_d(&m, w), r[GGX_G1] = mcs8_ggx_g1(&m, w), r[GGX_G2] = mcs8_ggx_g2(&m, v, w);
+        r[GGX_D] = mcs8_ggx_d(&m, w);
+        r[GGX_G1] = mcs8_ggx_g1(&m, w);
+        r[GGX_G2] = mcs8_ggx_g2(&m, v, w);
         r[FROM_SIN2] = mcs8_cone_from_sin2(eight(in[7]));
+        float value[VALUES][LANES]; /* arguments as in `arguments`, in order */
         memcpy(value, r, sizeof value);
-        for (l = 0; l < LANES; l++) {
+        for (int l = 0; l < LANES; l++) {
             const double n2 = dot(out[2], out[2], l);
             int sound = 1;
-            for (i = 0; i < 7; i++)
-                for (j = 0; j < 3; j++) sound &= finite(t, out[i][j][l]);
+            for (int i = 0; i < 7; i++)
+                for (int j = 0; j < 3; j++) sound &= finite(t, out[i][j][l]);
             CHECK(sound, "frame, reflect or half of %a %a %a and %a %a %a", (double)in[3][l], (double)in[4][l], (double)in[5][l],
                   (double)in[8][l], (double)in[9][l], (double)in[10][l]);
             /* a frame is as orthonormal as n is unit: to 4 ulp beyond that */
-            for (i = 0; i < 3; i++) {
-                const double l2 = dot(out[i], out[i], l), across = dot(out[i], out[(i + 1) % 3], l);
-                const int due = fabs(n2 - 1) <= 0x1p-22, unit = fabs(sqrt(l2) - 1) <= 4 * 0x1p-23 && fabs(across) <= 4 * 0x1p-23;
+            for (int i = 0; i < 3; i++) {
+                const double l2 = dot(out[i], out[i], l);
+                const double across = dot(out[i], out[(i + 1) % 3], l);
+                const int due = fabs(n2 - 1) <= 0x1p-22;
+                const int unit = fabs(sqrt(l2) - 1) <= 4 * 0x1p-23 && fabs(across) <= 4 * 0x1p-23;
                 t->not_unit += due && !unit;
                 CHECK(!due || unit, "frame of %a %a %a: length %.9g, across %.3g", (double)in[3][l], (double)in[4][l],
                       (double)in[5][l], sqrt(l2), across);
@@ -272,7 +306,7 @@ static void check_vectors(uint64_t seed, long rounds, tally *t) {
             t->not_unit += !sound;
             CHECK(sound, "half of %a %a %a and %a %a %a", (double)in[3][l], (double)in[4][l], (double)in[5][l], (double)in[8][l],
                   (double)in[9][l], (double)in[10][l]);
-            for (i = 0; i < VALUES; i++) {
+            for (int i = 0; i < VALUES; i++) {
                 const float top = value_top[i] * (value_top[i] < 3 ? 1.000001f : 1);
                 sound = proper(t, value[i][l]) && value[i][l] <= top;
                 t->outside += value[i][l] > top;
@@ -287,36 +321,45 @@ static void check_vectors(uint64_t seed, long rounds, tally *t) {
 
 static int below_one(tally *t, float v) {
     const int inside = v >= 0 && v < 1;
-    t->nans += isnan(v) != 0, t->outside += !inside;
+    t->nans += isnan(v) != 0;
+    t->outside += !inside;
     return inside;
 }
 
 static void check_numbers(uint64_t seed, long rounds, tally *t) {
     static float out[ARRAY];
-    long k;
-    size_t i;
-    for (k = 0; k < rounds; k++) {
-        const uint64_t z = mcst_mix(&seed), y = mcst_mix(&seed);
-        const uint32_t a = (uint32_t)z >> (z >> 59), b = (uint32_t)y >> (y >> 59), c = (uint32_t)(y >> 32), d = (uint32_t)(z >> 32);
-        const mcs_vec2 s = mcs_stratified(c, a, b, d), r = mcs_r2(c, d);
+    for (long k = 0; k < rounds; k++) {
+        const uint64_t z = mcst_mix(&seed);
+        const uint64_t y = mcst_mix(&seed);
+        const uint32_t a = (uint32_t)z >> (z >> 59);
+        const uint32_t b = (uint32_t)y >> (y >> 59);
+        const uint32_t c = (uint32_t)(y >> 32);
+        const uint32_t d = (uint32_t)(z >> 32);
+        const mcs_vec2 s = mcs_stratified(c, a, b, d);
+        const mcs_vec2 r = mcs_r2(c, d);
         mcs_pcg32 g = mcs_pcg32_make(z, y);
         float v[9];
-        v[0] = s.x, v[1] = s.y, v[2] = r.x, v[3] = r.y;
-        v[4] = mcs_latin(c, a, b, d), v[5] = mcs_sobol(c, a, d), v[6] = mcs_u01(c), v[7] = mcs_u01_open(c);
+        v[0] = s.x;
+        v[1] = s.y;
+        v[2] = r.x;
+        v[3] = r.y;
+        v[4] = mcs_latin(c, a, b, d);
+        v[5] = mcs_sobol(c, a, d);
+        v[6] = mcs_u01(c);
+        v[7] = mcs_u01_open(c);
         mcs_pcg32_advance(&g, z ^ y);
         v[8] = mcs_pcg32_float(&g);
-        for (i = 0; i < 9; i++)
+        for (size_t i = 0; i < 9; i++)
             CHECK(below_one(t, v[i]), "function %d: %a for %u %u %u %u", (int)i, (double)v[i], (unsigned)c, (unsigned)a,
                   (unsigned)b, (unsigned)d);
         CHECK(v[7] > 0, "u01_open of %u is 0", (unsigned)c);
         if (k % 64 == 0) {
             const size_t n = z % ARRAY + 1;
-            int which;
-            for (which = 0; which < 3; which++) {
+            for (int which = 0; which < 3; which++) {
                 if (which == 0) mcs_philox_fill_n(z, y, n, out);
                 else if (which == 1) mcs_sobol_n(c, a, d, n, out);
                 else mcs_pcg32_fill_n(&g, n, out);
-                for (i = 0; i < n; i++) CHECK(below_one(t, out[i]), "array %d: %a", which, (double)out[i]);
+                for (size_t i = 0; i < n; i++) CHECK(below_one(t, out[i]), "array %d: %a", which, (double)out[i]);
                 t->evaluations += (double)n;
             }
         }
@@ -350,10 +393,11 @@ static float counted_as(float x) { return x > FLT_MAX ? FLT_MAX : x > 0 ? x : 0;
 
 /* Entries of one of six styles, zeros among them; how many of them are bad and the sum of all as they count come back. */
 static void make_entries(float *f, uint32_t n, uint64_t *state, uint32_t *bad, long double *sum, uint32_t *some) {
-    const uint64_t style = mcst_mix(state) % 6, giant = mcst_mix(state) % n;
-    uint32_t i;
-    *bad = *some = 0, *sum = 0;
-    for (i = 0; i < n; i++) {
+    const uint64_t style = mcst_mix(state) % 6;
+    const uint64_t giant = mcst_mix(state) % n;
+    *bad = *some = 0;
+    *sum = 0;
+    for (uint32_t i = 0; i < n; i++) {
         const uint64_t z = mcst_mix(state);
         switch (style) {
         case 0: f[i] = st_hostile(z); break;
@@ -364,7 +408,8 @@ static void make_entries(float *f, uint32_t n, uint64_t *state, uint32_t *bad, l
         default: f[i] = z & 1 ? FLT_MAX : 0x1p-149f; break;
         }
         *bad += !(f[i] >= 0 && f[i] <= FLT_MAX);
-        *sum += (long double)counted_as(f[i]), *some += f[i] > 0;
+        *sum += (long double)counted_as(f[i]);
+        *some += f[i] > 0;
     }
 }
 static int lit(const float *f, uint32_t i) { return f[i] > 0; }
@@ -373,15 +418,17 @@ static void check_draws(int kind, const arena *m, const float *f, uint32_t n, in
     const mcs_pwc *pwc = (const mcs_pwc *)(const void *)m->at;
     const mcs_pwl *pwl = (const mcs_pwl *)(const void *)m->at;
     const mcs_alias *alias = (const mcs_alias *)(const void *)m->at;
-    int k;
-    for (k = 0; k < 400; k++) {
+    for (int k = 0; k < 400; k++) {
         const uint64_t z = mcst_mix(state);
-        float u = z & 3 ? (float)(z >> 40) * 0x1p-24f : st_hostile(z >> 2), x, pdf, back;
+        float u = z & 3 ? (float)(z >> 40) * 0x1p-24f : st_hostile(z >> 2);
         const int good = u >= 0 && u < 1;
         uint32_t i;
+        float x, pdf, back;
         if (kind == DISCRETE || kind == ALIAS) {
             const mcs_pick c = kind == ALIAS ? mcs_alias_sample(alias, u) : mcs_discrete_sample(pwc, u);
-            x = c.u, pdf = c.pmf, i = c.i;
+            x = c.u;
+            pdf = c.pmf;
+            i = c.i;
             CHECK(proper(t, pdf) && pdf <= 1, "%u entries, u %a: pmf %a", (unsigned)n, (double)u, (double)pdf);
             CHECK(i < n, "%u entries, u %a: entry %u", (unsigned)n, (double)u, (unsigned)i);
             CHECK(!good || pdf == (kind == ALIAS ? mcs_alias_pmf(alias, i) : mcs_discrete_pmf(pwc, i)), "u %a: pmf %a", (double)u,
@@ -391,7 +438,9 @@ static void check_draws(int kind, const arena *m, const float *f, uint32_t n, in
         } else {
             const mcs_cell c = kind == PWL ? mcs_pwl_sample(pwl, u) : mcs_pwc_sample(pwc, u);
             const float at = kind == PWL ? mcs_pwl_pdf(pwl, c.x) : mcs_pwc_pdf(pwc, c.x);
-            x = c.x, pdf = c.pdf, i = c.i;
+            x = c.x;
+            pdf = c.pdf;
+            i = c.i;
             CHECK(proper(t, pdf), "%u cells, u %a: pdf %a", (unsigned)n, (double)u, (double)pdf);
             CHECK(i < n && (double)x * n >= i && (double)x * n < (double)i + 1, "%u cells, u %a: x %a in cell %u", (unsigned)n,
                   (double)u, (double)x, (unsigned)i);
@@ -412,14 +461,15 @@ static void check_draws(int kind, const arena *m, const float *f, uint32_t n, in
 static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
     const uint32_t entries = n + (kind == PWL);
     const size_t bytes = table_bytes(kind, n);
-    arena source = arena_make(entries * sizeof(float)), copy = arena_make(source.bytes), m = arena_make(bytes);
+    arena source = arena_make(entries * sizeof(float));
+    arena copy = arena_make(source.bytes);
+    arena m = arena_make(bytes);
     float *f = (float *)(void *)source.at;
-    uint32_t bad, some, i;
+    uint32_t bad, some;
     long double sum;
-    mcs_status e;
     make_entries(f, entries, state, &bad, &sum, &some);
     memcpy(copy.at, source.at, source.bytes);
-    e = table_build(kind, &m, bytes - 1, f, n, state);
+    mcs_status e = table_build(kind, &m, bytes - 1, f, n, state);
     CHECK(e == MCS_ERR_MEMORY && untouched(m.at, bytes), "%u entries, a byte too few: %d", (unsigned)n, (int)e);
     e = table_build(kind, &m, bytes, NULL, n, state);
     CHECK(e == MCS_ERR_ARG && untouched(m.at, bytes), "no entries: %d", (int)e);
@@ -445,7 +495,7 @@ static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
         check_draws(kind, &m, f, n, e == MCS_UNIFORM, state, t);
         if (kind == DISCRETE || kind == ALIAS) {
             double all = 0;
-            for (i = 0; i < n; i++) {
+            for (uint32_t i = 0; i < n; i++) {
                 const float q = kind == ALIAS ? mcs_alias_pmf(alias, i) : mcs_discrete_pmf(head, i);
                 CHECK((q > 0) == (e == MCS_UNIFORM || lit(f, i)), "entry %u of %u, weight %a: probability %a", (unsigned)i,
                       (unsigned)n, (double)f[i], (double)q);
@@ -455,23 +505,32 @@ static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
             CHECK(fabs(all - 1) <= 0x1p-24, "probabilities add up to 1 + %g", all - 1); /* each rounded to 24 digits */
         } else {                                                                        /* arrays with exactly n places; in place */
             const size_t count = mcst_mix(state) % 70;
-            arena u = arena_make(count * sizeof(float)), x = arena_make(u.bytes), pdf = arena_make(u.bytes);
-            float *in = (float *)(void *)u.at, *ox = (float *)(void *)x.at, *op = (float *)(void *)pdf.at;
-            for (i = 0; i < count; i++) in[i] = i & 3 ? (float)(mcst_mix(state) >> 40) * 0x1p-24f : st_hostile(mcst_mix(state));
+            arena u = arena_make(count * sizeof(float));
+            arena x = arena_make(u.bytes);
+            arena pdf = arena_make(u.bytes);
+            float *in = (float *)(void *)u.at;
+            float *ox = (float *)(void *)x.at;
+            float *op = (float *)(void *)pdf.at;
+            for (uint32_t i = 0; i < count; i++)
+                in[i] = i & 3 ? (float)(mcst_mix(state) >> 40) * 0x1p-24f : st_hostile(mcst_mix(state));
             if (kind == PWL) mcs_pwl_sample_n((const mcs_pwl *)(const void *)m.at, count, in, ox, op);
             else mcs_pwc_sample_n(head, count, in, ox, op);
-            for (i = 0; i < count; i++)
+            for (uint32_t i = 0; i < count; i++)
                 CHECK(below_one(t, ox[i]) && proper(t, op[i]), "u %a: %a %a", (double)in[i], (double)ox[i], (double)op[i]);
             if (kind == PWL) mcs_pwl_sample_n((const mcs_pwl *)(const void *)m.at, count, in, in, NULL);
             else mcs_pwc_sample_n(head, count, in, in, NULL);
             CHECK(!memcmp(u.at, x.at, u.bytes), "in place is different");
             CHECK(arena_intact(&u) && arena_intact(&x) && arena_intact(&pdf), "arrays of %u: written outside", (unsigned)count);
             t->evaluations += (double)count * 2;
-            arena_free(&u), arena_free(&x), arena_free(&pdf);
+            arena_free(&u);
+            arena_free(&x);
+            arena_free(&pdf);
         }
     }
     CHECK(arena_intact(&m) && arena_intact(&source), "%u entries: written outside while drawing", (unsigned)n);
-    arena_free(&source), arena_free(&copy), arena_free(&m);
+    arena_free(&source);
+    arena_free(&copy);
+    arena_free(&m);
 }
 
 /* --- environment maps and products ------------------------------------------------------------------------------------------ */
@@ -492,18 +551,21 @@ static double luminance(const mcs_image *im, uint32_t x, uint32_t y, int *bad) {
     const int n = im->channels > 1 ? 3 : 1;
     double c[3];
     int i;
-    for (*bad = i = 0; i < n; i++) *bad |= !(p[i] >= 0 && p[i] <= FLT_MAX), c[i] = (double)counted_as(p[i]);
+    for (*bad = i = 0; i < n; i++) {
+        *bad |= !(p[i] >= 0 && p[i] <= FLT_MAX);
+        c[i] = (double)counted_as(p[i]);
+    }
     return n == 1 ? c[0] : 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
 }
 /* Weight of a texel: 1 lit, 0 black, -1 where rounding decides. Of a weight that is a sum of up to 27 floats each step rounds by
  * 2^-24 of it or, where it is subnormal, by 2^-150. */
 static int texel_lit(const mcs_image *im, uint32_t x, uint32_t y) {
     const double floor = im->floor > 0 ? (double)im->floor : 0;
-    double v = 0, slack;
-    int bad, i, j;
+    double v = 0;
+    int bad;
     if (im->bilinear) {
-        for (i = -1; i <= 1; i++)
-            for (j = -1; j <= 1; j++) {
+        for (int i = -1; i <= 1; i++)
+            for (int j = -1; j <= 1; j++) {
                 const uint32_t row = i < 0 && y > 0 ? y - 1 : i > 0 && y + 1 < im->h ? y + 1 : y;
                 const uint32_t col = (uint32_t)((int)(x + im->w) + j) % im->w;
                 v += (i ? 0.25 : 0.5) * (j ? 0.25 : 0.5) * luminance(im, col, row, &bad);
@@ -513,32 +575,41 @@ static int texel_lit(const mcs_image *im, uint32_t x, uint32_t y) {
     }
     if (!(v > 0)) return 0;
     if (im->channels == 1 && !im->bilinear && !(floor > 0)) return 1;
-    slack = 32 * (0x1p-24 * (v + floor) + 0x1p-150);
+    const double slack = 32 * (0x1p-24 * (v + floor) + 0x1p-150);
     return v > floor + slack ? 1 : v < floor - slack || floor > FLT_MAX ? 0 : -1;
 }
 
 static picture make_picture(uint64_t *state) {
-    const uint64_t z = mcst_mix(state), y = mcst_mix(state), style = z % 9;
-    const uint32_t w = z >> 8 & 7 ? 1 + (uint32_t)(z >> 16) % 70 : 1, h = z >> 11 & 7 ? 1 + (uint32_t)(z >> 24) % 40 : 1;
-    const uint32_t channels = y & 1 ? 1 : 3 + (uint32_t)(y >> 1) % 3, step = channels + (y & 16 ? (uint32_t)(y >> 5) % 3 : 0);
+    const uint64_t z = mcst_mix(state);
+    const uint64_t y = mcst_mix(state);
+    const uint64_t style = z % 9;
+    const uint32_t w = z >> 8 & 7 ? 1 + (uint32_t)(z >> 16) % 70 : 1;
+    const uint32_t h = z >> 11 & 7 ? 1 + (uint32_t)(z >> 24) % 40 : 1;
+    const uint32_t channels = y & 1 ? 1 : 3 + (uint32_t)(y >> 1) % 3;
+    const uint32_t step = channels + (y & 16 ? (uint32_t)(y >> 5) % 3 : 0);
     const uint32_t row = (w - 1) * step + channels + (y & 128 ? (uint32_t)(y >> 8) % 9 : step - channels);
-    const size_t count = (size_t)(h - 1) * row + (size_t)(w - 1) * step + channels, giant = mcst_mix(state) % ((size_t)w * h);
+    const size_t count = (size_t)(h - 1) * row + (size_t)(w - 1) * step + channels;
+    const size_t giant = mcst_mix(state) % ((size_t)w * h);
     picture p;
-    float *f, level;
-    uint32_t i, j, c;
-    int bad;
-    p.m = arena_make(count * sizeof *f), p.bad = 0, f = (float *)(void *)p.m.at;
+    float *f;
+    p.m = arena_make(count * sizeof *f);
+    p.bad = 0;
+    f = (float *)(void *)p.m.at;
     p.im = mcs_image_make(f, w, h, channels);
     p.im.bilinear = (y >> 16 & 1) != 0;
     if (step != channels || y >> 17 & 1) p.im.pixel_stride = (ptrdiff_t)step;
-    if (y >> 18 & 1) p.im.row_stride = -(ptrdiff_t)row, p.im.pixels = f + (size_t)(h - 1) * row;
-    else if (row != w * step || y >> 19 & 1) p.im.row_stride = (ptrdiff_t)row;
-    level = mcs_u01((uint32_t)mcst_mix(state));
-    for (j = 0; j < h; j++)
-        for (i = 0; i < w; i++) {
+    if (y >> 18 & 1) {
+        p.im.row_stride = -(ptrdiff_t)row;
+        p.im.pixels = f + (size_t)(h - 1) * row;
+    } else if (row != w * step || y >> 19 & 1) {
+        p.im.row_stride = (ptrdiff_t)row;
+    }
+    const float level = mcs_u01((uint32_t)mcst_mix(state));
+    for (uint32_t j = 0; j < h; j++)
+        for (uint32_t i = 0; i < w; i++) {
             float *at = (float *)(uintptr_t)texel_at(&p.im, i, j);
             const int inside = i >= w / 3 && i <= w / 2 && j >= h / 3 && j <= h / 2;
-            for (c = 0; c < channels; c++) {
+            for (uint32_t c = 0; c < channels; c++) {
                 const uint64_t r = mcst_mix(state);
                 const float u = (float)(r >> 40);
                 switch (style) {
@@ -553,6 +624,7 @@ static picture make_picture(uint64_t *state) {
                 default: at[c] = u; break;
                 }
             }
+            int bad;
             (void)luminance(&p.im, i, j, &bad);
             p.bad += (uint32_t)bad;
         }
@@ -566,7 +638,8 @@ static float hostile_u(uint64_t *state) {
 }
 static int good_u(float u) { return u >= 0 && u < 1; }
 static mcs_vec3 hostile_direction(uint64_t *state) {
-    const float u1 = mcs_u01((uint32_t)mcst_mix(state)), u2 = mcs_u01((uint32_t)mcst_mix(state));
+    const float u1 = mcs_u01((uint32_t)mcst_mix(state));
+    const float u2 = mcs_u01((uint32_t)mcst_mix(state));
     const uint64_t z = mcst_mix(state);
     mcs_vec3 w = mcs_sphere_sample(u1, u2).w;
     if ((z & 3) == 0) w.x = st_hostile(mcst_mix(state));
@@ -589,8 +662,11 @@ static int in_part(const part_of *q, uint32_t row, uint32_t col) {
 static void check_texel(const part_of *q, tally *t, mcs_texel s, int good, double off, const char *what) {
     const double l2 = (double)s.w.x * (double)s.w.x + (double)s.w.y * (double)s.w.y + (double)s.w.z * (double)s.w.z;
     const int sound = finite(t, s.w.x) & finite(t, s.w.y) & finite(t, s.w.z) & proper(t, s.pdf);
-    const int unit = off < 0 || fabs(sqrt(l2) - 1) <= off, inside = s.row < q->e->h && s.col < q->e->w;
-    t->not_unit += !unit, t->outside += !inside, t->not_discarded += !good && s.pdf != 0;
+    const int unit = off < 0 || fabs(sqrt(l2) - 1) <= off;
+    const int inside = s.row < q->e->h && s.col < q->e->w;
+    t->not_unit += !unit;
+    t->outside += !inside;
+    t->not_discarded += !good && s.pdf != 0;
     CHECK(sound && unit && inside, "%s: w %a %a %a, pdf %a, texel %u %u of %u x %u", what, (double)s.w.x, (double)s.w.y,
           (double)s.w.z, (double)s.pdf, (unsigned)s.col, (unsigned)s.row, (unsigned)q->e->w, (unsigned)q->e->h);
     CHECK(good || s.pdf == 0, "%s: u is bad, but density %a", what, (double)s.pdf);
@@ -607,20 +683,29 @@ enum { DRAWS = 100 };
 static void check_map(const part_of *q, const mcs_env_window *m, int axes, uint64_t *state, tally *t) {
     const mcs_env *e = q->e;
     const size_t count = mcst_mix(state) % 70;
-    arena in = arena_make(2 * count * sizeof(float)), out = arena_make(4 * count * sizeof(float));
-    float *u = (float *)(void *)in.at, *x = (float *)(void *)out.at, *y = x + count, *z = y + count, *pdf = z + count;
-    size_t k;
-    for (k = 0; k < DRAWS; k++) {
-        const float u1 = hostile_u(state), u2 = hostile_u(state);
-        const int bits = !m && k % 4 == 0, good = bits || (good_u(u1) && good_u(u2));
-        const uint32_t b1 = (uint32_t)mcst_mix(state), b2 = k % 8 ? (uint32_t)mcst_mix(state) : 0xffffffffu;
+    arena in = arena_make(2 * count * sizeof(float));
+    arena out = arena_make(4 * count * sizeof(float));
+    float *u = (float *)(void *)in.at;
+    float *x = (float *)(void *)out.at;
+    float *y = x + count;
+    float *z = y + count;
+    float *pdf = z + count;
+    for (size_t k = 0; k < DRAWS; k++) {
+        const float u1 = hostile_u(state);
+        const float u2 = hostile_u(state);
+        const int bits = !m && k % 4 == 0;
+        const int good = bits || (good_u(u1) && good_u(u2));
+        const uint32_t b1 = (uint32_t)mcst_mix(state);
+        const uint32_t b2 = k % 8 ? (uint32_t)mcst_mix(state) : 0xffffffffu;
         const mcs_texel s = m      ? mcs_env_window_sample(m, e, u1, u2)
                             : bits ? mcs_env_sample_bits(e, b1, b2)
                                    : mcs_env_sample(e, u1, u2);
         const mcs_vec3 w = hostile_direction(state);
         const int bad = st_direction_bad(w.x, w.y, w.z);
-        const mcs_texel a = mcs_env_texel(e, w), own = mcs_env_texel(e, s.w);
-        const float here = m ? mcs_env_window_pdf(m, e, s.w) : own.pdf, there = m ? mcs_env_window_pdf(m, e, w) : a.pdf;
+        const mcs_texel a = mcs_env_texel(e, w);
+        const mcs_texel own = mcs_env_texel(e, s.w);
+        const float here = m ? mcs_env_window_pdf(m, e, s.w) : own.pdf;
+        const float there = m ? mcs_env_window_pdf(m, e, w) : a.pdf;
         const float weight = mcs_env_weight(e, there);
         const mcs_vec2 back = mcs_env_invert(e, k & 1 ? w : s.w);
         check_texel(q, t, s, good, axes ? st_map_off : -1, m ? "window" : "map");
@@ -634,17 +719,18 @@ static void check_map(const part_of *q, const mcs_env_window *m, int axes, uint6
         CHECK(!axes || bad != 1 || there == 0, "%a %a %a is bad, but density %a", (double)w.x, (double)w.y, (double)w.z,
               (double)there);
         if (axes && bad == 0) {
-            const int lit = q->p ? texel_lit(&q->p->im, a.col, a.row) : 1, due = in_part(q, a.row, a.col) ? lit : 0;
+            const int lit = q->p ? texel_lit(&q->p->im, a.col, a.row) : 1;
+            const int due = in_part(q, a.row, a.col) ? lit : 0;
             CHECK(due < 0 || (there > 0) == due, "%a %a %a in texel %u %u, lit %d: pdf %a", (double)w.x, (double)w.y, (double)w.z,
                   (unsigned)a.col, (unsigned)a.row, due, (double)there);
         }
         CHECK(finite(t, weight) && weight >= 0, "weight %a of density %a", (double)weight, (double)there);
         CHECK(below_one(t, back.x) && below_one(t, back.y), "invert %a %a", (double)back.x, (double)back.y);
     }
-    for (k = 0; k < 2 * count; k++) u[k] = hostile_u(state);
+    for (size_t k = 0; k < 2 * count; k++) u[k] = hostile_u(state);
     if (m) mcs_env_window_sample_n(m, e, count, u, u + count, x, y, z, pdf, NULL, NULL);
     else mcs_env_sample_n(e, count, u, u + count, x, y, z, pdf, NULL, NULL);
-    for (k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         const mcs_texel s = m ? mcs_env_window_sample(m, e, u[k], u[count + k]) : mcs_env_sample(e, u[k], u[count + k]);
         CHECK(finite(t, x[k]) && finite(t, y[k]) && finite(t, z[k]) && pdf[k] == s.pdf,
               "array: u %a %a, w %a %a %a, pdf %a, not %a", (double)u[k], (double)u[count + k], (double)x[k], (double)y[k],
@@ -652,22 +738,25 @@ static void check_map(const part_of *q, const mcs_env_window *m, int axes, uint6
         if (mcst_mix(state) & 1) x[k] = st_hostile(mcst_mix(state));
     }
     mcs_env_pdf_n(e, count, x, y, z, pdf);
-    for (k = 0; k < count; k++) CHECK(proper(t, pdf[k]), "array: pdf %a", (double)pdf[k]);
+    for (size_t k = 0; k < count; k++) CHECK(proper(t, pdf[k]), "array: pdf %a", (double)pdf[k]);
     CHECK(arena_intact(&in) && arena_intact(&out), "arrays of %u: written outside", (unsigned)count);
-    arena_free(&in), arena_free(&out);
+    arena_free(&in);
+    arena_free(&out);
     t->evaluations += DRAWS * (m ? 6 : 4) + (double)count * 3;
 }
 
 static void check_window(const picture *p, const mcs_env *e, uint64_t *state, tally *t) {
-    const uint64_t z = mcst_mix(state), wild = mcst_mix(state);
-    const uint32_t row = (uint32_t)z % e->h, rows = 1 + (uint32_t)(z >> 16) % (e->h - row), col = (uint32_t)(z >> 32) % e->w;
+    const uint64_t z = mcst_mix(state);
+    const uint64_t wild = mcst_mix(state);
+    const uint32_t row = (uint32_t)z % e->h;
+    const uint32_t rows = 1 + (uint32_t)(z >> 16) % (e->h - row);
+    const uint32_t col = (uint32_t)(z >> 32) % e->w;
     const uint32_t cols = 1 + (uint32_t)(z >> 48) % e->w;
     const size_t bytes = mcs_env_window_bytes(rows);
     arena m = arena_make(bytes);
     mcs_env_window *at = (mcs_env_window *)(void *)m.at;
-    part_of q;
-    uint32_t i, j;
-    int some = 0, none = 1;
+    int some = 0;
+    int none = 1;
     mcs_status s = mcs_env_window_build(at, bytes - 1, e, row, rows, col, cols);
     CHECK(s == MCS_ERR_MEMORY && untouched(m.at, bytes), "%u rows, a byte too few: %d", (unsigned)rows, (int)s);
     s = mcs_env_window_build(at, bytes, e, e->h - row, row + 1 + (uint32_t)wild % 9, col, cols);
@@ -675,15 +764,22 @@ static void check_window(const picture *p, const mcs_env *e, uint64_t *state, ta
     s = mcs_env_window_build(at, bytes, e, row, rows, col, e->w + 1 + (uint32_t)(wild >> 32) / 2);
     CHECK(s == MCS_ERR_SIZE && untouched(m.at, bytes), "columns beyond the map: %d", (int)s);
     s = mcs_env_window_build(at, bytes, e, row, rows, col, cols);
-    for (i = row; i < row + rows; i++)
-        for (j = 0; j < cols; j++) {
+    for (uint32_t i = row; i < row + rows; i++)
+        for (uint32_t j = 0; j < cols; j++) {
             const int lit = texel_lit(&p->im, (col + j) % e->w, i);
-            some |= lit == 1, none &= lit == 0;
+            some |= lit == 1;
+            none &= lit == 0;
         }
     CHECK((!some || s == MCS_OK) && (!none || s == MCS_UNIFORM) && (s == MCS_OK || s == MCS_UNIFORM),
           "window %u + %u, %u + %u of %u x %u: status %d", (unsigned)col, (unsigned)cols, (unsigned)row, (unsigned)rows,
           (unsigned)e->w, (unsigned)e->h, (int)s);
-    q.e = e, q.p = s == MCS_UNIFORM ? NULL : p, q.row = row, q.rows = rows, q.col = col, q.cols = cols;
+    part_of q;
+    q.e = e;
+    q.p = s == MCS_UNIFORM ? NULL : p;
+    q.row = row;
+    q.rows = rows;
+    q.col = col;
+    q.cols = cols;
     check_map(&q, at, 1, state, t);
     CHECK(arena_intact(&m), "window of %u rows: written outside", (unsigned)rows);
     arena_free(&m);
@@ -692,20 +788,38 @@ static void check_window(const picture *p, const mcs_env *e, uint64_t *state, ta
 /* A reflection; `sane`: unit directions and a frame to go with them. */
 static mcs_reflection make_reflection(uint64_t *state, int *sane) {
     const uint64_t z = mcst_mix(state);
-    const float a = mcs_u01((uint32_t)mcst_mix(state)), b = mcs_u01((uint32_t)mcst_mix(state));
+    const float a = mcs_u01((uint32_t)mcst_mix(state));
+    const float b = mcs_u01((uint32_t)mcst_mix(state));
     mcs_reflection r;
-    float *slot[15];
-    int i;
-    r.frame = mcs_frame_make(mcs_sphere_sample(a, b).w), r.wo = mcs_hemisphere_sample(b, a).w;
-    r.alpha_x = z & 1 ? a : 1e-3f * a, r.alpha_y = z & 2 ? b : 1e-3f * b, r.matte = z & 4 ? b : (float)(z >> 3 & 1);
+    r.frame = mcs_frame_make(mcs_sphere_sample(a, b).w);
+    r.wo = mcs_hemisphere_sample(b, a).w;
+    r.alpha_x = z & 1 ? a : 1e-3f * a;
+    r.alpha_y = z & 2 ? b : 1e-3f * b;
+    r.matte = z & 4 ? b : (float)(z >> 3 & 1);
     r.profile = (mcs_profile)(z >> 60 & 3);
     *sane = r.wo.z > 0;
     if (z & 16) return r;
-    slot[0] = &r.frame.s.x, slot[1] = &r.frame.s.y, slot[2] = &r.frame.s.z, slot[3] = &r.frame.t.x, slot[4] = &r.frame.t.y;
-    slot[5] = &r.frame.t.z, slot[6] = &r.frame.n.x, slot[7] = &r.frame.n.y, slot[8] = &r.frame.n.z, slot[9] = &r.wo.x;
-    slot[10] = &r.wo.y, slot[11] = &r.wo.z, slot[12] = &r.alpha_x, slot[13] = &r.alpha_y, slot[14] = &r.matte;
-    for (i = 0; i < 15; i++)
-        if ((z >> (20 + 2 * i) & (z & 32 ? 3 : 1)) == 0) *slot[i] = st_hostile(mcst_mix(state)), *sane &= i > 11;
+    float *slot[15];
+    slot[0] = &r.frame.s.x;
+    slot[1] = &r.frame.s.y;
+    slot[2] = &r.frame.s.z;
+    slot[3] = &r.frame.t.x;
+    slot[4] = &r.frame.t.y;
+    slot[5] = &r.frame.t.z;
+    slot[6] = &r.frame.n.x;
+    slot[7] = &r.frame.n.y;
+    slot[8] = &r.frame.n.z;
+    slot[9] = &r.wo.x;
+    slot[10] = &r.wo.y;
+    slot[11] = &r.wo.z;
+    slot[12] = &r.alpha_x;
+    slot[13] = &r.alpha_y;
+    slot[14] = &r.matte;
+    for (int i = 0; i < 15; i++)
+        if ((z >> (20 + 2 * i) & (z & 32 ? 3 : 1)) == 0) {
+            *slot[i] = st_hostile(mcst_mix(state));
+            *sane &= i > 11;
+        }
     return r;
 }
 
@@ -713,20 +827,27 @@ static mcs_reflection make_reflection(uint64_t *state, int *sane) {
 static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *state, tally *t) {
     /* own lobe: |wi| 4 ulp, a frame that is orthonormal to 4 ulp of 2^-23 in 3 ways, three rounded terms each: 34 2^-24 */
     const double lobe_off = 0x1p-18;
-    const size_t bytes = mcs_product_bytes(tiles->rows), n = (size_t)tiles->rows * tiles->cols, count = mcst_mix(state) % 70;
+    const size_t bytes = mcs_product_bytes(tiles->rows);
+    const size_t n = (size_t)tiles->rows * tiles->cols;
+    const size_t count = mcst_mix(state) % 70;
     const int weights = mcst_mix(state) % 4 == 0;
-    arena m = arena_make(bytes), in = arena_make(2 * count * sizeof(float)), out = arena_make(4 * count * sizeof(float)),
-          list = arena_make(n * sizeof(float));
-    float *u = (float *)(void *)in.at, *x = (float *)(void *)out.at, *y = x + count, *z = y + count, *pdf = z + count;
+    arena m = arena_make(bytes);
+    arena in = arena_make(2 * count * sizeof(float));
+    arena out = arena_make(4 * count * sizeof(float));
+    arena list = arena_make(n * sizeof(float));
+    float *u = (float *)(void *)in.at;
+    float *x = (float *)(void *)out.at;
+    float *y = x + count;
+    float *z = y + count;
+    float *pdf = z + count;
     float *weight = (float *)(void *)list.at;
     mcs_product *p = (mcs_product *)(void *)m.at;
     part_of all = *q;
     int sane;
-    mcs_reflection r = make_reflection(state, &sane);
+    const mcs_reflection r = make_reflection(state, &sane);
     mcs_status s = mcs_product_build(p, bytes - 1, tiles, q->e, &r);
-    size_t k;
     CHECK(s == MCS_ERR_MEMORY && untouched(m.at, bytes), "product, a byte too few: %d", (int)s);
-    for (k = 0; k < n; k++) {
+    for (size_t k = 0; k < n; k++) {
         const mcs_vec3 w = mcs_tiles_direction(tiles, q->e, (uint32_t)k);
         CHECK(finite(t, w.x) && finite(t, w.y) && finite(t, w.z), "tile %u: direction %a %a %a", (unsigned)k, (double)w.x,
               (double)w.y, (double)w.z);
@@ -736,13 +857,18 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
     CHECK((s == MCS_OK || s == MCS_UNIFORM) && arena_intact(&m), "product: status %d", (int)s);
     if (mcst_mix(state) % 4 == 0) p->brdf_share = 0; /* as the header allows */
     all.p = NULL;
-    for (k = 0; k < DRAWS; k++) {
-        const float u1 = hostile_u(state), u2 = hostile_u(state);
-        const int good = good_u(u1) && good_u(u2), tiled = !(p->brdf_share > 0);
+    for (size_t k = 0; k < DRAWS; k++) {
+        const float u1 = hostile_u(state);
+        const float u2 = hostile_u(state);
+        const int good = good_u(u1) && good_u(u2);
+        const int tiled = !(p->brdf_share > 0);
         const mcs_vec3 w = hostile_direction(state);
-        const mcs_texel a = mcs_product_sample(p, u1, u2), b = mcs_oneshot_sample(tiles, q->e, &r, u1, u2);
-        const float back = mcs_product_pdf(p, a.w), there = mcs_product_pdf(p, w);
-        const float shot_back = mcs_oneshot_pdf(tiles, q->e, &r, b.w), shot_there = mcs_oneshot_pdf(tiles, q->e, &r, w);
+        const mcs_texel a = mcs_product_sample(p, u1, u2);
+        const mcs_texel b = mcs_oneshot_sample(tiles, q->e, &r, u1, u2);
+        const float back = mcs_product_pdf(p, a.w);
+        const float there = mcs_product_pdf(p, w);
+        const float shot_back = mcs_oneshot_pdf(tiles, q->e, &r, b.w);
+        const float shot_there = mcs_oneshot_pdf(tiles, q->e, &r, w);
         check_texel(tiled ? q : &all, t, a, good, tiled ? st_map_off : sane ? lobe_off : -1, "product");
         check_texel(&all, t, b, good, sane ? lobe_off : -1, "one-shot");
         CHECK(proper(t, back) && proper(t, there) && proper(t, shot_back) && proper(t, shot_there), "pdf %a %a, %a %a",
@@ -753,9 +879,9 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
             CHECK(there == 0 && shot_there == 0, "%a %a %a is bad, but densities %a, %a", (double)w.x, (double)w.y, (double)w.z,
                   (double)there, (double)shot_there);
     }
-    for (k = 0; k < 2 * count; k++) u[k] = hostile_u(state);
+    for (size_t k = 0; k < 2 * count; k++) u[k] = hostile_u(state);
     mcs_product_sample_n(p, count, u, u + count, x, y, z, pdf, NULL, NULL);
-    for (k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         const mcs_texel one = mcs_product_sample(p, u[k], u[count + k]);
         CHECK(finite(t, x[k]) && finite(t, y[k]) && finite(t, z[k]) && proper(t, pdf[k]), "array: u %a %a, w %a %a %a, pdf %a",
               (double)u[k], (double)u[count + k], (double)x[k], (double)y[k], (double)z[k], (double)pdf[k]);
@@ -763,7 +889,10 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
               (double)one.pdf);
     }
     CHECK(arena_intact(&m) && arena_intact(&in) && arena_intact(&out) && arena_intact(&list), "product: written outside");
-    arena_free(&m), arena_free(&in), arena_free(&out), arena_free(&list);
+    arena_free(&m);
+    arena_free(&in);
+    arena_free(&out);
+    arena_free(&list);
     t->evaluations += DRAWS * 6 + (double)count * 2 + (double)n;
 }
 
@@ -772,13 +901,12 @@ static void check_tiles(const part_of *q, uint64_t *state, tally *t) {
     arena m = arena_make(bytes);
     mcs_tiles *tiles = (mcs_tiles *)(void *)m.at;
     mcs_status s = mcs_tiles_build(tiles, bytes - 1, q->e, 16);
-    int k;
     CHECK(s == MCS_ERR_MEMORY && untouched(m.at, bytes), "tiles, a byte too few: %d", (int)s);
     s = mcs_tiles_build(tiles, bytes, q->e, 16 + (uint32_t)(mcst_mix(state) % 16) + 1);
     CHECK(s == MCS_ERR_SIZE || s == MCS_ERR_MEMORY, "tiles of a wrong number of rows: %d", (int)s);
     s = mcs_tiles_build(tiles, bytes, q->e, 16);
     CHECK(s == (q->p ? MCS_OK : MCS_UNIFORM) && arena_intact(&m), "tiles: status %d", (int)s);
-    for (k = 0; k < 4; k++) check_product(q, tiles, state, t);
+    for (int k = 0; k < 4; k++) check_product(q, tiles, state, t);
     CHECK(arena_intact(&m), "tiles: written outside");
     arena_free(&m);
 }
@@ -789,19 +917,17 @@ static void check_damage(const arena *map, uint64_t *state, tally *t) {
     arena m = arena_make(map->bytes);
     mcs_env *e = (mcs_env *)(void *)m.at;
     const size_t less = mcst_mix(state) % map->bytes;
-    mcs_status s;
-    int i;
     memcpy(m.at, map->at, map->bytes);
-    s = mcs_env_check(e, less);
+    mcs_status s = mcs_env_check(e, less);
     CHECK(s == MCS_ERR_MEMORY, "%u of %u bytes: %d", (unsigned)less, (unsigned)map->bytes, (int)s);
-    for (i = 0; i < changes; i++) {
+    for (int i = 0; i < changes; i++) {
         const uint64_t z = mcst_mix(state);
         const size_t reach = z & 1 ? map->bytes : z & 2 ? sizeof *e : 2 * sizeof *e < map->bytes ? 2 * sizeof *e : map->bytes;
         m.at[(z >> 16) % reach] ^= (unsigned char)(z & 4 ? 1u << (z >> 8 & 7) : z >> 8);
     }
     s = mcs_env_check(e, map->bytes);
     CHECK(s == MCS_OK || s == MCS_ERR_FORMAT || s == MCS_ERR_MEMORY, "damaged: %d", (int)s);
-    for (i = 0; s == MCS_OK && i < DRAWS; i++) {
+    for (int i = 0; s == MCS_OK && i < DRAWS; i++) {
         const mcs_texel a = mcs_env_sample(e, hostile_u(state), hostile_u(state));
         const mcs_texel b = mcs_env_sample_bits(e, (uint32_t)mcst_mix(state), (uint32_t)mcst_mix(state));
         const mcs_texel c = mcs_env_texel(e, i & 1 ? hostile_direction(state) : a.w);
@@ -822,31 +948,36 @@ static void check_damage(const arena *map, uint64_t *state, tally *t) {
 static void check_env(int tiled, uint64_t *state, tally *t) {
     picture p = make_picture(state);
     const size_t bytes = mcs_env_bytes(p.im.w, p.im.h);
-    arena m = arena_make(bytes), parts = arena_make(bytes), copy = arena_make(p.m.bytes);
-    mcs_env *e = (mcs_env *)(void *)m.at, *other = (mcs_env *)(void *)parts.at;
+    arena m = arena_make(bytes);
+    arena parts = arena_make(bytes);
+    arena copy = arena_make(p.m.bytes);
+    mcs_env *e = (mcs_env *)(void *)m.at;
+    mcs_env *other = (mcs_env *)(void *)parts.at;
     const uint32_t cut = (uint32_t)mcst_mix(state) % (p.im.h + 1);
     const float mean = mcs_env_mean(&p.im);
     mcs_image wrong = p.im;
-    mcs_status s;
-    part_of q;
-    uint32_t i, j;
-    int some = 0, none = 1, k;
+    int some = 0;
+    int none = 1;
     memcpy(copy.at, p.m.at, p.m.bytes);
     CHECK(finite(t, mean) && mean >= 0, "mean %a", (double)mean);
-    s = mcs_env_build(e, bytes - 1, &p.im);
+    mcs_status s = mcs_env_build(e, bytes - 1, &p.im);
     CHECK(s == MCS_ERR_MEMORY && untouched(m.at, bytes), "%u x %u, a byte too few: %d", (unsigned)p.im.w, (unsigned)p.im.h, (int)s);
-    wrong.channels = 2, s = mcs_env_build(e, bytes, &wrong);
+    wrong.channels = 2;
+    s = mcs_env_build(e, bytes, &wrong);
     CHECK(s == MCS_ERR_ARG && untouched(m.at, bytes), "2 channels: %d", (int)s);
-    wrong = p.im, wrong.pixel_stride = PTRDIFF_MAX >> mcst_mix(state) % 8, wrong.row_stride = PTRDIFF_MIN;
+    wrong = p.im;
+    wrong.pixel_stride = PTRDIFF_MAX >> mcst_mix(state) % 8;
+    wrong.row_stride = PTRDIFF_MIN;
     s = mcs_env_build(e, bytes, &wrong);
     CHECK(s == MCS_ERR_SIZE && untouched(m.at, bytes), "strides beyond memory: %d", (int)s);
     s = mcs_env_build(e, bytes, &p.im);
     CHECK(arena_intact(&m) && arena_intact(&p.m) && !memcmp(copy.at, p.m.at, p.m.bytes), "%u x %u: written outside",
           (unsigned)p.im.w, (unsigned)p.im.h);
-    for (i = 0; i < p.im.h; i++)
-        for (j = 0; j < p.im.w; j++) {
+    for (uint32_t i = 0; i < p.im.h; i++)
+        for (uint32_t j = 0; j < p.im.w; j++) {
             const int lit = texel_lit(&p.im, j, i);
-            some |= lit == 1, none &= lit == 0;
+            some |= lit == 1;
+            none &= lit == 0;
         }
     CHECK((!some || s == MCS_OK) && (!none || s == MCS_UNIFORM) && (s == MCS_OK || s == MCS_UNIFORM), "%u x %u: status %d",
           (unsigned)p.im.w, (unsigned)p.im.h, (int)s);
@@ -860,29 +991,36 @@ static void check_env(int tiled, uint64_t *state, tally *t) {
     CHECK(mcs_env_build_rows(other, bytes, &p.im, cut, p.im.h + 1) == MCS_ERR_SIZE, "rows beyond the image");
     CHECK(mcs_env_finish(other, bytes, &p.im) == s && arena_intact(&parts) && !memcmp(m.at, parts.at, bytes), "%u x %u cut at %u",
           (unsigned)p.im.w, (unsigned)p.im.h, (unsigned)cut);
-    q.e = e, q.p = s == MCS_UNIFORM ? NULL : &p, q.row = q.col = 0, q.rows = e->h, q.cols = e->w;
+    part_of q;
+    q.e = e;
+    q.p = s == MCS_UNIFORM ? NULL : &p;
+    q.row = q.col = 0;
+    q.rows = e->h;
+    q.cols = e->w;
     check_map(&q, NULL, 1, state, t);
-    for (k = 0; k < 2; k++) check_window(&p, e, state, t);
+    for (int k = 0; k < 2; k++) check_window(&p, e, state, t);
     if (tiled) check_tiles(&q, state, t);
-    for (k = 0; k < 4; k++) check_damage(&m, state, t);
+    for (int k = 0; k < 4; k++) check_damage(&m, state, t);
     e->frame = mcs_frame_make(hostile_direction(state));
     check_map(&q, NULL, 0, state, t);
     CHECK(arena_intact(&m) && arena_intact(&p.m), "%u x %u: written outside while drawing", (unsigned)p.im.w, (unsigned)p.im.h);
-    arena_free(&m), arena_free(&parts), arena_free(&copy), arena_free(&p.m);
+    arena_free(&m);
+    arena_free(&parts);
+    arena_free(&copy);
+    arena_free(&p.m);
 }
 
 int main(int argc, char **argv) {
     const double scale = mcst_scale();
-    const long rounds = (long)fmax(1000, 1.5e6 * scale), calls = (long)fmax(20, 1e4 * scale), tables = (long)fmax(20, 2000 * scale);
-    const long maps = (long)fmax(100, 5e4 * scale), products = (long)fmax(20, 1e4 * scale);
-    tally t;
-    uint64_t state;
-    size_t i;
-    long k;
-    int kind;
+    const long rounds = (long)fmax(1000, 1.5e6 * scale);
+    const long calls = (long)fmax(20, 1e4 * scale);
+    const long tables = (long)fmax(20, 2000 * scale);
+    const long maps = (long)fmax(100, 5e4 * scale);
+    const long products = (long)fmax(20, 1e4 * scale);
     mcst_start(argc, argv);
     print_head();
-    for (i = 0; i < MCST_NROWS; i++) {
+    tally t;
+    for (size_t i = 0; i < MCST_NROWS; i++) {
         const mcst_row *row = &mcst_rows[i];
         memset(&t, 0, sizeof t);
         mcst_group(row->name);
@@ -904,11 +1042,12 @@ int main(int argc, char **argv) {
         print_tally("numbers", &t);
     }
     mcst_group("tables");
-    for (kind = 0; kind < KINDS; kind++) {
+    uint64_t state;
+    for (int kind = 0; kind < KINDS; kind++) {
         memset(&t, 0, sizeof t);
         if (!mcst_case("%s", kind_name[kind])) continue;
         state = mcst_seed_for("tables", kind_name[kind], 0);
-        for (k = 0; k < tables; k++) {
+        for (long k = 0; k < tables; k++) {
             const uint64_t z = mcst_mix(&state);
             check_table(kind, k < 40 ? (uint32_t)k + 1 : 1 + (uint32_t)(z >> 40) % (z % 50 ? 5000 : 200000), &state, &t);
         }
@@ -916,11 +1055,11 @@ int main(int argc, char **argv) {
         print_tally(kind_name[kind], &t);
     }
     mcst_group("environment");
-    for (kind = 0; kind < 2; kind++) {
+    for (int kind = 0; kind < 2; kind++) {
         memset(&t, 0, sizeof t);
         if (!mcst_case(kind ? "products" : "maps")) continue;
         state = mcst_seed_for("environment", kind ? "products" : "maps", 0);
-        for (k = 0; k < (kind ? products : maps); k++) check_env(kind, &state, &t);
+        for (long k = 0; k < (kind ? products : maps); k++) check_env(kind, &state, &t);
         mcst_close_case();
         print_tally(kind ? "env, product" : "env", &t);
     }
