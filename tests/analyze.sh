@@ -62,7 +62,7 @@ ran() {
 
 # --- at run time. The width test's checks of the wide forms run in full; arrays and tables are cut by MCS_TEST_SCALE and filters.
 # NAME:FILTER, as a tool makes a test 20 times slower and more.
-cuts='width: tables:batches tables:memory tables:1000 env:'
+cuts='width: tables_input:batches tables_input:memory tables:1000 env: env_input:'
 if wanted valgrind; then
     if have valgrind; then
         for cut in $cuts; do

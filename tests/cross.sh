@@ -94,7 +94,7 @@ x87() {
     for flags in "$ia32 -std=c99 -mno-sse" "$ia32 -std=gnu99 -mno-sse" "gcc -std=gnu99 -msse2"; do
         rm -f "$dir/bits.exe"
         # shellcheck disable=SC2086
-        try "x87: $flags" "" "oracle rng points tables:1000 env:maps env:input bits:index" $flags -O2 -mfpmath=387 $exact
+        try "x87: $flags" "" "oracle rng points tables:1000 tables_input:1000 env:maps env_input bits:index" $flags -O2 -mfpmath=387 $exact
         [ -e "$dir/bits.exe" ] || continue
         "$dir/bits.exe" --print >"$dir/bits.log" 2>&1
         grep '^mcs_' "$dir/bits.log" | sort >"$dir/bits.txt"
@@ -212,7 +212,7 @@ EOF
 }
 
 # The tests of every machine. Of the tables those of 1000 entries, as a million takes an emulator minutes.
-usual='bits rng points tables:1000'
+usual='bits rng points tables:1000 tables_input:1000'
 ia32='gcc -m32'
 if have i686-linux-gnu-gcc; then ia32='i686-linux-gnu-gcc -static'; fi
 
@@ -228,9 +228,9 @@ job() {
     aarch64) try aarch64 qemu-aarch64 "$usual" aarch64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
     arm) try arm qemu-arm "$usual" arm-linux-gnueabihf-gcc -std=c99 -O1 -static $exact ;;
     riscv64) try riscv64 qemu-riscv64 "$usual" riscv64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
-    s390x) try s390x qemu-s390x "$usual env env_memory:files" s390x-linux-gnu-gcc -std=gnu99 -O1 -static $exact ;;
+    s390x) try s390x qemu-s390x "$usual env env_input env_files" s390x-linux-gnu-gcc -std=gnu99 -O1 -static $exact ;;
     ppc64) try ppc64 qemu-ppc64 "$usual" powerpc64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
-    i386) try i386 "" "$usual env env_memory" $ia32 -std=c99 -O1 -msse2 -mfpmath=sse $exact ;;
+    i386) try i386 "" "$usual env env_input env_memory env_files" $ia32 -std=c99 -O1 -msse2 -mfpmath=sse $exact ;;
     x87) x87 ;;
     mingw)
         wine=$(command -v wine64 || command -v wine || ls /usr/lib/wine/wine64 2>/dev/null)
