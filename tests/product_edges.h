@@ -9,13 +9,110 @@
 /* One after another: the first `most` of GGX, or those that are not GGX. */
 static lobe lobe_of(int shaped, int i, int most) { return lobes[shaped ? FIRST_GAUSS + i % (LOBES - FIRST_GAUSS) : i % most]; }
 
+typedef struct {
+    const char *name;
+    light_fn value;
+    uint32_t w, h;
+    int normals, sub;
+} supported_map;
+
+/* The axes, then random ones; every other one nearly a pole or nearly on the equator. */
+static mcs_vec3 normal_of_support(int i) {
+    const float u1 = hash01((uint32_t)i, 7);
+    const float u2 = hash01((uint32_t)i, 8);
+    const double sign = 1 - i % 2 * 2;
+    const mcs_vec3 n =
+        i < 6 ? vec(i / 2 == 0 ? sign : 0, i / 2 == 1 ? sign : 0, i / 2 == 2 ? sign : 0) : mcs_sphere_sample(u1, u2).w;
+    if (i % 4 == 3) return vec(n.x, n.y, n.z * 1e-3);
+    if (i % 4 == 1) return vec(n.x * 1e-3, n.y * 1e-3, n.z + 1e-9);
+    return n;
+}
+
+static void check_map_is_supported(const supported_map *map, uint32_t rows, int shaped) {
+    scene m = scene_make(map->name, map->w, map->h, map->value, rows);
+    uint32_t c = 0;
+    uint32_t r = 0;
+    for (int i = 0; i < map->normals; i++) {
+        const surface s = surface_make(normal_of_support(i), local_wo(0.05 + 0.019 * i, 0.07 * i), lobe_of(shaped, i, 6));
+        for (int form = 0; form < 2; form++) {
+            sampler d = sampler_make(&m, &s, form);
+            const int bad = d.share > 0 ? 0 : unsupported(&d, map->sub, &c, &r);
+            CHECK(bad == 0, "%s, normal %a %a %a: %d texels cannot be drawn, the first (%u, %u) that rises to %g",
+                  form ? "prepared" : "one-shot", s.n[0], s.n[1], s.n[2], bad, c, r, highest(&m, s.n, c, r, map->sub));
+            sampler_free(&d);
+        }
+    }
+    scene_free(&m);
+}
+
+/* A texel of a map of 2 rows x rows, alone in its tile. */
+typedef struct {
+    uint32_t w, h, col, row;
+} lone_texel;
+
+/* The normal: at right angles to the texel's corner, away from the middle, then towards the corner by 2^-i. */
+static surface barely_lit(const lone_texel *at, int shaped, int i) {
+    double corner[3], middle[3], n[3];
+    to3(corner, point(at->w, at->h, at->col, at->row, 0, 1));
+    to3(middle, point(at->w, at->h, at->col, at->row, 0.5, 0.5));
+    for (int k = 0; k < 3; k++) n[k] = dot3(corner, middle) * corner[k] - middle[k];
+    const double z = sqrt(dot3(n, n));
+    for (int k = 0; k < 3; k++) n[k] = n[k] / z + ldexp(corner[k], -i);
+    return surface_make(vec(n[0], n[1], n[2]), local_wo(0.5, 0.1), lobe_of(shaped, i, 5));
+}
+/* A sun far below the horizon; and, with `two`, another light in the row where that lies deepest. */
+static void add_lights_below(float *light, const lone_texel *at, const surface *s, int two) {
+    uint32_t deep[2] = {0, 0};
+    double low[2] = {1, 1};
+    for (uint32_t r = 0; r < at->h; r++)
+        for (uint32_t c = 0; c < at->w; c++) {
+            const int in_row = r == at->row;
+            double v[3];
+            to3(v, point(at->w, at->h, c, r, 0.5, 0.5));
+            if (dot3(s->n, v) < low[in_row]) {
+                low[in_row] = dot3(s->n, v);
+                deep[in_row] = r * at->w + c;
+            }
+        }
+    CHECK(low[0] < -0.8 && low[1] < -0.8, "the other lights at %g, %g", low[0], low[1]);
+    light[deep[0]] = 1e18f;
+    if (two) light[deep[1]] = 1e9f;
+}
+/* z: how far the texel rises over the horizon, by 2^-i of the corner. */
+static void check_barely_lit(const sampler *d, const lone_texel *at, double z, int i) {
+    uint32_t c = 0;
+    uint32_t r = 0;
+    const int bad = d->share > 0 ? 0 : unsupported(d, 4, &c, &r);
+    CHECK(bad == 0, "%s: %d texels cannot be drawn, the first rises to %g", d->p ? "prepared" : "one-shot", bad, z);
+    for (int j = 0; j < 64; j++) {
+        const mcs_texel t = draw(d, hash01((uint32_t)j, 9), hash01((uint32_t)j, 10));
+        CHECK(t.pdf >= 0 && t.pdf <= FLT_MAX && agrees(d, t), "2^-%d over the horizon: pdf %g, again %g", i, (double)t.pdf,
+              density(d, t.w));
+        if (z > 4 * eps && !(d->share > 0))
+            CHECK(t.pdf > 0 && t.row == at->row && t.col == at->col, "2^-%d over the horizon: texel (%u, %u), pdf %g", i, t.col,
+                  t.row, (double)t.pdf);
+    }
+}
+static void check_barely_visible(uint32_t rows, int others, int shaped) {
+    const lone_texel at = {2 * rows, rows, rows * 5 / 8, rows * 5 / 16};
+    for (int i = 2; i <= 24; i++) {
+        const surface s = barely_lit(&at, shaped, i);
+        float *light = (float *)memory(at.w * at.h * sizeof *light);
+        memset(light, 0, at.w * at.h * sizeof *light);
+        light[at.row * at.w + at.col] = 1;
+        if (others) add_lights_below(light, &at, &s, others == 2);
+        scene m = scene_from("texel", at.w, at.h, light, rows);
+        for (int form = 0; form < 2; form++) {
+            sampler d = sampler_make(&m, &s, form);
+            check_barely_lit(&d, &at, highest(&m, s.n, at.col, at.row, 4), i);
+            sampler_free(&d);
+        }
+        scene_free(&m);
+    }
+}
+
 static void check_support(int shaped) {
-    static const struct {
-        const char *name;
-        light_fn value;
-        uint32_t w, h;
-        int normals, sub;
-    } maps[] = {
+    static const supported_map maps[] = {
         {"1 x 1", v_constant, 1, 1, 50, 32},
         {"7 x 5", v_noise, 7, 5, 50, 16},
         {"33 x 17", v_noise, 33, 17, 50, 4},
@@ -27,96 +124,15 @@ static void check_support(int shaped) {
         {"3 x 2", v_noise, 3, 2, 50, 16},
         {"41 x 21, one texel", v_one_texel, 41, 21, 50, 4},
     };
+    static const char *const beside[] = {"", " beside a sun", " beside a sun, in a row with another"};
     const char *of = shaped ? ", Gauss and Phong" : "";
-    uint32_t c = 0;
-    uint32_t r = 0;
     for (int a = 0; a < (int)(sizeof maps / sizeof *maps); a++)
-        for (uint32_t rows = 16; rows <= 64; rows *= 2) {
-            if (!mcst_case("%s, %u rows of tiles%s", maps[a].name, rows, of)) continue;
-            scene m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, rows);
-            for (int i = 0; i < maps[a].normals; i++) {
-                const float u1 = hash01((uint32_t)i, 7);
-                const float u2 = hash01((uint32_t)i, 8);
-                /* the axes, then random ones; every other one nearly a pole or nearly on the equator */
-                mcs_vec3 n =
-                    i < 6 ? vec(i / 2 == 0 ? 1 - i % 2 * 2 : 0, i / 2 == 1 ? 1 - i % 2 * 2 : 0, i / 2 == 2 ? 1 - i % 2 * 2 : 0)
-                          : mcs_sphere_sample(u1, u2).w;
-                const surface s = surface_make(i % 4 == 3   ? vec(n.x, n.y, n.z * 1e-3)
-                                               : i % 4 == 1 ? vec(n.x * 1e-3, n.y * 1e-3, n.z + 1e-9)
-                                                            : n,
-                                               local_wo(0.05 + 0.019 * i, 0.07 * i), lobe_of(shaped, i, 6));
-                for (int form = 0; form < 2; form++) {
-                    sampler d = sampler_make(&m, &s, form);
-                    const int bad = d.share > 0 ? 0 : unsupported(&d, maps[a].sub, &c, &r);
-                    CHECK(bad == 0, "%s, normal %a %a %a: %d texels cannot be drawn, the first (%u, %u) that rises to %g",
-                          form ? "prepared" : "one-shot", s.n[0], s.n[1], s.n[2], bad, c, r, highest(&m, s.n, c, r, maps[a].sub));
-                    sampler_free(&d);
-                }
-            }
-            scene_free(&m);
-        }
-    /* A texel, alone in its tile, of which just one corner rises over the horizon, and a sun below it. */
+        for (uint32_t rows = 16; rows <= 64; rows *= 2)
+            if (mcst_case("%s, %u rows of tiles%s", maps[a].name, rows, of)) check_map_is_supported(&maps[a], rows, shaped);
+    /* A texel of which just one corner rises over the horizon. */
     for (int a = 0; a < 3; a++)
-        for (uint32_t rows = 16; rows <= 64; rows *= 2) {
-            static const char *const beside[] = {"", " beside a sun", " beside a sun, in a row with another"};
-            const uint32_t w = 2 * rows;
-            const uint32_t h = rows;
-            const uint32_t col = rows * 5 / 8;
-            const uint32_t row = rows * 5 / 16;
-            if (!mcst_case("barely visible%s, %u rows of tiles%s", beside[a], rows, of)) continue;
-            for (int i = 2; i <= 24; i++) {
-                float *light = (float *)memory(w * h * sizeof *light);
-                double corner[3];
-                /* the normal: at right angles to the corner, away from the middle, then towards the corner by 2^-i */
-                to3(corner, point(w, h, col, row, 0, 1));
-                double middle[3];
-                to3(middle, point(w, h, col, row, 0.5, 0.5));
-                double n[3];
-                for (int k = 0; k < 3; k++) n[k] = dot3(corner, middle) * corner[k] - middle[k];
-                double z = sqrt(dot3(n, n));
-                for (int k = 0; k < 3; k++) n[k] = n[k] / z + ldexp(corner[k], -i);
-                const surface s = surface_make(vec(n[0], n[1], n[2]), local_wo(0.5, 0.1), lobe_of(shaped, i, 5));
-                memset(light, 0, w * h * sizeof *light);
-                light[row * w + col] = 1;
-                if (a) { /* a sun far below; and another light in the row where that lies deepest */
-                    uint32_t deep[2] = {0, 0};
-                    double low[2] = {1, 1};
-                    for (r = 0; r < h; r++)
-                        for (c = 0; c < w; c++) {
-                            double v[3];
-                            to3(v, point(w, h, c, r, 0.5, 0.5));
-                            if (dot3(s.n, v) < low[0] && r != row) {
-                                low[0] = dot3(s.n, v);
-                                deep[0] = r * w + c;
-                            }
-                            if (dot3(s.n, v) < low[1] && r == row) {
-                                low[1] = dot3(s.n, v);
-                                deep[1] = r * w + c;
-                            }
-                        }
-                    CHECK(low[0] < -0.8 && low[1] < -0.8, "the other lights at %g, %g", low[0], low[1]);
-                    light[deep[0]] = 1e18f;
-                    if (a == 2) light[deep[1]] = 1e9f;
-                }
-                scene m = scene_from("texel", w, h, light, rows);
-                z = highest(&m, s.n, col, row, 4);
-                for (int k = 0; k < 2; k++) {
-                    sampler d = sampler_make(&m, &s, k);
-                    const int bad = d.share > 0 ? 0 : unsupported(&d, 4, &c, &r);
-                    CHECK(bad == 0, "%s: %d texels cannot be drawn, the first rises to %g", k ? "prepared" : "one-shot", bad, z);
-                    for (int j = 0; j < 64; j++) {
-                        const mcs_texel t = draw(&d, hash01((uint32_t)j, 9), hash01((uint32_t)j, 10));
-                        CHECK(t.pdf >= 0 && t.pdf <= FLT_MAX && agrees(&d, t), "2^-%d over the horizon: pdf %g, again %g", i,
-                              (double)t.pdf, density(&d, t.w));
-                        if (z > 4 * eps && !(d.share > 0))
-                            CHECK(t.pdf > 0 && t.row == row && t.col == col, "2^-%d over the horizon: texel (%u, %u), pdf %g", i,
-                                  t.col, t.row, (double)t.pdf);
-                    }
-                    sampler_free(&d);
-                }
-                scene_free(&m);
-            }
-        }
+        for (uint32_t rows = 16; rows <= 64; rows *= 2)
+            if (mcst_case("barely visible%s, %u rows of tiles%s", beside[a], rows, of)) check_barely_visible(rows, a, shaped);
 }
 
 static void test_support(void) {
@@ -143,98 +159,174 @@ static void check_black(const sampler *d, const scene *even) {
     sampler_free(&e);
 }
 
-static void test_extremes(void) {
-    static const struct {
-        const char *name;
-        light_fn value;
-        uint32_t w, h;
-        mcs_profile profile;
-    } maps[] = {{"sun", v_sun, 64, 32, MCS_PROFILE_GGX},           {"one texel", v_one_texel, 41, 21, MCS_PROFILE_GGX},
-                {"constant", v_constant, 30, 20, MCS_PROFILE_GGX}, {"black", v_black, 30, 20, MCS_PROFILE_GGX},
-                {"1 x 1", v_constant, 1, 1, MCS_PROFILE_GGX},      {"poles", v_poles, 64, 32, MCS_PROFILE_GGX},
-                {"sparse", v_sparse, 100, 200, MCS_PROFILE_GGX},   {"sun", v_sun, 64, 32, MCS_PROFILE_GAUSS},
-                {"sun", v_sun, 64, 32, MCS_PROFILE_PHONG}};
+typedef struct {
+    const char *name;
+    light_fn value;
+    uint32_t w, h;
+    mcs_profile profile;
+} extreme_map;
+
+static void check_extreme_surfaces(const extreme_map *map, uint32_t rows) {
     static const float alphas[] = {1e-6f, 1e-4f, 1e-3f, 0.0f, 1e4f, 1e10f, INFINITY, NAN, -1.0f, 0.3f};
     static const float mattes[] = {0.0f, 1.0f, 0.5f, NAN, -1.0f, 2.0f};
+    scene m = scene_make(map->name, map->w, map->h, map->value, rows);
+    scene even = scene_make("constant", map->w, map->h, v_constant, m.rows);
+    for (int form = 0; form < 2; form++)
+        for (int i = 0; i < 10 * 6; i++) {
+            surface s = surface_make(normals[i % NORMALS], local_wo(i % 5 ? 0.2 * (i % 5) : 1e-6, 0.1 * i), lobes[0]);
+            s.r.alpha_x = alphas[i % 10];
+            s.r.alpha_y = alphas[i % 3 ? i % 10 : 9 - i % 10];
+            s.r.matte = mattes[i / 10];
+            s.r.profile = s.profile = map->profile;
+            sampler d = sampler_make(&m, &s, form);
+            check_sane(&d, 1);
+            if (map->value == v_black) check_black(&d, &even);
+            sampler_free(&d);
+        }
+    scene_free(&m);
+    scene_free(&even);
+}
+
+static void check_eyes_below(void) {
+    scene m = scene_make("sun", 64, 32, v_sun, 16);
+    static const float bad_wo[][3] = {{0, 0, -1}, {1, 0, 0}, {0.6f, 0, -0.8f}, {0, 0, 0}, {NAN, 0, 1}, {0, 0, INFINITY}, {0, 0, 5}};
+    for (int form = 0; form < 2; form++)
+        for (int i = 0; i < (int)(sizeof bad_wo / sizeof *bad_wo); i++) {
+            surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[2]);
+            s.r.wo.x = bad_wo[i][0];
+            s.r.wo.y = bad_wo[i][1];
+            s.r.wo.z = bad_wo[i][2];
+            sampler d = sampler_make(&m, &s, form);
+            CHECK(!form || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
+            check_sane(&d, 1);
+            for (int j = 0; j < HARD; j++)
+                CHECK(!(draw(&d, hard_u[j], 0.3f).pdf > 0) && density(&d, normals[4]) == 0, "eye (%g, %g, %g): density",
+                      (double)s.r.wo.x, (double)s.r.wo.y, (double)s.r.wo.z);
+            sampler_free(&d);
+        }
+    scene_free(&m);
+}
+
+static void check_light_below(void) {
+    scene m = scene_make("one texel", 64, 32, v_one_texel, 16);
+    for (int form = 0; form < 2; form++)
+        for (int i = 0; i < 4; i++) {
+            const mcs_vec3 to = point(64, 32, 21, 10, 0.5, 0.5);
+            const surface s = surface_make(vec(-(double)to.x, -(double)to.y, -(double)to.z), local_wo(0.5, 0), lobes[i]);
+            sampler d = sampler_make(&m, &s, form);
+            CHECK(!form || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
+            CHECK(!(draw(&d, 0.3f, 0.6f).pdf > 0) && density(&d, to) == 0, "%s: the light behind has density %g",
+                  form ? "prepared" : "one-shot", density(&d, to));
+            check_sane(&d, 1);
+            sampler_free(&d);
+        }
+    scene_free(&m);
+}
+
+static void check_bad_frames(void) {
+    scene m = scene_make("sun", 64, 32, v_sun, 16);
+    for (int form = 0; form < 2; form++)
+        for (int i = 0; i < 60; i++) {
+            static const float wrong[] = {NAN, INFINITY, 0.0f, 1e30f, -INFINITY};
+            surface s = surface_make(normals[i % NORMALS], local_wo(0.6, 0.2), lobes[i % 2 ? 3 : i % 4 ? 0 : 8]);
+            mcs_vec3 *at = i % 3 == 0 ? &s.r.frame.s : i % 3 == 1 ? &s.r.frame.t : &s.r.frame.n;
+            if (i % 4 < 2) at->x = wrong[i % 5];
+            if (i % 4 != 1) at->y = wrong[i % 5];
+            if (i % 4 > 1) at->z = wrong[i % 5];
+            sampler d = sampler_make(&m, &s, form);
+            check_sane(&d, 0);
+            sampler_free(&d);
+        }
+    scene_free(&m);
+}
+
+static void test_extremes(void) {
+    static const extreme_map maps[] = {
+        {"sun", v_sun, 64, 32, MCS_PROFILE_GGX},           {"one texel", v_one_texel, 41, 21, MCS_PROFILE_GGX},
+        {"constant", v_constant, 30, 20, MCS_PROFILE_GGX}, {"black", v_black, 30, 20, MCS_PROFILE_GGX},
+        {"1 x 1", v_constant, 1, 1, MCS_PROFILE_GGX},      {"poles", v_poles, 64, 32, MCS_PROFILE_GGX},
+        {"sparse", v_sparse, 100, 200, MCS_PROFILE_GGX},   {"sun", v_sun, 64, 32, MCS_PROFILE_GAUSS},
+        {"sun", v_sun, 64, 32, MCS_PROFILE_PHONG}};
     mcst_group("product, extremes");
     for (int a = 0; a < (int)(sizeof maps / sizeof *maps); a++) {
         const mcs_profile profile = maps[a].profile;
-        if (!mcst_case("%s%s", maps[a].name,
-                       profile == MCS_PROFILE_GAUSS   ? ", Gauss"
-                       : profile == MCS_PROFILE_PHONG ? ", Phong"
-                                                      : ""))
-            continue;
-        scene m = scene_make(maps[a].name, maps[a].w, maps[a].h, maps[a].value, a % 2 ? 32 : 16);
-        scene even = scene_make("constant", maps[a].w, maps[a].h, v_constant, m.rows);
-        for (int form = 0; form < 2; form++)
-            for (int i = 0; i < 10 * 6; i++) {
-                surface s = surface_make(normals[i % NORMALS], local_wo(i % 5 ? 0.2 * (i % 5) : 1e-6, 0.1 * i), lobes[0]);
-                s.r.alpha_x = alphas[i % 10];
-                s.r.alpha_y = alphas[i % 3 ? i % 10 : 9 - i % 10];
-                s.r.matte = mattes[i / 10];
-                s.r.profile = s.profile = profile;
-                sampler d = sampler_make(&m, &s, form);
-                check_sane(&d, 1);
-                if (maps[a].value == v_black) check_black(&d, &even);
-                sampler_free(&d);
-            }
-        scene_free(&m);
-        scene_free(&even);
+        const char *of = profile == MCS_PROFILE_GAUSS ? ", Gauss" : profile == MCS_PROFILE_PHONG ? ", Phong" : "";
+        if (mcst_case("%s%s", maps[a].name, of)) check_extreme_surfaces(&maps[a], a % 2 ? 32 : 16);
     }
-    if (mcst_case("eye below the surface")) {
-        scene m = scene_make("sun", 64, 32, v_sun, 16);
-        static const float bad_wo[][3] = {{0, 0, -1},  {1, 0, 0},        {0.6f, 0, -0.8f}, {0, 0, 0},
-                                          {NAN, 0, 1}, {0, 0, INFINITY}, {0, 0, 5}};
-        for (int form = 0; form < 2; form++)
-            for (int i = 0; i < (int)(sizeof bad_wo / sizeof *bad_wo); i++) {
-                surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[2]);
-                s.r.wo.x = bad_wo[i][0];
-                s.r.wo.y = bad_wo[i][1];
-                s.r.wo.z = bad_wo[i][2];
-                sampler d = sampler_make(&m, &s, form);
-                CHECK(!form || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
-                check_sane(&d, 1);
-                for (int j = 0; j < HARD; j++)
-                    CHECK(!(draw(&d, hard_u[j], 0.3f).pdf > 0) && density(&d, normals[4]) == 0, "eye (%g, %g, %g): density",
-                          (double)s.r.wo.x, (double)s.r.wo.y, (double)s.r.wo.z);
-                sampler_free(&d);
-            }
-        scene_free(&m);
-    }
-    if (mcst_case("light below the surface")) {
-        scene m = scene_make("one texel", 64, 32, v_one_texel, 16);
-        for (int form = 0; form < 2; form++)
-            for (int i = 0; i < 4; i++) {
-                const mcs_vec3 to = point(64, 32, 21, 10, 0.5, 0.5);
-                const surface s = surface_make(vec(-(double)to.x, -(double)to.y, -(double)to.z), local_wo(0.5, 0), lobes[i]);
-                sampler d = sampler_make(&m, &s, form);
-                CHECK(!form || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
-                CHECK(!(draw(&d, 0.3f, 0.6f).pdf > 0) && density(&d, to) == 0, "%s: the light behind has density %g",
-                      form ? "prepared" : "one-shot", density(&d, to));
-                check_sane(&d, 1);
-                sampler_free(&d);
-            }
-        scene_free(&m);
-    }
-    if (mcst_case("bad frames")) {
-        scene m = scene_make("sun", 64, 32, v_sun, 16);
-        for (int form = 0; form < 2; form++)
-            for (int i = 0; i < 60; i++) {
-                static const float wrong[] = {NAN, INFINITY, 0.0f, 1e30f, -INFINITY};
-                surface s = surface_make(normals[i % NORMALS], local_wo(0.6, 0.2), lobes[i % 2 ? 3 : i % 4 ? 0 : 8]);
-                mcs_vec3 *at = i % 3 == 0 ? &s.r.frame.s : i % 3 == 1 ? &s.r.frame.t : &s.r.frame.n;
-                if (i % 4 < 2) at->x = wrong[i % 5];
-                if (i % 4 != 1) at->y = wrong[i % 5];
-                if (i % 4 > 1) at->z = wrong[i % 5];
-                sampler d = sampler_make(&m, &s, form);
-                check_sane(&d, 0);
-                sampler_free(&d);
-            }
-        scene_free(&m);
-    }
+    if (mcst_case("eye below the surface")) check_eyes_below();
+    if (mcst_case("light below the surface")) check_light_below();
+    if (mcst_case("bad frames")) check_bad_frames();
 }
 
 /* ---- memory ---- */
+
+static void check_refused_products(const scene *m, const sampler *d, const mcs_reflection *r, size_t bytes) {
+    CHECK(m->tiles.bytes % 4 == 0 && d->mem.bytes % 4 == 0, "%zu and %zu bytes", m->tiles.bytes, d->mem.bytes);
+    CHECK(mcs_product_build(d->p, bytes - 1, tiles_of(m), env_of(m), r) == MCS_ERR_MEMORY, "one byte too few");
+    CHECK(mcs_product_build(NULL, bytes, tiles_of(m), env_of(m), r) == MCS_ERR_ARG, "no memory");
+    CHECK(mcs_product_build(d->p, bytes, NULL, env_of(m), r) == MCS_ERR_ARG, "no tiles");
+    CHECK(mcs_product_build(d->p, bytes, tiles_of(m), NULL, r) == MCS_ERR_ARG, "no map");
+    CHECK(mcs_product_build(d->p, bytes, tiles_of(m), env_of(m), NULL) == MCS_ERR_ARG, "no reflection");
+    CHECK(mcs_product_build((mcs_product *)(void *)(d->mem.at + 4), bytes, tiles_of(m), env_of(m), r) == MCS_ERR_ARG, "misaligned");
+    CHECK(mcs_product_build_weights(d->p, bytes, tiles_of(m), env_of(m), NULL) == MCS_ERR_ARG, "no weights");
+    CHECK(arena_intact(&d->mem), "refused arguments, yet wrote outside");
+    CHECK(mcs_product_build(d->p, bytes, tiles_of(m), env_of(m), r) == MCS_OK, "the same again");
+}
+
+/* `moved`: memory for tiles. What is refused leaves it alone; then the tiles are copied there. */
+static void check_moved_tiles(const scene *m, const sampler *d, const mcs_reflection *r, size_t bytes, arena *moved) {
+    CHECK(mcs_tiles_build(NULL, moved->bytes, env_of(m), m->rows) == MCS_ERR_ARG, "no memory");
+    CHECK(mcs_tiles_build((mcs_tiles *)(void *)moved->at, moved->bytes, NULL, m->rows) == MCS_ERR_ARG, "no map");
+    CHECK(mcs_tiles_build((mcs_tiles *)(void *)(moved->at + 4), moved->bytes, env_of(m), m->rows) == MCS_ERR_ARG, "misaligned");
+    CHECK(mcs_tiles_build((mcs_tiles *)(void *)moved->at, moved->bytes - 1, env_of(m), m->rows) == MCS_ERR_MEMORY,
+          "one byte too few");
+    CHECK(untouched(moved->at, moved->bytes), "refused arguments, yet wrote");
+    memcpy(moved->at, m->tiles.at, moved->bytes);
+    for (uint32_t i = 0; i < 200; i++) {
+        const float u1 = hash01(i, 14);
+        const float u2 = hash01(i, 15);
+        const mcs_texel a = mcs_oneshot_sample(tiles_of(m), env_of(m), r, u1, u2);
+        const mcs_texel b = mcs_oneshot_sample((const mcs_tiles *)(const void *)moved->at, env_of(m), r, u1, u2);
+        CHECK(!memcmp(&a, &b, sizeof a), "u = %a, %a: moved tiles draw another", (double)u1, (double)u2);
+    }
+    {
+        scene other = *m;
+        other.tiles = *moved;
+        sampler e = sampler_make(&other, d->s, 1);
+        CHECK(!memcmp(e.mem.at + sizeof(mcs_product), d->mem.at + sizeof(mcs_product), bytes - sizeof(mcs_product)),
+              "moved tiles give another table");
+        sampler_free(&e);
+    }
+}
+
+static void check_room_on_stack(void) {
+    struct {
+        char before;
+        union {
+            mcs_product p;
+            char room[MCS_PRODUCT_BYTES(16)];
+        } at;
+    } on_stack;
+    scene m = scene_make("smooth", 64, 32, v_smooth, 16);
+    const surface s = surface_make(normals[0], local_wo(0.7, 0.1), lobes[0]);
+    const mcs_status rc = mcs_product_build(&on_stack.at.p, sizeof on_stack.at, tiles_of(&m), env_of(&m), &s.r);
+    CHECK(rc == MCS_OK, "refused: %d", rc);
+    CHECK((uintptr_t)mcsi_product_units(&on_stack.at.p) % offsetof(mcsi_aligned, at) == 0, "units are misaligned");
+    scene_free(&m);
+}
+
+static void check_refused_sizes(void) {
+    static const uint32_t wrong[] = {0, 1, 8, 15, 17, 24, 48, 65, 128, 0x80000000u, 0xffffffffu};
+    scene m = scene_make("sun", 64, 32, v_sun, 16);
+    for (int i = 0; i < (int)(sizeof wrong / sizeof *wrong); i++) {
+        CHECK(mcs_tiles_bytes(env_of(&m), wrong[i]) == 0, "%u rows: %zu bytes", wrong[i], mcs_tiles_bytes(env_of(&m), wrong[i]));
+        CHECK(mcs_product_bytes(wrong[i]) == 0, "%u rows: %zu bytes", wrong[i], mcs_product_bytes(wrong[i]));
+        CHECK(mcs_tiles_build((mcs_tiles *)(void *)m.tiles.at, m.tiles.bytes, env_of(&m), wrong[i]) == MCS_ERR_SIZE, "%u rows",
+              wrong[i]);
+    }
+    CHECK(mcs_tiles_bytes(NULL, 16) == 0, "no map");
+    scene_free(&m);
+}
 
 static void test_memory(void) {
     mcst_group("product, memory");
@@ -243,73 +335,16 @@ static void test_memory(void) {
         if (!mcst_case("%u rows of tiles", rows)) continue;
         scene m = scene_make("sun", 100, 47, v_sun, rows);
         sampler d = sampler_make(&m, &s, 1);
-        const size_t bytes = mcs_product_bytes(rows);
-        CHECK(m.tiles.bytes % 4 == 0 && d.mem.bytes % 4 == 0, "%zu and %zu bytes", m.tiles.bytes, d.mem.bytes);
-        CHECK(mcs_product_build(d.p, bytes - 1, tiles_of(&m), env_of(&m), &s.r) == MCS_ERR_MEMORY, "one byte too few");
-        CHECK(mcs_product_build(NULL, bytes, tiles_of(&m), env_of(&m), &s.r) == MCS_ERR_ARG, "no memory");
-        CHECK(mcs_product_build(d.p, bytes, NULL, env_of(&m), &s.r) == MCS_ERR_ARG, "no tiles");
-        CHECK(mcs_product_build(d.p, bytes, tiles_of(&m), NULL, &s.r) == MCS_ERR_ARG, "no map");
-        CHECK(mcs_product_build(d.p, bytes, tiles_of(&m), env_of(&m), NULL) == MCS_ERR_ARG, "no reflection");
-        CHECK(mcs_product_build((mcs_product *)(void *)(d.mem.at + 4), bytes, tiles_of(&m), env_of(&m), &s.r) == MCS_ERR_ARG,
-              "misaligned");
-        CHECK(mcs_product_build_weights(d.p, bytes, tiles_of(&m), env_of(&m), NULL) == MCS_ERR_ARG, "no weights");
-        CHECK(arena_intact(&d.mem), "refused arguments, yet wrote outside");
-        CHECK(mcs_product_build(d.p, bytes, tiles_of(&m), env_of(&m), &s.r) == MCS_OK, "the same again");
         arena moved = arena_make(m.tiles.bytes);
-        CHECK(mcs_tiles_build(NULL, moved.bytes, env_of(&m), rows) == MCS_ERR_ARG, "no memory");
-        CHECK(mcs_tiles_build((mcs_tiles *)(void *)moved.at, moved.bytes, NULL, rows) == MCS_ERR_ARG, "no map");
-        CHECK(mcs_tiles_build((mcs_tiles *)(void *)(moved.at + 4), moved.bytes, env_of(&m), rows) == MCS_ERR_ARG, "misaligned");
-        CHECK(mcs_tiles_build((mcs_tiles *)(void *)moved.at, moved.bytes - 1, env_of(&m), rows) == MCS_ERR_MEMORY,
-              "one byte too few");
-        CHECK(untouched(moved.at, moved.bytes), "refused arguments, yet wrote");
-        memcpy(moved.at, m.tiles.at, moved.bytes);
-        for (uint32_t i = 0; i < 200; i++) {
-            const float u1 = hash01(i, 14);
-            const float u2 = hash01(i, 15);
-            const mcs_texel a = mcs_oneshot_sample(tiles_of(&m), env_of(&m), &s.r, u1, u2);
-            const mcs_texel b = mcs_oneshot_sample((const mcs_tiles *)(const void *)moved.at, env_of(&m), &s.r, u1, u2);
-            CHECK(!memcmp(&a, &b, sizeof a), "u = %a, %a: moved tiles draw another", (double)u1, (double)u2);
-        }
-        {
-            scene other = m;
-            other.tiles = moved;
-            sampler e = sampler_make(&other, &s, 1);
-            CHECK(!memcmp(e.mem.at + sizeof(mcs_product), d.mem.at + sizeof(mcs_product), bytes - sizeof(mcs_product)),
-                  "moved tiles give another table");
-            sampler_free(&e);
-        }
+        check_refused_products(&m, &d, &s.r, mcs_product_bytes(rows));
+        check_moved_tiles(&m, &d, &s.r, mcs_product_bytes(rows), &moved);
         arena_free(&moved);
         sampler_free(&d);
         scene_free(&m);
     }
-    if (mcst_case("room on the stack")) { /* behind something small: a product is aligned as the numbers in it are */
-        struct {
-            char before;
-            union {
-                mcs_product p;
-                char room[MCS_PRODUCT_BYTES(16)];
-            } at;
-        } on_stack;
-        scene m = scene_make("smooth", 64, 32, v_smooth, 16);
-        const surface s = surface_make(normals[0], local_wo(0.7, 0.1), lobes[0]);
-        const mcs_status rc = mcs_product_build(&on_stack.at.p, sizeof on_stack.at, tiles_of(&m), env_of(&m), &s.r);
-        CHECK(rc == MCS_OK, "refused: %d", rc);
-        CHECK((uintptr_t)mcsi_product_units(&on_stack.at.p) % offsetof(mcsi_aligned, at) == 0, "units are misaligned");
-        scene_free(&m);
-    }
-    if (mcst_case("refused sizes")) {
-        static const uint32_t wrong[] = {0, 1, 8, 15, 17, 24, 48, 65, 128, 0x80000000u, 0xffffffffu};
-        scene m = scene_make("sun", 64, 32, v_sun, 16);
-        for (int i = 0; i < (int)(sizeof wrong / sizeof *wrong); i++) {
-            CHECK(mcs_tiles_bytes(env_of(&m), wrong[i]) == 0, "%u rows: %zu bytes", wrong[i],
-                  mcs_tiles_bytes(env_of(&m), wrong[i]));
-            CHECK(mcs_product_bytes(wrong[i]) == 0, "%u rows: %zu bytes", wrong[i], mcs_product_bytes(wrong[i]));
-            CHECK(mcs_tiles_build((mcs_tiles *)(void *)m.tiles.at, m.tiles.bytes, env_of(&m), wrong[i]) == MCS_ERR_SIZE, "%u rows",
-                  wrong[i]);
-        }
-        CHECK(mcs_tiles_bytes(NULL, 16) == 0, "no map");
-        scene_free(&m);
-    }
+    /* behind something small: a product is aligned as the numbers in it are */
+    if (mcst_case("room on the stack")) check_room_on_stack();
+    if (mcst_case("refused sizes")) check_refused_sizes();
 }
 /* A draw by array is that of sample. Where a*b + c is contracted the places of both differ by rounding, and with them perhaps the
  * texel: there its density has to be that of its direction. */

@@ -28,135 +28,167 @@ static int middles(const fit *f, double t, double part, int sub, double *x, doub
     }
     return n;
 }
-/* Density is light times the fit of a tile (check_density), and now and then looked up. Points at the middles of equal areas, at
- * least `least` by `least` of a texel, in each piece of it that lies in one cell of the fit; tile_rows, tile_parts: where every row
- * of every tile begins among its light, and how much it has; row_slack: of a tile, see check_density. */
+/* A surface in a map. tile_rows, tile_parts: where every row of every tile begins among its light, and how much it has; row_slack:
+ * of a tile, see product_sampler.h. */
+typedef struct {
+    const scene *m;
+    const surface *s;
+    const double *tile_rows, *tile_parts, *row_slack;
+    sampler d, o; /* prepared, one-shot */
+    fit *fits, *one_fits;
+    double mean, env, brdf, product, oneshot; /* integrals of F; of F^2 over a density */
+    double a_env, a_brdf, m_env;              /* of MIS with the balance heuristic: squares of either part, the mean of one */
+} study;
+
+/* A texel with light; half the cosine's distance from 1, which is linear in what is equal areas, at its top and its height in it. */
+typedef struct {
+    uint32_t c, r, tile;
+    double light, top, height;
+    span at;
+} lit_texel;
+
+/* The densities at u of a tile are those of its fits: q, q1 of the tiles alone. */
+static void check_looked_up(const study *v, const lit_texel *t, const double *w, double u1, double u2, double q, double q1) {
+    const scene *m = v->m;
+    double visible;
+    reflect(v->s, w, &visible);
+    const mcs_vec3 to = vec(w[0], w[1], w[2]);
+    const double pp = q + v->d.share * visible;
+    const double q2 = density(&v->d, to);
+    const double q3 = density(&v->o, to);
+    const double lobe_wrong = lobe_off(v->s, to, visible);
+    const double tol = 2 * (slack_of_row(m, t->r) + slack_of(m, t->light, t->r) + v->row_slack[t->tile] + 8 * eps);
+    const places off = places_off(m, &t->at, t->r, v->row_slack[t->tile]);
+    const doubt of = fit_doubt(&v->fits[t->tile], u1, u2, off);
+    const doubt og = fit_doubt(&v->one_fits[t->tile], u1, u2, off);
+    CHECK(fabs(q2 - pp) <= tol * q + v->d.share * lobe_wrong + 4 * eps * q2 + t->light * (varies(&of, off) + of.blur),
+          "%s: density %g, not %g", m->name, q2, pp);
+    CHECK(fabs(q3 - q1 - v->o.share * visible) <= tol * q1 + v->o.share * lobe_wrong + v->o.share_off * visible + 4 * eps * q3 +
+                                                      t->light * (varies(&og, off) + og.blur),
+          "%s: one-shot density %g, not %g", m->name, q3, q1 + v->o.share * visible);
+}
+
+/* Adds the point (x, y) of a texel in the direction w, which stands for the solid angle a. */
+static void add_point(study *v, const lit_texel *t, const double *w, double x, double y, double a, int look_up) {
+    const double u1 = t->at.t1 + x * t->at.part1;
+    const double u2 = t->at.t2 + y * t->at.part2;
+    const double q = fmax(t->light * fit_at(&v->fits[t->tile], u1, u2), 0);
+    const double q1 = fmax(t->light * fit_at(&v->one_fits[t->tile], u1, u2), 0);
+    double visible;
+    const double F = t->light * reflect(v->s, w, &visible);
+    if (!(F > 0)) return;
+    const double pe = t->light / v->m->total;
+    const double pb = v->s->matte >= 1 ? F / t->light : visible;
+    if (look_up && surely_in(v->m, x, y)) check_looked_up(v, t, w, u1, u2, q, q1);
+    v->mean += a * F;
+    v->env += a * F * F / pe;
+    v->brdf += a * F * F / pb;
+    v->product += a * F * F / (q + v->d.share * visible);
+    v->oneshot += a * F * F / (q1 + v->o.share * visible);
+    v->a_env += a * F * F * pe / ((pe + pb) * (pe + pb));
+    v->a_brdf += a * F * F * pb / ((pe + pb) * (pe + pb));
+    v->m_env += a * F * pe / (pe + pb);
+}
+
+/* How many points a texel takes each way, by the size of its lobe's features; w: its middle. */
+static int points_of(const study *v, const double *w, double size, int least) {
+    const surface *s = v->s;
+    double away = 0;
+    for (int k = 0; k < 3; k++) away += (w[k] - s->mirror[k]) * (w[k] - s->mirror[k]);
+    int sub = s->matte >= 1 ? 1 : (int)ceil(size / (0.35 * sqrt(s->width * s->width + away / 4)));
+    if (s->profile != MCS_PROFILE_GGX) {
+        const fall at = fall_at(s, w);
+        sub = at.root - 2 * size / at.scale < 6 ? (int)ceil(fmin(size / (0.35 * at.scale), SUB_MOST)) : 1;
+    }
+    return sub > least ? sub < SUB_MOST ? sub : SUB_MOST : least;
+}
+/* half: half the cosine's distance from 1. */
+static void direction_to(double *w, double half, double azimuth) {
+    const double sine = 2 * sqrt(half * (1 - half));
+    w[0] = sine * cos(azimuth);
+    w[1] = sine * sin(azimuth);
+    w[2] = 1 - 2 * half;
+}
+/* Points at the middles of equal areas, at least `least` by `least` of a texel, in each piece of it that lies in one cell of the
+ * fit; the density is looked up in one texel of a thousand. */
+static void add_texel(study *v, const lit_texel *t, int least) {
+    const scene *m = v->m;
+    const double size = pi / m->h;
+    double w[3];
+    direction_to(w, t->top + 0.5 * t->height, 2 * pi * (t->c + 0.5) / m->w);
+    if (dot3(v->s->n, w) < -size) return;
+    const int sub = points_of(v, w, size, least);
+    double x[SUB_MOST + FINE], wide[SUB_MOST + FINE], y[SUB_MOST + FINE], high[SUB_MOST + FINE];
+    const int across = middles(&v->fits[t->tile], t->at.t1, t->at.part1, sub, x, wide);
+    const int down = middles(&v->fits[t->tile], t->at.t2, t->at.part2, sub, y, high);
+    const int looked_up = hash01(t->r * m->w + t->c, 22) < 1e-3f;
+    for (int i = 0; i < down; i++)
+        for (int j = 0; j < across; j++) {
+            if (across * down > 1) direction_to(w, t->top + t->height * y[i], 2 * pi * (t->c + x[j]) / m->w);
+            add_point(v, t, w, x[j], y[i], m->area[t->r] * wide[j] * high[i], looked_up && i == down / 2 && j == across / 2);
+        }
+}
+static void add_row(study *v, uint32_t r, int least) {
+    const scene *m = v->m;
+    const uint32_t row_tile = tile_at(m, 0, r);
+    const double top = pow(sin(0.5 * pi * r / m->h), 2);
+    lit_texel t = {0, 0, UINT32_MAX, 0, 0, 0, {0, 0, 0, 0, 0}};
+    t.r = r;
+    t.top = top;
+    t.height = pow(sin(0.5 * pi * (r + 1) / m->h), 2) - top;
+    for (t.c = 0; t.c < m->w; t.c++) {
+        const uint32_t tile = tile_at(m, t.c, r);
+        if (tile != t.tile) {
+            const size_t column = (size_t)(tile - row_tile) / m->rows;
+            t.tile = tile;
+            t.at.t1 = t.at.part1 = 0;
+            t.at.line = tile_box(m, tile).line[r];
+            t.at.t2 = v->tile_rows[column * m->h + r];
+            t.at.part2 = v->tile_parts[column * m->h + r];
+        }
+        t.light = m->light[(size_t)r * m->w + t.c];
+        if (!(t.light > 0)) continue;
+        t.at.t1 += t.at.part1;
+        t.at.part1 = t.light / t.at.line;
+        add_texel(v, &t, least);
+    }
+}
+
 static variances variance_of(const scene *m, const surface *s, int least, const double *tile_rows, const double *tile_parts,
                              const double *row_slack) {
     const uint32_t tiles = 2 * m->rows * m->rows;
-    fit *fits = (fit *)memory(tiles * sizeof *fits);
-    fit *one_fits = (fit *)memory(tiles * sizeof *one_fits);
-    sampler d = sampler_make(m, s, 1);
-    sampler o = sampler_make(m, s, 0);
-    double I = 0;
-    double env = 0;
-    double brdf = 0;
-    double product = 0;
-    double oneshot = 0;
-    double a_env = 0;
-    double a_brdf = 0;
-    double m_env = 0;
+    study v;
     int fine = 0;
-    for (uint32_t r = 0; r < tiles; r++) {
-        fits[r] = fit_tile(&d, r);
-        one_fits[r] = fit_tile(&o, r);
-        fine += fits[r].parts > 1;
+    memset(&v, 0, sizeof v);
+    v.m = m;
+    v.s = s;
+    v.tile_rows = tile_rows;
+    v.tile_parts = tile_parts;
+    v.row_slack = row_slack;
+    v.d = sampler_make(m, s, 1);
+    v.o = sampler_make(m, s, 0);
+    v.fits = (fit *)memory(tiles * sizeof *v.fits);
+    v.one_fits = (fit *)memory(tiles * sizeof *v.one_fits);
+    for (uint32_t k = 0; k < tiles; k++) {
+        v.fits[k] = fit_tile(&v.d, k);
+        v.one_fits[k] = fit_tile(&v.o, k);
+        fine += v.fits[k].parts > 1;
     }
-    CHECK(fine <= d.most_fine, "%s: %d tiles of many parts", m->name, fine);
-    for (uint32_t r = 0; r < m->h; r++) {
-        const double omega = m->area[r];
-        const double size = pi / m->h;
-        /* half the cosine's distance from 1: linear in what is equal areas */
-        const double top = pow(sin(0.5 * pi * r / m->h), 2);
-        const double height = pow(sin(0.5 * pi * (r + 1) / m->h), 2) - top;
-        const uint32_t row_tile = tile_at(m, 0, r);
-        span at = {0, 0, 0, 0, 0};
-        uint32_t last = UINT32_MAX;
-        for (uint32_t c = 0; c < m->w; c++) {
-            const uint32_t tile = tile_at(m, c, r);
-            const double light = m->light[(size_t)r * m->w + c];
-            const double pe = light / m->total;
-            const double mid = top + 0.5 * height;
-            const double st = 2 * sqrt(mid * (1 - mid));
-            const double p = 2 * pi * (c + 0.5) / m->w;
-            const fit *f = fits + tile;
-            const fit *g = one_fits + tile;
-            double away = 0;
-            if (tile != last) {
-                last = tile;
-                at.t1 = at.part1 = 0;
-                at.line = tile_box(m, tile).line[r];
-                at.t2 = tile_rows[(size_t)(tile - row_tile) / m->rows * m->h + r];
-                at.part2 = tile_parts[(size_t)(tile - row_tile) / m->rows * m->h + r];
-            }
-            if (!(light > 0)) continue;
-            at.t1 += at.part1;
-            at.part1 = light / at.line;
-            double w[3];
-            w[0] = st * cos(p);
-            w[1] = st * sin(p);
-            w[2] = 1 - 2 * mid;
-            if (dot3(s->n, w) < -size) continue;
-            for (int k = 0; k < 3; k++) away += (w[k] - s->mirror[k]) * (w[k] - s->mirror[k]);
-            int sub = s->matte >= 1 ? 1 : (int)ceil(size / (0.35 * sqrt(s->width * s->width + away / 4)));
-            if (s->profile != MCS_PROFILE_GGX) {
-                const fall at_middle = fall_at(s, w);
-                sub = at_middle.root - 2 * size / at_middle.scale < 6 ? (int)ceil(fmin(size / (0.35 * at_middle.scale), SUB_MOST))
-                                                                      : 1;
-            }
-            sub = sub > least ? sub < SUB_MOST ? sub : SUB_MOST : least;
-            double x[SUB_MOST + FINE], wide[SUB_MOST + FINE];
-            const int across = middles(f, at.t1, at.part1, sub, x, wide);
-            double y[SUB_MOST + FINE], high[SUB_MOST + FINE];
-            const int down = middles(f, at.t2, at.part2, sub, y, high);
-            for (int i = 0; i < down; i++)
-                for (int j = 0; j < across; j++) {
-                    const double a = omega * wide[j] * high[i];
-                    const double u1 = at.t1 + x[j] * at.part1;
-                    const double u2 = at.t2 + y[i] * at.part2;
-                    const double q = fmax(light * fit_at(f, u1, u2), 0);
-                    const double q1 = fmax(light * fit_at(g, u1, u2), 0);
-                    if (across * down > 1) {
-                        const double half = top + height * y[i];
-                        const double sine = 2 * sqrt(half * (1 - half));
-                        const double ph = 2 * pi * (c + x[j]) / m->w;
-                        w[0] = sine * cos(ph);
-                        w[1] = sine * sin(ph);
-                        w[2] = 1 - 2 * half;
-                    }
-                    double visible;
-                    const double F = light * reflect(s, w, &visible);
-                    if (!(F > 0)) continue;
-                    const double pb = s->matte >= 1 ? F / light : visible;
-                    const double pp = q + d.share * visible;
-                    if (hash01(r * m->w + c, 22) < 1e-3f && i == down / 2 && j == across / 2 && surely_in(m, x[j], y[i])) {
-                        const mcs_vec3 to = vec(w[0], w[1], w[2]);
-                        const double q2 = density(&d, to);
-                        const double q3 = density(&o, to);
-                        const double lobe_wrong = lobe_off(s, to, visible);
-                        const double tol = 2 * (slack_of_row(m, r) + slack_of(m, light, r) + row_slack[tile] + 8 * eps);
-                        const places off = places_off(m, &at, r, row_slack[tile]);
-                        const doubt of = fit_doubt(f, u1, u2, off);
-                        const doubt og = fit_doubt(g, u1, u2, off);
-                        CHECK(fabs(q2 - pp) <= tol * q + d.share * lobe_wrong + 4 * eps * q2 + light * (varies(&of, off) + of.blur),
-                              "%s: density %g, not %g", m->name, q2, pp);
-                        CHECK(fabs(q3 - q1 - o.share * visible) <= tol * q1 + o.share * lobe_wrong + o.share_off * visible +
-                                                                       4 * eps * q3 + light * (varies(&og, off) + og.blur),
-                              "%s: one-shot density %g, not %g", m->name, q3, q1 + o.share * visible);
-                    }
-                    I += a * F;
-                    env += a * F * F / pe;
-                    brdf += a * F * F / pb;
-                    product += a * F * F / pp;
-                    oneshot += a * F * F / (q1 + o.share * visible);
-                    a_env += a * F * F * pe / ((pe + pb) * (pe + pb));
-                    a_brdf += a * F * F * pb / ((pe + pb) * (pe + pb));
-                    m_env += a * F * pe / (pe + pb);
-                }
-        }
-    }
-    variances v;
-    v.env = env / I / I - 1;
-    v.brdf = brdf / I / I - 1;
-    v.product = product / I / I - 1;
-    v.oneshot = oneshot / I / I - 1;
+    CHECK(fine <= v.d.most_fine, "%s: %d tiles of many parts", m->name, fine);
+    for (uint32_t r = 0; r < m->h; r++) add_row(&v, r, least);
+    const double mean = v.mean;
+    variances result;
+    result.env = v.env / mean / mean - 1;
+    result.brdf = v.brdf / mean / mean - 1;
+    result.product = v.product / mean / mean - 1;
+    result.oneshot = v.oneshot / mean / mean - 1;
     /* two samples, one of each: times two for the same number of samples */
-    v.mis = 2 * (a_env - m_env * m_env + a_brdf - (I - m_env) * (I - m_env)) / I / I;
-    sampler_free(&d);
-    sampler_free(&o);
-    free(fits);
-    free(one_fits);
-    return v;
+    result.mis = 2 * (v.a_env - v.m_env * v.m_env + v.a_brdf - (mean - v.m_env) * (mean - v.m_env)) / mean / mean;
+    sampler_free(&v.d);
+    sampler_free(&v.o);
+    free(v.fits);
+    free(v.one_fits);
+    return result;
 }
 
 typedef struct {

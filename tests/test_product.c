@@ -163,110 +163,124 @@ static double model(int k, mcs_vec3 wo, mcs_vec3 wi) {
     return wi.z > 0 ? f * (double)wi.z : 0;
 }
 
-static void test_weights(void) {
-    static const char *const names[] = {"Phong 20", "Ward 0.3 x 0.2", "Beckmann 0.4", "Ashikhmin-Shirley 30, 10"};
+/* Weights of tiles for a lobe; no tile is left out. */
+static float *weights_of_model(int k, const scene *m, const surface *s) {
+    const uint32_t n = 2 * m->rows * m->rows;
+    float *weight = (float *)memory(n * sizeof *weight);
+    for (uint32_t q = 0; q < n; q++) {
+        mcs_vec3 w = mcs_to_local(&s->r.frame, mcs_tiles_direction(tiles_of(m), env_of(m), q));
+        /* a tile may reach above the horizon when its mean direction does not */
+        w = w.z < 0.1f ? vec(w.x, w.y, 0.1) : w;
+        weight[q] = (float)model(k, s->r.wo, w) + 1e-3f;
+    }
+    return weight;
+}
+/* The reflected light, by midpoints; and that the density is where light is, and one in all. */
+static double check_model_density(int k, const sampler *d) {
     enum { SUB = 16 };
+    const scene *m = d->m;
+    const mcs_reflection *r = &d->s->r;
+    double truth = 0;
+    double sum = 0;
+    for (uint32_t y = 0; y < m->h; y++)
+        for (uint32_t x = 0; x < m->w; x++) {
+            const double light = m->light[y * m->w + x];
+            const double omega = m->area[y];
+            const double p = density(d, point(m->w, m->h, x, y, 0.5, 0.5));
+            CHECK((p > 0) == (light > 0), "texel (%u, %u): density %g of light %g", x, y, p, light);
+            sum += p * omega;
+            for (int i = 0; i < SUB * SUB; i++) {
+                const mcs_vec3 w = point(m->w, m->h, x, y, (i / SUB + 0.5) / SUB, (i % SUB + 0.5) / SUB);
+                truth += light * omega / (SUB * SUB) * model(k, r->wo, mcs_to_local(&r->frame, w));
+            }
+        }
+    CHECK(fabs(sum - 1) <= 1e-5, "the density integrates to %g", sum);
+    return truth;
+}
+static void check_model(int k) {
     const double f = scale();
     const int count = (int)(f >= 10 ? 1e7 : f < 1 ? 3e5 * f : 3e5);
+    double sum = 0;
+    double sum2 = 0;
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 73);
+    scene m = scene_make("sun", 64, 32, k % 2 ? v_sun : v_room, k < 2 ? 16 : 32);
+    const surface s = surface_make(normals[3 + k], local_wo(0.5 + 0.1 * k, 0.2 * k), lobes[0]);
+    float *weight = weights_of_model(k, &m, &s);
+    sampler d = sampler_weights(&m, &s, weight);
+    CHECK(d.status == MCS_OK, "build returns %d", (int)d.status);
+    const double truth = check_model_density(k, &d);
+    for (int i = 0; i < count; i++) {
+        const float u1 = mcs_pcg32_float(&rng);
+        const float u2 = mcs_pcg32_float(&rng);
+        const mcs_texel t = mcs_product_sample(d.p, u1, u2);
+        double v = 0;
+        if (t.pdf > 0) v = m.light[t.row * m.w + t.col] * model(k, s.r.wo, mcs_to_local(&s.r.frame, t.w)) / (double)t.pdf;
+        sum += v;
+        sum2 += v * v;
+        if (i % 64 == 0)
+            CHECK(t.pdf > 0 && agrees(&d, t), "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2, density(&d, t.w),
+                  (double)t.pdf);
+    }
+    const double error = sqrt(fmax(sum2 - sum * sum / count, 0) / count / (count - 1.0));
+    /* midpoints 1/16 of a texel apart, 0.006, in lobes wider than 0.1: (0.006/0.1)^2 / 24 */
+    CHECK(fabs(sum / count - truth) <= 4 * error + 1.5e-4 * truth, "mean %g with error %g, not %g", sum / count, error, truth);
+    free(weight);
+    sampler_free(&d);
+    scene_free(&m);
+}
+
+/* One tile alone has weight (kind 1), or the others have 1e-44 (kind 2), or all have the same (kind 0). */
+static void check_far_weights(const scene *m, const surface *s, float size, int kind) {
+    float weight[512];
+    uint32_t bad = 0;
+    double sum = 0;
+    for (uint32_t q = 0; q < 512; q++) weight[q] = !kind || q == 100 ? size : kind == 1 ? 0 : 1e-44f;
+    sampler d = sampler_weights(m, s, weight);
+    CHECK(d.status == MCS_OK, "%g: build returns %d", (double)size, (int)d.status);
+    for (uint32_t r = 0; r < 32; r++)
+        for (uint32_t c = 0; c < 64; c++) {
+            const double p = density(&d, point(64, 32, c, r, 0.5, 0.5));
+            bad += !(p >= 0) || (p > 0) != (weight[tile_at(m, c, r)] > 0);
+            sum += p * m->area[r];
+        }
+    CHECK(bad == 0, "weights of %g: %u texels that can be drawn and should not, or the other way", (double)size, bad);
+    CHECK(fabs(sum - 1) <= 1e-5, "weights of %g: the density integrates to %g", (double)size, sum);
+    check_sane(&d, 1);
+    sampler_free(&d);
+}
+/* An infinite weight is a sun, other bad ones are black. Kind 1: none is good; 2: nor infinite. */
+static void check_bad_weights(const scene *m, const surface *s, int kind) {
+    static const float wrong[] = {NAN, INFINITY, -1, -0.0f, -INFINITY};
+    float weight[512];
+    for (uint32_t q = 0; q < 512; q++) weight[q] = kind || q % 3 ? wrong[q % 5] : 1;
+    for (uint32_t q = 0; kind == 2 && q < 512; q++) weight[q] = weight[q] > 0 ? NAN : weight[q];
+    sampler d = sampler_weights(m, s, weight);
+    CHECK(d.status == (kind == 2 ? MCS_UNIFORM : MCS_OK), "build returns %d", (int)d.status);
+    check_sane(&d, 1);
+    for (uint32_t r = 0; r < 32; r++)
+        for (uint32_t c = 0; c < 64; c++) {
+            const double p = density(&d, point(64, 32, c, r, 0.5, 0.5));
+            const double want = weight[tile_at(m, c, r)];
+            CHECK(p >= 0 && p <= FLT_MAX && (p > 0) == (want > 0), "texel (%u, %u): density %g of weight %g", c, r, p, want);
+        }
+    sampler_free(&d);
+}
+
+static void test_weights(void) {
+    static const char *const names[] = {"Phong 20", "Ward 0.3 x 0.2", "Beckmann 0.4", "Ashikhmin-Shirley 30, 10"};
+    static const float sizes[] = {1e-44f, 1e-38f, 1e-35f, 1e-30f, 1e-10f, 1, 1e10f, 1e30f, 3e38f};
     mcst_group("product, weights");
-    for (int k = 0; k < MODELS; k++) {
-        double truth = 0;
-        double sum = 0;
-        double sum2 = 0;
-        double density_sum = 0;
-        mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 73);
-        if (!mcst_case("%s", names[k])) continue;
-        scene m = scene_make("sun", 64, 32, k % 2 ? v_sun : v_room, k < 2 ? 16 : 32);
-        surface s = surface_make(normals[3 + k], local_wo(0.5 + 0.1 * k, 0.2 * k), lobes[0]);
-        float *weight;
-        weight = (float *)memory(2 * m.rows * m.rows * sizeof *weight);
-        for (uint32_t q = 0; q < 2 * m.rows * m.rows; q++) {
-            mcs_vec3 w = mcs_to_local(&s.r.frame, mcs_tiles_direction(tiles_of(&m), env_of(&m), q));
-            /* a tile may reach above the horizon when its mean direction does not */
-            w = w.z < 0.1f ? vec(w.x, w.y, 0.1) : w;
-            weight[q] = (float)model(k, s.r.wo, w) + 1e-3f;
-        }
-        sampler d = sampler_weights(&m, &s, weight);
-        CHECK(d.status == MCS_OK, "build returns %d", (int)d.status);
-        for (uint32_t r = 0; r < m.h; r++)
-            for (uint32_t c = 0; c < m.w; c++) {
-                const double light = m.light[r * m.w + c];
-                const double omega = m.area[r];
-                const double p = density(&d, point(m.w, m.h, c, r, 0.5, 0.5));
-                CHECK((p > 0) == (light > 0), "texel (%u, %u): density %g of light %g", c, r, p, light);
-                density_sum += p * omega;
-                for (int i = 0; i < SUB; i++)
-                    for (int j = 0; j < SUB; j++)
-                        truth +=
-                            light * omega / (SUB * SUB) *
-                            model(k, s.r.wo, mcs_to_local(&s.r.frame, point(m.w, m.h, c, r, (i + 0.5) / SUB, (j + 0.5) / SUB)));
-            }
-        CHECK(fabs(density_sum - 1) <= 1e-5, "the density integrates to %g", density_sum);
-        for (int i = 0; i < count; i++) {
-            const float u1 = mcs_pcg32_float(&rng);
-            const float u2 = mcs_pcg32_float(&rng);
-            const mcs_texel t = mcs_product_sample(d.p, u1, u2);
-            const double v =
-                t.pdf > 0 ? m.light[t.row * m.w + t.col] * model(k, s.r.wo, mcs_to_local(&s.r.frame, t.w)) / (double)t.pdf : 0;
-            sum += v;
-            sum2 += v * v;
-            if (i % 64 == 0)
-                CHECK(t.pdf > 0 && agrees(&d, t), "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2, density(&d, t.w),
-                      (double)t.pdf);
-        }
-        const double error = sqrt(fmax(sum2 - sum * sum / count, 0) / count / (count - 1.0));
-        /* midpoints 1/16 of a texel apart, 0.006, in lobes wider than 0.1: (0.006/0.1)^2 / 24 */
-        CHECK(fabs(sum / count - truth) <= 4 * error + 1.5e-4 * truth, "mean %g with error %g, not %g", sum / count, error, truth);
-        free(weight);
-        sampler_free(&d);
-        scene_free(&m);
-    }
+    for (int k = 0; k < MODELS; k++)
+        if (mcst_case("%s", names[k])) check_model(k);
+    const surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[0]);
     if (mcst_case("weights far from 1")) {
-        static const float sizes[] = {1e-44f, 1e-38f, 1e-35f, 1e-30f, 1e-10f, 1, 1e10f, 1e30f, 3e38f};
         scene m = scene_make("sun", 64, 32, v_sun, 16);
-        const surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[0]);
-        float weight[512];
-        for (int i = 0; i < (int)(sizeof sizes / sizeof *sizes); i++)
-            for (int k = 0; k < 3; k++) { /* 1: one tile alone has weight; 2: the others have 1e-44 */
-                uint32_t bad = 0;
-                double sum = 0;
-                for (uint32_t q = 0; q < 512; q++) weight[q] = !k || q == 100 ? sizes[i] : k == 1 ? 0 : 1e-44f;
-                sampler d = sampler_weights(&m, &s, weight);
-                CHECK(d.status == MCS_OK, "%g: build returns %d", (double)sizes[i], (int)d.status);
-                for (uint32_t r = 0; r < 32; r++)
-                    for (uint32_t c = 0; c < 64; c++) {
-                        const double p = density(&d, point(64, 32, c, r, 0.5, 0.5));
-                        bad += !(p >= 0) || (p > 0) != (weight[tile_at(&m, c, r)] > 0);
-                        sum += p * m.area[r];
-                    }
-                CHECK(bad == 0, "weights of %g: %u texels that can be drawn and should not, or the other way", (double)sizes[i],
-                      bad);
-                CHECK(fabs(sum - 1) <= 1e-5, "weights of %g: the density integrates to %g", (double)sizes[i], sum);
-                check_sane(&d, 1);
-                sampler_free(&d);
-            }
+        for (int k = 0; k < 3 * (int)(sizeof sizes / sizeof *sizes); k++) check_far_weights(&m, &s, sizes[k / 3], k % 3);
         scene_free(&m);
     }
-    if (mcst_case("bad weights")) { /* an infinite one is a sun, the others are black */
-        static const float wrong[] = {NAN, INFINITY, -1, -0.0f, -INFINITY};
+    if (mcst_case("bad weights")) {
         scene m = scene_make("sun", 64, 32, v_sun, 16);
-        const surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[0]);
-        float weight[512];
-        for (int k = 0; k < 3; k++) { /* 1: none is good; 2: nor infinite */
-            for (uint32_t q = 0; q < 512; q++) weight[q] = k || q % 3 ? wrong[q % 5] : 1;
-            for (uint32_t q = 0; k == 2 && q < 512; q++) weight[q] = weight[q] > 0 ? NAN : weight[q];
-            sampler d = sampler_weights(&m, &s, weight);
-            CHECK(d.status == (k == 2 ? MCS_UNIFORM : MCS_OK), "build returns %d", (int)d.status);
-            check_sane(&d, 1);
-            for (uint32_t r = 0; r < 32; r++)
-                for (uint32_t c = 0; c < 64; c++) {
-                    const double p = density(&d, point(64, 32, c, r, 0.5, 0.5));
-                    const double want = weight[tile_at(&m, c, r)];
-                    CHECK(p >= 0 && p <= FLT_MAX && (p > 0) == (want > 0), "texel (%u, %u): density %g of weight %g", c, r, p,
-                          want);
-                }
-            sampler_free(&d);
-        }
+        for (int k = 0; k < 3; k++) check_bad_weights(&m, &s, k);
         scene_free(&m);
     }
 }
@@ -323,72 +337,90 @@ static void test_mutants(void) {
 
 /* ---- well-spread points ---- */
 
+enum { SPREAD_STEPS = 11 };
+static int spread_seeds(void) { return scale() < 1 ? 32 : 64; }
+/* Errors of means of scrambled Sobol points at 64, 128, ... of them. */
+typedef struct {
+    int seeds, steps;
+    double square[SPREAD_STEPS]; /* sum over seeds of squared relative errors */
+    double sum2;                 /* of all samples' squares */
+} spread;
+
+static void add_seed(const sampler *d, uint32_t key, double truth, spread *e) {
+    const scene *m = d->m;
+    double sum = 0;
+    int step = 0;
+    for (uint32_t i = 0; i < 64u << (e->steps - 1); i++) {
+        const mcs_texel t = draw(d, mcs_sobol(i, 0, key), mcs_sobol(i, 1, key));
+        double v = 0;
+        double visible;
+        if (t.pdf > 0) v = m->light[t.row * m->w + t.col] * reflect_f(d->s, t.w, &visible) / (double)t.pdf;
+        sum += v;
+        e->sum2 += v * v;
+        if (i + 1 == 64u << step) {
+            e->square[step] += pow(sum / (i + 1) / truth - 1, 2);
+            step++;
+        }
+    }
+}
+/* Least squares of the logarithm of the error over that of the number of points. */
+static double slope_of(const spread *e) {
+    double sx = 0;
+    double sy = 0;
+    double sxx = 0;
+    double sxy = 0;
+    for (int step = 0; step < e->steps; step++) {
+        const double x = log(64u << step);
+        const double y = 0.5 * log(e->square[step] / e->seeds);
+        sx += x;
+        sy += y;
+        sxx += x * x;
+        sxy += x * y;
+    }
+    return (e->steps * sxy - sx * sy) / (e->steps * sxx - sx * sx);
+}
+/* Adds the logarithm of how much better they are than independent points, and the slope. */
+static void check_spread(const scene *m, const surface *s, int form, double *gain, double *rate) {
+    spread e = {spread_seeds(), scale() >= 10 ? SPREAD_STEPS : 7, {0}, 0};
+    const uint32_t most = 64u << (e.steps - 1);
+    sampler d = sampler_make(m, s, form);
+    const double truth = true_light(m, s);
+    CHECK(!(d.share > 0), "share %g", d.share);
+    for (int seed = 0; seed < e.seeds; seed++) add_seed(&d, (uint32_t)(mcst.seed + 7919u * (uint32_t)seed), truth, &e);
+    const double slope = slope_of(&e);
+    const double alone = sqrt((e.sum2 / e.seeds / most / truth / truth - 1) / most);
+    const double error = sqrt(e.square[e.steps - 1] / e.seeds);
+    mcst_note("    %-32s error %.2e at 64, %.2e at %u, 1/%.1f of independent: N^%.2f%s\n", mcst.name, sqrt(e.square[0] / e.seeds),
+              error, most, alone / error, slope, slope <= -0.9 ? "" : ", -0.9 not met");
+    CHECK(error <= alone, "error %.2e at %u, of independent points %.2e", error, most, alone);
+    *gain += log(alone / error);
+    *rate += slope;
+    sampler_free(&d);
+}
+
 static void test_spread(void) {
-    enum { SEEDS = 64, STEPS = 11 };
-    const int seeds = scale() < 1 ? 32 : SEEDS;
-    const int steps = scale() >= 10 ? STEPS : 7;
-    const uint32_t most = 64u << (steps - 1);
+    const int seeds = spread_seeds();
     double gain = 0;
     double rate = 0;
     int cases = 0;
     mcst_group("product, spread points");
-    for (int k = 0; k < 4; k++)
-        for (int form = 0; form < 2; form++) {
-            double square[STEPS] = {0};
-            double sx = 0;
-            double sy = 0;
-            double sxx = 0;
-            double sxy = 0;
-            double sum2 = 0;
-            lobe l = lobes[0];
-            if (k % 2) {
-                l.matte = 0;
-                l.ax = l.ay = 0.3f;
-                l.name = "alpha 0.3";
-            }
-            if (!mcst_case("%s, %s, %s", form ? "prepared" : "one-shot", k < 2 ? "smooth" : "room", l.name)) continue;
-            scene m = scene_make("", 256, 128, k < 2 ? v_smooth : v_room, 16);
-            const surface s = surface_make(normals[4], local_wo(0.7, 0.3), l);
-            sampler d = sampler_make(&m, &s, form);
-            const double truth = true_light(&m, &s);
-            CHECK(!(d.share > 0), "share %g", d.share);
-            for (int seed = 0; seed < seeds; seed++) {
-                double sum = 0;
-                int step = 0;
-                for (uint32_t i = 0; i < most; i++) {
-                    const uint32_t key = (uint32_t)(mcst.seed + 7919u * (uint32_t)seed);
-                    const mcs_texel t = draw(&d, mcs_sobol(i, 0, key), mcs_sobol(i, 1, key));
-                    double v = 0;
-                    double visible;
-                    if (t.pdf > 0) v = m.light[t.row * m.w + t.col] * reflect_f(&s, t.w, &visible) / (double)t.pdf;
-                    sum += v;
-                    sum2 += v * v;
-                    if (i + 1 == 64u << step) {
-                        square[step] += pow(sum / (i + 1) / truth - 1, 2);
-                        step++;
-                    }
-                }
-            }
-            for (int step = 0; step < steps; step++) {
-                const double x = log(64u << step);
-                const double y = 0.5 * log(square[step] / seeds);
-                sx += x;
-                sy += y;
-                sxx += x * x;
-                sxy += x * y;
-            }
-            const double slope = (steps * sxy - sx * sy) / (steps * sxx - sx * sx);
-            const double alone = sqrt((sum2 / seeds / most / truth / truth - 1) / most);
-            const double error = sqrt(square[steps - 1] / seeds);
-            mcst_note("    %-32s error %.2e at 64, %.2e at %u, 1/%.1f of independent: N^%.2f%s\n", mcst.name,
-                      sqrt(square[0] / seeds), error, most, alone / error, slope, slope <= -0.9 ? "" : ", -0.9 not met");
-            CHECK(error <= alone, "error %.2e at %u, of independent points %.2e", error, most, alone);
-            gain += log(alone / error);
-            rate += slope;
-            cases++;
-            sampler_free(&d);
-            scene_free(&m);
+    for (int k = 0; k < 8; k++) {
+        const int form = k % 2;
+        const int shiny = k / 2 % 2;
+        const int room = k / 4;
+        lobe l = lobes[0];
+        if (shiny) {
+            l.matte = 0;
+            l.ax = l.ay = 0.3f;
+            l.name = "alpha 0.3";
         }
+        if (!mcst_case("%s, %s, %s", form ? "prepared" : "one-shot", room ? "room" : "smooth", l.name)) continue;
+        scene m = scene_make("", 256, 128, room ? v_room : v_smooth, 16);
+        const surface s = surface_make(normals[4], local_wo(0.7, 0.3), l);
+        check_spread(&m, &s, form, &gain, &rate);
+        cases++;
+        scene_free(&m);
+    }
     /* The logarithm of an rms of 64 errors has a standard deviation of 1/sqrt(2*64), and the mean of eight at most that, however
      * much they have in common: independent points would pass at three of them once in 700 runs. Their rate is -0.5. */
     if (cases == 8 && mcst_case("all together")) {
