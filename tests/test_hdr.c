@@ -194,102 +194,109 @@ static void test_pixels(void) {
 
 /* ---- Headers ---- */
 
-static void test_headers(void) {
-    static const char *const good[] = {
-        "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n",
-        "#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n",
-        "#?RGBE\nFORMAT=32-bit_rle_rgbe\n",
-        "#?AUTOPANO\nFORMAT= \t32-bit_rle_rgbe \n",
-        "#?\nFORMAT=\n",
-        "#?RADIANCE\n",
-        "FORMAT=32-bit_rle_rgbe\n",
-        "",
-        "#?RADIANCE\n# a comment\nrpict -vp 0 0 0\n\tFORMAT=ascii\n\tEXPOSURE=7\nVIEW= -vtl\nPIXASPECT=0.5\nformat=none\n",
-        "#?RADIANCE\nFORMAT=32-bit_rle_xyze\nFORMAT=32-bit_rle_rgbe\n",
-        "#?RADIANCE\nEXPOSURE=4\nEXPOSURE= 0.25 # back\nCOLORCORR= 2 .5 1\nCOLORCORR=.5 2 1 \r\n",
-    };
-    static const char *const bad[][2] = {
-        {"#?RADIANCE\nFORMAT=32-bit_rle_rgb\n", "FORMAT is '32-bit_rle_rgb';"},
-        {"#?RADIANCE\nFORMAT=32-bit_rle_xyzee\n", "FORMAT is '32-bit_rle_xyzee';"},
-        {"#?RADIANCE\nFORMAT=Radiance_spectra\r\n", "FORMAT is 'Radiance_spectra';"},
-        {"#?RADIANCE\nFORMAT=\033[31m\177\200\n", "FORMAT is '\?[31m\?\?';"},
-        {"#?RADIANCE\nEXPOSURE=0\n", "an EXPOSURE line has no positive number"},
-        {"#?RADIANCE\nEXPOSURE=-1\n", "an EXPOSURE line has no positive number"},
-        {"#?RADIANCE\nEXPOSURE=bright\n", "an EXPOSURE line has no positive number"},
-        {"#?RADIANCE\nEXPOSURE=nan\n", "an EXPOSURE line has no positive number"},
-        {"#?RADIANCE\nEXPOSURE=1e999\n", "an EXPOSURE line has no positive number"},
-        {"#?RADIANCE\nEXPOSURE=1e20\nEXPOSURE=1e20\n", "EXPOSURE and COLORCORR lines multiply to 1e+40"},
-        {"#?RADIANCE\nCOLORCORR=1 1e-200 1\nCOLORCORR=1 1e-200 1\n", "EXPOSURE and COLORCORR lines multiply to 0"},
-        {"#?RADIANCE\nCOLORCORR=1 1\n", "a COLORCORR line does not have three positive numbers"},
-        {"#?RADIANCE\nCOLORCORR=1 1 0\n", "a COLORCORR line does not have three positive numbers"},
-        {"#?RADIANCE\nPRIMARIES=.64 .33 .3 .6 .15 .06 .3127\n", "PRIMARIES line does not have eight numbers"},
-        {"#?RADIANCE\nPRIMARIES=0 0 0 0 0 0 0 0\n", "PRIMARIES are no triangle"},
-        {"#?RADIANCE\nPRIMARIES=.1 .1 .2 .2 .3 .3 .25 .25\n", "PRIMARIES are no triangle"},
-        {"#?RADIANCE\nPRIMARIES=.64 .33 .3 .6 .15 .06 .05 .9\n", "PRIMARIES are no triangle"},
-        {"#?RADIANCE\nFORMAT=32-bit_rle_xyze\nPRIMARIES=1 0 0 1 0 0 .3 0\n", "white of the PRIMARIES"},
-        {"\211PNG\n", "no Radiance picture"},
-    };
-    static const char *const resolution[] = {"-Y 2 +X 3",   "-Y 2 +X 3\r",      "-Y   2   +X   3", "-Y2+X3",
-                                             "-Y 02 X 003", "-Y 2 +X 3 and so", "-Y\t2 +X\t3"};
-    static const char *const no_resolution[][2] = {{"-Y -2 +X 3", "two positive numbers"},
-                                                   {"-Y 2 +X 0", "two positive numbers"},
-                                                   {"-Y +X", "two positive numbers"},
-                                                   {"2 3", "is not like"},
-                                                   {"-Y 2", "is not like"},
-                                                   {"", "is not like"},
-                                                   {"P6 3 2 255", "is not like"},
-                                                   {"-Y 999999999 +X 999999999", "more than"},
-                                                   {"-Y 1 +X 134217729", "more than"},
-                                                   {"-Y 99999999999999999999 +X 9", "more than"},
-                                                   {"-Y 9 +X 99999999999999999999", "more than"}};
-    static bytes file;
-    mcst_group("headers");
-    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+static const char *const good_headers[] = {
+    "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n",
+    "#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n",
+    "#?RGBE\nFORMAT=32-bit_rle_rgbe\n",
+    "#?AUTOPANO\nFORMAT= \t32-bit_rle_rgbe \n",
+    "#?\nFORMAT=\n",
+    "#?RADIANCE\n",
+    "FORMAT=32-bit_rle_rgbe\n",
+    "",
+    "#?RADIANCE\n# a comment\nrpict -vp 0 0 0\n\tFORMAT=ascii\n\tEXPOSURE=7\nVIEW= -vtl\nPIXASPECT=0.5\nformat=none\n",
+    "#?RADIANCE\nFORMAT=32-bit_rle_xyze\nFORMAT=32-bit_rle_rgbe\n",
+    "#?RADIANCE\nEXPOSURE=4\nEXPOSURE= 0.25 # back\nCOLORCORR= 2 .5 1\nCOLORCORR=.5 2 1 \r\n",
+};
+static const char *const bad_headers[][2] = {
+    {"#?RADIANCE\nFORMAT=32-bit_rle_rgb\n", "FORMAT is '32-bit_rle_rgb';"},
+    {"#?RADIANCE\nFORMAT=32-bit_rle_xyzee\n", "FORMAT is '32-bit_rle_xyzee';"},
+    {"#?RADIANCE\nFORMAT=Radiance_spectra\r\n", "FORMAT is 'Radiance_spectra';"},
+    {"#?RADIANCE\nFORMAT=\033[31m\177\200\n", "FORMAT is '\?[31m\?\?';"},
+    {"#?RADIANCE\nEXPOSURE=0\n", "an EXPOSURE line has no positive number"},
+    {"#?RADIANCE\nEXPOSURE=-1\n", "an EXPOSURE line has no positive number"},
+    {"#?RADIANCE\nEXPOSURE=bright\n", "an EXPOSURE line has no positive number"},
+    {"#?RADIANCE\nEXPOSURE=nan\n", "an EXPOSURE line has no positive number"},
+    {"#?RADIANCE\nEXPOSURE=1e999\n", "an EXPOSURE line has no positive number"},
+    {"#?RADIANCE\nEXPOSURE=1e20\nEXPOSURE=1e20\n", "EXPOSURE and COLORCORR lines multiply to 1e+40"},
+    {"#?RADIANCE\nCOLORCORR=1 1e-200 1\nCOLORCORR=1 1e-200 1\n", "EXPOSURE and COLORCORR lines multiply to 0"},
+    {"#?RADIANCE\nCOLORCORR=1 1\n", "a COLORCORR line does not have three positive numbers"},
+    {"#?RADIANCE\nCOLORCORR=1 1 0\n", "a COLORCORR line does not have three positive numbers"},
+    {"#?RADIANCE\nPRIMARIES=.64 .33 .3 .6 .15 .06 .3127\n", "PRIMARIES line does not have eight numbers"},
+    {"#?RADIANCE\nPRIMARIES=0 0 0 0 0 0 0 0\n", "PRIMARIES are no triangle"},
+    {"#?RADIANCE\nPRIMARIES=.1 .1 .2 .2 .3 .3 .25 .25\n", "PRIMARIES are no triangle"},
+    {"#?RADIANCE\nPRIMARIES=.64 .33 .3 .6 .15 .06 .05 .9\n", "PRIMARIES are no triangle"},
+    {"#?RADIANCE\nFORMAT=32-bit_rle_xyze\nPRIMARIES=1 0 0 1 0 0 .3 0\n", "white of the PRIMARIES"},
+    {"\211PNG\n", "no Radiance picture"},
+};
+static const char *const resolutions[] = {"-Y 2 +X 3",   "-Y 2 +X 3\r",      "-Y   2   +X   3", "-Y2+X3",
+                                          "-Y 02 X 003", "-Y 2 +X 3 and so", "-Y\t2 +X\t3"};
+static const char *const bad_resolutions[][2] = {{"-Y -2 +X 3", "two positive numbers"},
+                                                 {"-Y 2 +X 0", "two positive numbers"},
+                                                 {"-Y +X", "two positive numbers"},
+                                                 {"2 3", "is not like"},
+                                                 {"-Y 2", "is not like"},
+                                                 {"", "is not like"},
+                                                 {"P6 3 2 255", "is not like"},
+                                                 {"-Y 999999999 +X 999999999", "more than"},
+                                                 {"-Y 1 +X 134217729", "more than"},
+                                                 {"-Y 99999999999999999999 +X 9", "more than"},
+                                                 {"-Y 9 +X 99999999999999999999", "more than"}};
+static const char plain[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n";
+
+static void put_six(bytes *file) {
+    for (int k = 0; k < 6; k++) put_numbered(file, k);
+}
+
+static void test_good_headers(bytes *file) {
+    for (size_t i = 0; i < sizeof good_headers / sizeof *good_headers; i++) {
         if (!mcst_case("read, %d", (int)i)) continue;
-        begin(&file, good[i], "-Y 2 +X 3");
-        for (int k = 0; k < 6; k++) put_numbered(&file, k);
-        expect_numbered(&file, 3, 2);
+        begin(file, good_headers[i], "-Y 2 +X 3");
+        put_six(file);
+        expect_numbered(file, 3, 2);
         hdr_picture p;
-        if (load(&p, &file)) CHECK(!p.converts, "a conversion of '%s'", good[i]);
+        if (load(&p, file)) CHECK(!p.converts, "a conversion of '%s'", good_headers[i]);
         free(p.pixel);
     }
-    for (size_t i = 0; i < sizeof resolution / sizeof *resolution; i++) {
+    for (size_t i = 0; i < sizeof resolutions / sizeof *resolutions; i++) {
         if (!mcst_case("resolution, %d", (int)i)) continue;
-        begin(&file, good[0], resolution[i]);
-        for (int k = 0; k < 6; k++) put_numbered(&file, k);
-        put_text(&file, "something that follows");
-        expect_numbered(&file, 3, 2);
+        begin(file, plain, resolutions[i]);
+        put_six(file);
+        put_text(file, "something that follows");
+        expect_numbered(file, 3, 2);
     }
     if (mcst_case("all lines end with CRLF")) {
-        file.n = 0;
-        put_text(&file, "#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 2 +X 3\r\n");
-        for (int k = 0; k < 6; k++) put_numbered(&file, k);
-        expect_numbered(&file, 3, 2);
+        file->n = 0;
+        put_text(file, "#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 2 +X 3\r\n");
+        put_six(file);
+        expect_numbered(file, 3, 2);
     }
     if (mcst_case("long lines")) {
-        file.n = 0;
-        put_text(&file, "#?RADIANCE\n");
+        file->n = 0;
+        put_text(file, "#?RADIANCE\n");
         for (int line = 0; line < 20; line++) {
-            put_text(&file, "# ");
-            for (int k = 0; k < 100 + 100 * line; k++) put_text(&file, "FORMAT=x");
-            put_text(&file, "\n");
+            put_text(file, "# ");
+            for (int k = 0; k < 100 + 100 * line; k++) put_text(file, "FORMAT=x");
+            put_text(file, "\n");
         }
-        put_text(&file, "\n-Y 2 +X 3\n");
-        for (int k = 0; k < 6; k++) put_numbered(&file, k);
-        expect_numbered(&file, 3, 2);
+        put_text(file, "\n-Y 2 +X 3\n");
+        put_six(file);
+        expect_numbered(file, 3, 2);
     }
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+}
+
+static void test_bad_headers(bytes *file) {
+    for (size_t i = 0; i < sizeof bad_headers / sizeof *bad_headers; i++) {
         if (!mcst_case("refused, %d", (int)i)) continue;
-        begin(&file, bad[i][0], "-Y 2 +X 3");
-        if (bad[i][0][0] != '#') begin(&file, bad[i][0], "IHDR");
-        for (int k = 0; k < 6; k++) put_numbered(&file, k);
-        expect_fault(&file, bad[i][1]);
+        begin(file, bad_headers[i][0], "-Y 2 +X 3");
+        if (bad_headers[i][0][0] != '#') begin(file, bad_headers[i][0], "IHDR");
+        put_six(file);
+        expect_fault(file, bad_headers[i][1]);
     }
-    for (size_t i = 0; i < sizeof no_resolution / sizeof *no_resolution; i++) {
+    for (size_t i = 0; i < sizeof bad_resolutions / sizeof *bad_resolutions; i++) {
         if (!mcst_case("resolution refused, %d", (int)i)) continue;
-        begin(&file, good[0], no_resolution[i][0]);
-        for (int k = 0; k < 6; k++) put_numbered(&file, k);
-        expect_fault(&file, no_resolution[i][1]);
+        begin(file, plain, bad_resolutions[i][0]);
+        put_six(file);
+        expect_fault(file, bad_resolutions[i][1]);
     }
     if (mcst_case("no file")) {
         hdr_picture p;
@@ -297,9 +304,16 @@ static void test_headers(void) {
         check_fault(&p);
         CHECK(!hdr_read(&p, ".") && strstr(p.fault, "directory"), "'%s'", p.fault);
         check_fault(&p);
-        file.n = 0;
-        expect_fault(&file, "empty");
+        file->n = 0;
+        expect_fault(file, "empty");
     }
+}
+
+static void test_headers(void) {
+    static bytes file;
+    mcst_group("headers");
+    test_good_headers(&file);
+    test_bad_headers(&file);
 }
 
 /* ---- Orientations ---- */
@@ -377,131 +391,156 @@ static void expect_alike(const bytes *file, uint32_t w, uint32_t h, int r, int g
     free(p.pixel);
 }
 
+static void check_width(bytes *file, uint32_t w) {
+    char resolution[40];
+    snprintf(resolution, sizeof resolution, "-Y 2 +X %u", w);
+    if (mcst_case("width %u, flat", w)) {
+        begin(file, "#?RADIANCE\n", resolution);
+        for (uint32_t k = 0; k < 2 * w; k++) put_pixel(file, 200, 2, (int)(k % 7), 130);
+        hdr_picture p;
+        const int ok = load(&p, file);
+        CHECK(ok && p.w == w && p.h == 2, "%s", p.fault);
+        for (uint32_t k = 0; ok && k < 2 * w; k++) CHECK(same(p.pixel[k], 200, 2, (int)(k % 7), 130), "pixel %u", k);
+        free(p.pixel);
+    }
+    if (mcst_case("width %u, runs of channels", w)) { /* Radiance takes them in any width below 32768 */
+        begin(file, "#?RADIANCE\n", resolution);
+        put_coded(file, w, 7, 0, 255, 131);
+        put_coded(file, w, 7, 0, 255, 131);
+        expect_alike(file, w, 2, 7, 0, 255, 131);
+    }
+    if (mcst_case("width %u, runs of pixels", w)) {
+        begin(file, "#?RADIANCE\n", resolution);
+        for (int line = 0; line < 2; line++) {
+            put_pixel(file, 129, 3, 4, 127);
+            for (uint32_t left = w - 1; left > 0; left >>= 8) put_run(file, (int)(left & 255));
+        }
+        expect_alike(file, w, 2, 129, 3, 4, 127);
+    }
+}
+
+/* too wide for runs of channels */
+static void check_width_40000(bytes *file) {
+    begin(file, "#?RADIANCE\n", "-Y 2 +X 40000");
+    for (int k = 0; k < 40000; k++) put_pixel(file, 2, 2, 100, 64);
+    put_pixel(file, 2, 2, 100, 64);
+    put_run(file, 39999 & 255);
+    put_run(file, 39999 >> 8);
+    expect_alike(file, 40000, 2, 2, 2, 100, 64);
+}
+
+static void check_literals(bytes *file) {
+    hdr_picture p;
+    begin(file, "#?RADIANCE\n", "-Y 1 +X 100");
+    put_pixel(file, 2, 2, 0, 100);
+    for (int channel = 0; channel < 4; channel++) {
+        put_pixel(file, 0, 0, 0, 60);
+        for (int k = 0; k < 60; k++) put(file, &(unsigned char){(unsigned char)(k + channel + 1)}, 1);
+        put(file, "\0\050", 2);
+        for (int k = 60; k < 100; k++) put(file, &(unsigned char){(unsigned char)(k + channel + 1)}, 1);
+    }
+    CHECK(load(&p, file), "%s", p.fault);
+    for (int k = 0; p.pixel && k < 100; k++) CHECK(same(p.pixel[k], k + 1, k + 2, k + 3, k + 4), "pixel %d", k);
+    free(p.pixel);
+}
+
+static void check_literal_of_128(bytes *file) {
+    begin(file, "#?RADIANCE\n", "-Y 1 +X 128");
+    put_pixel(file, 2, 2, 0, 128);
+    for (int channel = 0; channel < 4; channel++) {
+        put(file, "\200", 1);
+        for (int k = 0; k < 128; k++) put(file, "\311", 1);
+    }
+    expect_alike(file, 128, 1, 201, 201, 201, 201);
+}
+
+static void check_no_code(bytes *file) {
+    hdr_picture p;
+    begin(file, "#?RADIANCE\n", "-Y 2 +X 3"); /* (2, 2, 0, 5) in a width of 3, (1, 1, 1, 9) as the first of a line */
+    put_pixel(file, 2, 2, 0, 5);
+    put_pixel(file, 200, 200, 200, 129);
+    put_run(file, 1);
+    put_pixel(file, 1, 1, 1, 9);
+    put_run(file, 2);
+    CHECK(load(&p, file), "%s", p.fault);
+    if (p.pixel) {
+        CHECK(same(p.pixel[0], 2, 2, 0, 5) && same(p.pixel[2], 200, 200, 200, 129), "first line");
+        CHECK(same(p.pixel[3], 1, 1, 1, 9) && same(p.pixel[5], 1, 1, 1, 9), "second line");
+    }
+    free(p.pixel);
+}
+
+static void check_own_bytes(bytes *file) {
+    hdr_picture p;
+    static const int red[6] = {150, 150, 150, 160, 160, 170};
+    begin(file, "#?RADIANCE\n", "-Y 1 +X 6");
+    put_pixel(file, 150, 1, 2, 129);
+    put_run(file, 2);
+    put_pixel(file, 160, 1, 2, 129);
+    put_run(file, 1);
+    put_pixel(file, 170, 1, 2, 129);
+    CHECK(load(&p, file), "%s", p.fault);
+    for (int k = 0; p.pixel && k < 6; k++) CHECK(same(p.pixel[k], red[k], 1, 2, 129), "pixel %d", k);
+    free(p.pixel);
+}
+
+/* as Radiance: the rest of the run is dropped */
+static void check_runs_beyond(bytes *file) {
+    begin(file, "#?RADIANCE\n", "-Y 2 +X 9");
+    put_pixel(file, 150, 1, 2, 129);
+    for (int k = 0; k < 6; k++) put_run(file, 0);
+    put_run(file, 1); /* times 256^6 */
+    put_pixel(file, 150, 1, 2, 129);
+    put_run(file, 200);
+    expect_alike(file, 9, 2, 150, 1, 2, 129);
+}
+
+static void check_black(bytes *file) {
+    hdr_picture p;
+    begin(file, "#?RADIANCE\n", "-Y 1 +X 2");
+    put_pixel(file, 0, 0, 0, 140);
+    put_pixel(file, 0, 0, 0, 0);
+    CHECK(load(&p, file), "%s", p.fault);
+    for (size_t i = 0; p.pixel && i < 2; i++) {
+        float c[3];
+        hdr_color(&p, i, c);
+        CHECK(c[0] == 0 && c[1] == 0 && c[2] == 0, "%g %g %g", (double)c[0], (double)c[1], (double)c[2]);
+    }
+    free(p.pixel);
+}
+
+static void check_another_width(bytes *file) {
+    begin(file, "#?RADIANCE\n", "-Y 2 +X 20");
+    put_coded(file, 20, 200, 0, 255, 131);
+    put_coded(file, 21, 200, 0, 255, 131);
+    expect_fault(file, "scan line 2 is coded for a width of 21 instead of 20");
+}
+
+static void check_channels_beyond(bytes *file) {
+    for (int run = 0; run < 2; run++) {
+        begin(file, "#?RADIANCE\n", "-Y 1 +X 8");
+        put_pixel(file, 2, 2, 0, 8);
+        put_alike(file, 7, 3);
+        if (run) put_alike(file, 2, 3);
+        else put(file, "\002ab", 3);
+        expect_fault(file, "a run in scan line 1 goes beyond its end");
+    }
+}
+
 static void test_scanlines(void) {
     static const uint32_t widths[] = {1, 2, 7, 8, 9, 127, 128, 129, 255, 32767};
     static bytes file;
     mcst_group("scan lines");
-    hdr_picture p;
-    for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
-        const uint32_t w = widths[i];
-        char resolution[40];
-        snprintf(resolution, sizeof resolution, "-Y 2 +X %u", w);
-        if (mcst_case("width %u, flat", w)) {
-            begin(&file, "#?RADIANCE\n", resolution);
-            for (uint32_t k = 0; k < 2 * w; k++) put_pixel(&file, 200, 2, (int)(k % 7), 130);
-            const int ok = load(&p, &file);
-            CHECK(ok && p.w == w && p.h == 2, "%s", p.fault);
-            for (uint32_t k = 0; ok && k < 2 * w; k++) CHECK(same(p.pixel[k], 200, 2, (int)(k % 7), 130), "pixel %u", k);
-            free(p.pixel);
-        }
-        if (mcst_case("width %u, runs of channels", w)) { /* Radiance takes them in any width below 32768 */
-            begin(&file, "#?RADIANCE\n", resolution);
-            put_coded(&file, w, 7, 0, 255, 131);
-            put_coded(&file, w, 7, 0, 255, 131);
-            expect_alike(&file, w, 2, 7, 0, 255, 131);
-        }
-        if (mcst_case("width %u, runs of pixels", w)) {
-            begin(&file, "#?RADIANCE\n", resolution);
-            for (int line = 0; line < 2; line++) {
-                put_pixel(&file, 129, 3, 4, 127);
-                for (uint32_t left = w - 1; left > 0; left >>= 8) put_run(&file, (int)(left & 255));
-            }
-            expect_alike(&file, w, 2, 129, 3, 4, 127);
-        }
-    }
-    if (mcst_case("width 40000, flat and runs of pixels")) { /* too wide for runs of channels */
-        begin(&file, "#?RADIANCE\n", "-Y 2 +X 40000");
-        for (int k = 0; k < 40000; k++) put_pixel(&file, 2, 2, 100, 64);
-        put_pixel(&file, 2, 2, 100, 64);
-        put_run(&file, 39999 & 255);
-        put_run(&file, 39999 >> 8);
-        expect_alike(&file, 40000, 2, 2, 2, 100, 64);
-    }
-    if (mcst_case("literal channels and empty codes")) {
-        begin(&file, "#?RADIANCE\n", "-Y 1 +X 100");
-        put_pixel(&file, 2, 2, 0, 100);
-        for (int channel = 0; channel < 4; channel++) {
-            put_pixel(&file, 0, 0, 0, 60);
-            for (int k = 0; k < 60; k++) put(&file, &(unsigned char){(unsigned char)(k + channel + 1)}, 1);
-            put(&file, "\0\050", 2);
-            for (int k = 60; k < 100; k++) put(&file, &(unsigned char){(unsigned char)(k + channel + 1)}, 1);
-        }
-        CHECK(load(&p, &file), "%s", p.fault);
-        for (int k = 0; p.pixel && k < 100; k++) CHECK(same(p.pixel[k], k + 1, k + 2, k + 3, k + 4), "pixel %d", k);
-        free(p.pixel);
-    }
-    if (mcst_case("a literal of 128")) {
-        begin(&file, "#?RADIANCE\n", "-Y 1 +X 128");
-        put_pixel(&file, 2, 2, 0, 128);
-        for (int channel = 0; channel < 4; channel++) {
-            put(&file, "\200", 1);
-            for (int k = 0; k < 128; k++) put(&file, "\311", 1);
-        }
-        expect_alike(&file, 128, 1, 201, 201, 201, 201);
-    }
-    if (mcst_case("what looks like a code where none can be")) {
-        begin(&file, "#?RADIANCE\n", "-Y 2 +X 3"); /* (2, 2, 0, 5) in a width of 3, (1, 1, 1, 9) as the first of a line */
-        put_pixel(&file, 2, 2, 0, 5);
-        put_pixel(&file, 200, 200, 200, 129);
-        put_run(&file, 1);
-        put_pixel(&file, 1, 1, 1, 9);
-        put_run(&file, 2);
-        CHECK(load(&p, &file), "%s", p.fault);
-        if (p.pixel) {
-            CHECK(same(p.pixel[0], 2, 2, 0, 5) && same(p.pixel[2], 200, 200, 200, 129), "first line");
-            CHECK(same(p.pixel[3], 1, 1, 1, 9) && same(p.pixel[5], 1, 1, 1, 9), "second line");
-        }
-        free(p.pixel);
-    }
-    if (mcst_case("each run has its own bytes")) {
-        static const int red[6] = {150, 150, 150, 160, 160, 170};
-        begin(&file, "#?RADIANCE\n", "-Y 1 +X 6");
-        put_pixel(&file, 150, 1, 2, 129);
-        put_run(&file, 2);
-        put_pixel(&file, 160, 1, 2, 129);
-        put_run(&file, 1);
-        put_pixel(&file, 170, 1, 2, 129);
-        CHECK(load(&p, &file), "%s", p.fault);
-        for (int k = 0; p.pixel && k < 6; k++) CHECK(same(p.pixel[k], red[k], 1, 2, 129), "pixel %d", k);
-        free(p.pixel);
-    }
-    if (mcst_case("runs of pixels beyond the line, and of none")) { /* as Radiance: the rest of the run is dropped */
-        begin(&file, "#?RADIANCE\n", "-Y 2 +X 9");
-        put_pixel(&file, 150, 1, 2, 129);
-        for (int k = 0; k < 6; k++) put_run(&file, 0);
-        put_run(&file, 1); /* times 256^6 */
-        put_pixel(&file, 150, 1, 2, 129);
-        put_run(&file, 200);
-        expect_alike(&file, 9, 2, 150, 1, 2, 129);
-    }
-    if (mcst_case("black with an exponent")) {
-        begin(&file, "#?RADIANCE\n", "-Y 1 +X 2");
-        put_pixel(&file, 0, 0, 0, 140);
-        put_pixel(&file, 0, 0, 0, 0);
-        CHECK(load(&p, &file), "%s", p.fault);
-        for (size_t i = 0; p.pixel && i < 2; i++) {
-            float c[3];
-            hdr_color(&p, i, c);
-            CHECK(c[0] == 0 && c[1] == 0 && c[2] == 0, "%g %g %g", (double)c[0], (double)c[1], (double)c[2]);
-        }
-        free(p.pixel);
-    }
-    if (mcst_case("another width")) {
-        begin(&file, "#?RADIANCE\n", "-Y 2 +X 20");
-        put_coded(&file, 20, 200, 0, 255, 131);
-        put_coded(&file, 21, 200, 0, 255, 131);
-        expect_fault(&file, "scan line 2 is coded for a width of 21 instead of 20");
-    }
-    if (mcst_case("a run of channels beyond the line")) {
-        for (int run = 0; run < 2; run++) {
-            begin(&file, "#?RADIANCE\n", "-Y 1 +X 8");
-            put_pixel(&file, 2, 2, 0, 8);
-            put_alike(&file, 7, 3);
-            if (run) put_alike(&file, 2, 3);
-            else put(&file, "\002ab", 3);
-            expect_fault(&file, "a run in scan line 1 goes beyond its end");
-        }
-    }
+    for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) check_width(&file, widths[i]);
+    if (mcst_case("width 40000, flat and runs of pixels")) check_width_40000(&file);
+    if (mcst_case("literal channels and empty codes")) check_literals(&file);
+    if (mcst_case("a literal of 128")) check_literal_of_128(&file);
+    if (mcst_case("what looks like a code where none can be")) check_no_code(&file);
+    if (mcst_case("each run has its own bytes")) check_own_bytes(&file);
+    if (mcst_case("runs of pixels beyond the line, and of none")) check_runs_beyond(&file);
+    if (mcst_case("black with an exponent")) check_black(&file);
+    if (mcst_case("another width")) check_another_width(&file);
+    if (mcst_case("a run of channels beyond the line")) check_channels_beyond(&file);
 }
 
 /* ---- Colours ---- */

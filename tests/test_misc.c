@@ -184,129 +184,147 @@ static mcs_vec3 beside(mcs_pcg32 *r, mcs_vec3 wo, double s) {
     return unit(sign * wo.x + fabs(s) * d.x, sign * wo.y + fabs(s) * d.y, sign * wo.z + fabs(s) * d.z);
 }
 
+/* dot product 3 eps, doubled 6, product with a component 2 more of up to 2, difference 1: 11 eps */
+static void check_reflect(mcs_pcg32 *r) {
+    for (int i = 0; i < 300000; i++) {
+        const mcs_vec3 wo = random_unit(r);
+        const mcs_vec3 h = random_unit(r);
+        const mcs_vec3 wi = mcs_reflect(wo, h);
+        const double err = far_from(wi, o_reflect(o_v3(wo.x, wo.y, wo.z), o_v3(h.x, h.y, h.z)));
+        CHECK(err <= 12 * eps, "off by %g", err);
+    }
+}
+
+/* wo + wi is rounded once a component, hence right to eps however much it cancels; squares, sum and root 3, quotient 1 */
+static void check_half(mcs_pcg32 *r) {
+    for (int i = 0; i < 300000; i++) {
+        const double s = pow(10, -7.0 * mcs_pcg32_float(r));
+        const mcs_vec3 wo = random_unit(r);
+        const mcs_vec3 wi = i % 3 ? beside(r, wo, i % 3 == 1 ? s : -s) : random_unit(r);
+        const o_vec3 o = o_v3(wo.x, wo.y, wo.z);
+        const o_vec3 in = o_v3(wi.x, wi.y, wi.z);
+        const mcs_vec3 h = mcs_half(wo, wi);
+        const double c = mcs_cos_d(wo, wi);
+        const double want = (double)o_cos_d(o, in);
+        CHECK(fabs(c - want) <= 5 * eps * want, "cos_d %g, not %g", c, want);
+        if (want == 0) continue; /* exactly opposed */
+        CHECK(far_from(h, o_half(o, in)) <= 6 * eps, "half is off by %g", far_from(h, o_half(o, in)));
+    }
+}
+
+static void check_half_of_bad(void) {
+    const mcs_vec3 dirs[] = {{0, 0, 1},
+                             {0, 0, -1},
+                             {0.6f, 0, -0.8f},
+                             {-0.6f, 0, 0.8f},
+                             {0, 0, 0},
+                             {1e-25f, 0, 1},
+                             {1e-25f, 0, -1},
+                             {NAN, 0, 1},
+                             {0, INFINITY, 0},
+                             {0, -INFINITY, 0},
+                             {FLT_MAX, FLT_MAX, FLT_MAX},
+                             {-FLT_MAX, FLT_MAX, 0},
+                             {0, 0, 2.5f},
+                             {0, 0, 0.4f}};
+    const int n = (int)(sizeof dirs / sizeof *dirs);
+    for (int i = 0; i < n * n; i++) {
+        const mcs_vec3 wo = dirs[i / n];
+        const mcs_vec3 wi = dirs[i % n];
+        const mcs_vec3 h = mcs_half(wo, wi);
+        const mcs_vec3 w = mcs_reflect(wo, wi);
+        const float c = mcs_cos_d(wo, wi);
+        CHECK(finite3(h) && finite3(w) && isfinite(c), "directions %d and %d: half (%g, %g, %g), reflect (%g, %g, %g), cos_d %g",
+              i / n, i % n, (double)h.x, (double)h.y, (double)h.z, (double)w.x, (double)w.y, (double)w.z, (double)c);
+        CHECK(c == 0 || (fabs(dot(wo, wo) - 1) < 0.1 && fabs(dot(wi, wi) - 1) < 0.1), "bad directions %d and %d: cos_d %g", i / n,
+              i % n, (double)c);
+    }
+}
+
+/* A mirror pair at grazing incidence: |H|^2 = 4 z^2 and L = ax/(2 sqrt(pi) z), so the weight is G2 = sqrt(pi) z/ax. z L takes
+ * 8 eps (t 2, its constant 1, e^x 2, three operations), the rest 7; what the form leaves out is below 1. */
+static void check_grazing_mirror(void) {
+    for (int i = 9; i < 16; i++) { /* the form holds for z far below ax */
+        const float z = (float)pow(10, -i);
+        const float a = 0.1f;
+        const mcs_beckmann m = mcs_beckmann_make(a, a);
+        const mcs_vec3 wo = {1, 0, z};
+        const mcs_vec3 wi = {-1, 0, z};
+        const double got = (double)mcs_beckmann_weight(&m, wo, wi);
+        const double want = 1.772453850905516 * (double)z / (double)a;
+        CHECK(fabs(got - want) <= 16 * eps * want, "z = %g: %g, not %g", (double)z, got, want);
+    }
+}
+
+/* H = wo + wi is about (6e-20, 0, 2e-15): the square of x, and with it the azimuth, lies below FLT_MIN. Within E of the header,
+ * which is 1e-6 at least. */
+static void check_near_normal(void) {
+    const mcs_ashikhmin m = mcs_ashikhmin_make(1e9f, 0.0194f);
+    const mcs_vec3 wo = {-1.8e-16f, -1, 1.03e-15f};
+    for (int i = 60; i < 127; i += 6) {
+        const mcs_vec3 wi = mcs_ashikhmin_sample(&m, wo, 0x1.e23e8cp-2f, (float)ldexp(0x1.0007b2p0, -i)).wi;
+        const double got = (double)mcs_ashikhmin_pdf(&m, wo, wi);
+        const double want = (double)o_ashikhmin_pdf(1e9f, 0.0194f, o_v3(wo.x, wo.y, wo.z), o_v3(wi.x, wi.y, wi.z));
+        CHECK(fabs(got - want) <= 1e-6 * want, "u2 = 2^-%d: %g, not %g", i, got, want);
+    }
+}
+
+static void check_reflect_pdf(mcs_pcg32 *r) {
+    const float odd[] = {0.0f, -0.0f, -1e-3f, -1.0f, -INFINITY, NAN};
+    for (int i = 0; i < 100000; i++) {
+        const float p = (float)pow(10, 40.0 * mcs_pcg32_float(r) - 20);
+        const float c = (float)pow(10, -8.0 * mcs_pcg32_float(r));
+        const double want = p / (4.0 * c);
+        const double got = mcs_reflect_pdf(p, c);
+        CHECK(fabs(got - want) <= 2 * eps * want, "%g / (4 * %g): %g", (double)p, (double)c, got);
+    }
+    for (int i = 0; i < 6; i++)
+        CHECK(mcs_reflect_pdf(1.0f, odd[i]) == 0, "cos_d %g: %g", (double)odd[i], (double)mcs_reflect_pdf(1.0f, odd[i]));
+    CHECK(isfinite(mcs_reflect_pdf(FLT_MAX, 1e-30f)) && isfinite(mcs_reflect_pdf(NAN, 0.5f)) &&
+              isfinite(mcs_reflect_pdf(INFINITY, 0.5f)) && isfinite(mcs_reflect_pdf(1.0f, 1e-45f)),
+          "overflow, NaN and infinity");
+}
+
+/* 1 - c is exact or rounded once, its fifth power 5 + 3, its product with 1 - f0 two more, the sum one */
+static void check_schlick(mcs_pcg32 *r) {
+    const float odd[] = {-1.0f, -1e-30f, 0.0f, 1e-30f, 0.5f, 1.0f, 1.0000001f, 2.0f, 1e30f, INFINITY, -INFINITY, NAN};
+    for (int i = 0; i < 100000; i++) {
+        const float f0 = i % 7 ? mcs_pcg32_float(r) : 0.0f;
+        const float c = i % 5 ? mcs_pcg32_float(r) : (float)(1 - pow(10, -7.0 * mcs_pcg32_float(r)));
+        const double want = (double)o_schlick(f0, c);
+        const double got = mcs_schlick(f0, c);
+        CHECK(fabs(got - want) <= 12 * eps * want + FLT_MIN, "f0 = %g, cos_d = %g: %g, not %g", (double)f0, (double)c, got, want);
+    }
+    CHECK(mcs_schlick(0.04f, 0.0f) == 1.0f && mcs_schlick(0.04f, 1.0f) == 0.04f, "both ends");
+    for (int i = 0; i < 144; i++) {
+        const float f = mcs_schlick(odd[i / 12], odd[i % 12]);
+        CHECK(isfinite(f), "f0 = %g, cos_d = %g: %g", (double)odd[i / 12], (double)odd[i % 12], (double)f);
+    }
+}
+
+/* by up to 4.3 eps: found among 4e7 random ones */
+static void check_short_halves(void) {
+    static const float hard[][4] = {{0x1.388p+13f, 0x1.fffffep-1f, 0x1.f747p-1f, 0x1.3de148p-3f},
+                                    {0x1.9p+6f, 0x1p-149f, 0x1.b5900ep-1f, 0x1.51b582p-1f}};
+    for (int i = 0; i < 2; i++) {
+        const float *a = hard[i];
+        const mcs_ashikhmin m = mcs_ashikhmin_make(a[0], a[1]);
+        const mcs_vec3 h = mcs_ashikhmin_h_sample(&m, a[2], a[3]).w;
+        CHECK(fabs(sqrt(dot(h, h)) - 1) <= 4 * eps, "exponents %g %g: %g eps off", (double)a[0], (double)a[1],
+              (sqrt(dot(h, h)) - 1) / eps);
+    }
+}
+
 static void test_microfacet(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 103);
-    /* dot product 3 eps, doubled 6, product with a component 2 more of up to 2, difference 1: 11 eps */
-    if (mcst_case("reflect"))
-        for (int i = 0; i < 300000; i++) {
-            const mcs_vec3 wo = random_unit(&r);
-            const mcs_vec3 h = random_unit(&r);
-            const mcs_vec3 wi = mcs_reflect(wo, h);
-            const double err = far_from(wi, o_reflect(o_v3(wo.x, wo.y, wo.z), o_v3(h.x, h.y, h.z)));
-            CHECK(err <= 12 * eps, "off by %g", err);
-        }
-    /* wo + wi is rounded once a component, hence right to eps however much it cancels; squares, sum and root 3, quotient 1 */
-    if (mcst_case("half and cos_d, down to 1e-7 from grazing and from opposed"))
-        for (int i = 0; i < 300000; i++) {
-            const double s = pow(10, -7.0 * mcs_pcg32_float(&r));
-            const mcs_vec3 wo = random_unit(&r);
-            const mcs_vec3 wi = i % 3 ? beside(&r, wo, i % 3 == 1 ? s : -s) : random_unit(&r);
-            const o_vec3 o = o_v3(wo.x, wo.y, wo.z);
-            const o_vec3 in = o_v3(wi.x, wi.y, wi.z);
-            const mcs_vec3 h = mcs_half(wo, wi);
-            const double c = mcs_cos_d(wo, wi);
-            const double want = (double)o_cos_d(o, in);
-            CHECK(fabs(c - want) <= 5 * eps * want, "cos_d %g, not %g", c, want);
-            if (want == 0) continue; /* exactly opposed */
-            CHECK(far_from(h, o_half(o, in)) <= 6 * eps, "half is off by %g", far_from(h, o_half(o, in)));
-        }
-    if (mcst_case("half of opposed and bad directions is finite, cos_d of bad ones 0")) {
-        const mcs_vec3 dirs[] = {{0, 0, 1},
-                                 {0, 0, -1},
-                                 {0.6f, 0, -0.8f},
-                                 {-0.6f, 0, 0.8f},
-                                 {0, 0, 0},
-                                 {1e-25f, 0, 1},
-                                 {1e-25f, 0, -1},
-                                 {NAN, 0, 1},
-                                 {0, INFINITY, 0},
-                                 {0, -INFINITY, 0},
-                                 {FLT_MAX, FLT_MAX, FLT_MAX},
-                                 {-FLT_MAX, FLT_MAX, 0},
-                                 {0, 0, 2.5f},
-                                 {0, 0, 0.4f}};
-        const int n = (int)(sizeof dirs / sizeof *dirs);
-        for (int i = 0; i < n * n; i++) {
-            const mcs_vec3 wo = dirs[i / n];
-            const mcs_vec3 wi = dirs[i % n];
-            const mcs_vec3 h = mcs_half(wo, wi);
-            const mcs_vec3 w = mcs_reflect(wo, wi);
-            const float c = mcs_cos_d(wo, wi);
-            CHECK(finite3(h) && finite3(w) && isfinite(c),
-                  "directions %d and %d: half (%g, %g, %g), reflect (%g, %g, %g), cos_d %g", i / n, i % n, (double)h.x, (double)h.y,
-                  (double)h.z, (double)w.x, (double)w.y, (double)w.z, (double)c);
-            CHECK(c == 0 || (fabs(dot(wo, wo) - 1) < 0.1 && fabs(dot(wi, wi) - 1) < 0.1), "bad directions %d and %d: cos_d %g",
-                  i / n, i % n, (double)c);
-        }
-    }
-    /* A mirror pair at grazing incidence: |H|^2 = 4 z^2 and L = ax/(2 sqrt(pi) z), so the weight is G2 = sqrt(pi) z/ax. z L takes
-     * 8 eps (t 2, its constant 1, e^x 2, three operations), the rest 7; what the form leaves out is below 1. */
-    if (mcst_case("weight of Beckmann's mirror direction, cosines down to 1e-15"))
-        for (int i = 9; i < 16; i++) { /* the form holds for z far below ax */
-            const float z = (float)pow(10, -i);
-            const float a = 0.1f;
-            const mcs_beckmann m = mcs_beckmann_make(a, a);
-            const mcs_vec3 wo = {1, 0, z};
-            const mcs_vec3 wi = {-1, 0, z};
-            const double got = (double)mcs_beckmann_weight(&m, wo, wi);
-            const double want = 1.772453850905516 * (double)z / (double)a;
-            CHECK(fabs(got - want) <= 16 * eps * want, "z = %g: %g, not %g", (double)z, got, want);
-        }
-    /* H = wo + wi is about (6e-20, 0, 2e-15): the square of x, and with it the azimuth, lies below FLT_MIN. Within E of the header,
-     * which is 1e-6 at least. */
-    if (mcst_case("density of Ashikhmin and Shirley near the normal, wo grazing")) {
-        const mcs_ashikhmin m = mcs_ashikhmin_make(1e9f, 0.0194f);
-        const mcs_vec3 wo = {-1.8e-16f, -1, 1.03e-15f};
-        for (int i = 60; i < 127; i += 6) {
-            const mcs_vec3 wi = mcs_ashikhmin_sample(&m, wo, 0x1.e23e8cp-2f, (float)ldexp(0x1.0007b2p0, -i)).wi;
-            const double got = (double)mcs_ashikhmin_pdf(&m, wo, wi);
-            const double want = (double)o_ashikhmin_pdf(1e9f, 0.0194f, o_v3(wo.x, wo.y, wo.z), o_v3(wi.x, wi.y, wi.z));
-            CHECK(fabs(got - want) <= 1e-6 * want, "u2 = 2^-%d: %g, not %g", i, got, want);
-        }
-    }
-    if (mcst_case("reflect_pdf")) {
-        const float odd[] = {0.0f, -0.0f, -1e-3f, -1.0f, -INFINITY, NAN};
-        for (int i = 0; i < 100000; i++) {
-            const float p = (float)pow(10, 40.0 * mcs_pcg32_float(&r) - 20);
-            const float c = (float)pow(10, -8.0 * mcs_pcg32_float(&r));
-            const double want = p / (4.0 * c);
-            const double got = mcs_reflect_pdf(p, c);
-            CHECK(fabs(got - want) <= 2 * eps * want, "%g / (4 * %g): %g", (double)p, (double)c, got);
-        }
-        for (int i = 0; i < 6; i++)
-            CHECK(mcs_reflect_pdf(1.0f, odd[i]) == 0, "cos_d %g: %g", (double)odd[i], (double)mcs_reflect_pdf(1.0f, odd[i]));
-        CHECK(isfinite(mcs_reflect_pdf(FLT_MAX, 1e-30f)) && isfinite(mcs_reflect_pdf(NAN, 0.5f)) &&
-                  isfinite(mcs_reflect_pdf(INFINITY, 0.5f)) && isfinite(mcs_reflect_pdf(1.0f, 1e-45f)),
-              "overflow, NaN and infinity");
-    }
-    /* 1 - c is exact or rounded once, its fifth power 5 + 3, its product with 1 - f0 two more, the sum one */
-    if (mcst_case("schlick")) {
-        const float odd[] = {-1.0f, -1e-30f, 0.0f, 1e-30f, 0.5f, 1.0f, 1.0000001f, 2.0f, 1e30f, INFINITY, -INFINITY, NAN};
-        for (int i = 0; i < 100000; i++) {
-            const float f0 = i % 7 ? mcs_pcg32_float(&r) : 0.0f;
-            const float c = i % 5 ? mcs_pcg32_float(&r) : (float)(1 - pow(10, -7.0 * mcs_pcg32_float(&r)));
-            const double want = (double)o_schlick(f0, c);
-            const double got = mcs_schlick(f0, c);
-            CHECK(fabs(got - want) <= 12 * eps * want + FLT_MIN, "f0 = %g, cos_d = %g: %g, not %g", (double)f0, (double)c, got,
-                  want);
-        }
-        CHECK(mcs_schlick(0.04f, 0.0f) == 1.0f && mcs_schlick(0.04f, 1.0f) == 0.04f, "both ends");
-        for (int i = 0; i < 144; i++) {
-            const float f = mcs_schlick(odd[i / 12], odd[i % 12]);
-            CHECK(isfinite(f), "f0 = %g, cos_d = %g: %g", (double)odd[i / 12], (double)odd[i % 12], (double)f);
-        }
-    }
-    if (mcst_case("half-vectors that were too short")) { /* by up to 4.3 eps: found among 4e7 random ones */
-        static const float hard[][4] = {{0x1.388p+13f, 0x1.fffffep-1f, 0x1.f747p-1f, 0x1.3de148p-3f},
-                                        {0x1.9p+6f, 0x1p-149f, 0x1.b5900ep-1f, 0x1.51b582p-1f}};
-        for (int i = 0; i < 2; i++) {
-            const float *a = hard[i];
-            const mcs_ashikhmin m = mcs_ashikhmin_make(a[0], a[1]);
-            const mcs_vec3 h = mcs_ashikhmin_h_sample(&m, a[2], a[3]).w;
-            CHECK(fabs(sqrt(dot(h, h)) - 1) <= 4 * eps, "exponents %g %g: %g eps off", (double)a[0], (double)a[1],
-                  (sqrt(dot(h, h)) - 1) / eps);
-        }
-    }
+    if (mcst_case("reflect")) check_reflect(&r);
+    if (mcst_case("half and cos_d, down to 1e-7 from grazing and from opposed")) check_half(&r);
+    if (mcst_case("half of opposed and bad directions is finite, cos_d of bad ones 0")) check_half_of_bad();
+    if (mcst_case("weight of Beckmann's mirror direction, cosines down to 1e-15")) check_grazing_mirror();
+    if (mcst_case("density of Ashikhmin and Shirley near the normal, wo grazing")) check_near_normal();
+    if (mcst_case("reflect_pdf")) check_reflect_pdf(&r);
+    if (mcst_case("schlick")) check_schlick(&r);
+    if (mcst_case("half-vectors that were too short")) check_short_halves();
 }
 
 /* ---- one dimension ---- */

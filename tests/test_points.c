@@ -151,93 +151,105 @@ static void randomisation(void) {
     }
 }
 
+static unsigned char hit[1 << 20]; /* how often a cell was */
+
+static void one_to_a_cell(uint32_t nx, uint32_t ny) {
+    int one = 1;
+    int inside = 1;
+    memset(hit, 0, sizeof hit);
+    for (uint32_t i = 0; i < nx * ny; i++) {
+        const mcs_vec2 p = mcs_stratified(i, nx, ny, 9);
+        const uint32_t x = (uint32_t)((double)p.x * nx);
+        const uint32_t y = (uint32_t)((double)p.y * ny);
+        inside &= p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1;
+        one &= x == i % nx && y == i / nx && !hit[y * nx + x]++;
+    }
+    CHECK(one && inside, "cells or range");
+}
+
+static void one_to_a_slab(void) {
+    for (uint32_t n = 1; n < 5000; n += n < 70 ? 1 : 331)
+        for (uint32_t d = 0; d < 6; d++) {
+            int one = 1;
+            memset(hit, 0, n);
+            for (uint32_t i = 0; i < n; i++) {
+                const float x = mcs_latin(i, n, d, 4);
+                const uint32_t slab = (uint32_t)((double)x * n);
+                one &= x >= 0 && x < 1 && slab < n && !hit[slab]++;
+            }
+            CHECK(one, "n = %u, dimension %u", n, d);
+        }
+}
+
+static void slabs_are_uniform(void) {
+    enum { SLABS = 24, DRAWS = 1 << 18 };
+    static double count[SLABS * SLABS];
+    memset(count, 0, sizeof count);
+    for (uint32_t i = 0; i < DRAWS; i++)
+        count[(int)(mcs_latin(7, SLABS, 0, i) * SLABS) * SLABS + (int)(mcs_latin(7, SLABS, 1, i) * SLABS)]++;
+    uniform(count, SLABS * SLABS, DRAWS, "the slab");
+}
+
+/* each point in each slab, each pair of points in each pair of slabs; points 0 and 8 of 16 differ in the bit that moves last */
+static void permutation_is_random(void) {
+    enum { LARGEST = 16, LEFT = LARGEST - 1, DRAWS = 1 << 18 };
+    static double slab[LARGEST], pair[LARGEST * LEFT];
+    for (uint32_t n = 9; n <= LARGEST; n += 7)
+        for (uint32_t k = 0; k < 3; k++) { /* the first, the middle, the last point */
+            memset(slab, 0, sizeof slab);
+            for (uint32_t i = 0; i < DRAWS; i++) slab[(int)((double)mcs_latin(k * (n - 1) / 2, n, 0, i) * n)]++;
+            uniform(slab, (int)n, DRAWS, "the slab of one point");
+        }
+    memset(pair, 0, sizeof pair);
+    for (uint32_t i = 0; i < DRAWS; i++) {
+        const int a = (int)(mcs_latin(0, LARGEST, 0, i) * LARGEST);
+        const int b = (int)(mcs_latin(8, LARGEST, 0, i) * LARGEST);
+        pair[a * LEFT + b - (b > a)]++; /* b: of the slabs that a leaves */
+    }
+    uniform(pair, LARGEST * LEFT, DRAWS, "the pair of slabs of two points");
+}
+
+static void place_is_uniform(void) {
+    enum { BINS = 16, SEED_COUNT = 1 << 14 };
+    static double count[BINS * BINS];
+    for (uint32_t k = 0; k < 3; k++) { /* 2: Latin hypercube */
+        const uint32_t nx = k ? 3 : 4;
+        const uint32_t ny = k == 1 ? 5 : nx + k / 2;
+        memset(count, 0, sizeof count);
+        for (uint32_t s = 0; s < SEED_COUNT; s++)
+            for (uint32_t i = 0; i < nx * ny; i++) {
+                const mcs_vec2 p = mcs_stratified(i, nx, ny, s);
+                double x = (double)p.x * nx;
+                double y = (double)p.y * ny;
+                if (k == 2) {
+                    x = (double)mcs_latin(i, nx * ny, 0, s) * (nx * ny);
+                    y = (double)mcs_latin(i, nx * ny, 1, s) * (nx * ny);
+                }
+                count[(int)((x - floor(x)) * BINS) * BINS + (int)((y - floor(y)) * BINS)]++;
+            }
+        uniform(count, BINS * BINS, (double)SEED_COUNT * nx * ny, "the place within a cell");
+    }
+}
+
+static void counts_out_of_range(void) {
+    const uint32_t odd[] = {0, 1u << 21, 0xffffffffu};
+    for (uint32_t i = 0; i < 9; i++) {
+        const mcs_vec2 p = mcs_stratified(0xfffffff0u + i, odd[i % 3], odd[i / 3], i);
+        const float l = mcs_latin(0xfffffff0u + i, odd[i % 3], odd[i / 3], i);
+        CHECK(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1 && l >= 0 && l < 1, "%u, %u", odd[i % 3], odd[i / 3]);
+    }
+}
+
 static void strata(void) {
-    static unsigned char hit[1 << 20];
     const uint32_t sizes[][2] = {{1, 1}, {2, 3}, {16, 16}, {7, 100}, {1, 4099}, {1000, 1000}, {1u << 20, 1}};
     for (uint32_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
-        if (mcst_case("one point to a cell, %u x %u", sizes[k][0], sizes[k][1])) {
-            const uint32_t nx = sizes[k][0];
-            const uint32_t ny = sizes[k][1];
-            int one = 1;
-            int inside = 1;
-            memset(hit, 0, sizeof hit);
-            for (uint32_t i = 0; i < nx * ny; i++) {
-                const mcs_vec2 p = mcs_stratified(i, nx, ny, 9);
-                const uint32_t x = (uint32_t)((double)p.x * nx);
-                const uint32_t y = (uint32_t)((double)p.y * ny);
-                inside &= p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1;
-                one &= x == i % nx && y == i / nx && !hit[y * nx + x]++;
-            }
-            CHECK(one && inside, "cells or range");
-        }
-    if (mcst_case("Latin hypercube: one point to a slab in each dimension")) {
-        for (uint32_t n = 1; n < 5000; n += n < 70 ? 1 : 331)
-            for (uint32_t d = 0; d < 6; d++) {
-                int one = 1;
-                memset(hit, 0, n);
-                for (uint32_t i = 0; i < n; i++) {
-                    const float x = mcs_latin(i, n, d, 4);
-                    const uint32_t slab = (uint32_t)((double)x * n);
-                    one &= x >= 0 && x < 1 && slab < n && !hit[slab]++;
-                }
-                CHECK(one, "n = %u, dimension %u", n, d);
-            }
-    }
-    if (mcst_case("Latin hypercube: the slab of a point is uniform over seeds, and pairs of dimensions are independent")) {
-        enum { SLABS = 24, DRAWS = 1 << 18 };
-        static double count[SLABS * SLABS];
-        memset(count, 0, sizeof count);
-        for (uint32_t i = 0; i < DRAWS; i++)
-            count[(int)(mcs_latin(7, SLABS, 0, i) * SLABS) * SLABS + (int)(mcs_latin(7, SLABS, 1, i) * SLABS)]++;
-        uniform(count, SLABS * SLABS, DRAWS, "the slab");
-    }
-    /* each point in each slab, each pair of points in each pair of slabs; points 0 and 8 of 16 differ in the bit that moves last */
-    if (mcst_case("Latin hypercube: the permutation is random over seeds")) {
-        enum { LARGEST = 16, LEFT = LARGEST - 1, DRAWS = 1 << 18 };
-        static double slab[LARGEST], pair[LARGEST * LEFT];
-        for (uint32_t n = 9; n <= LARGEST; n += 7)
-            for (uint32_t k = 0; k < 3; k++) { /* the first, the middle, the last point */
-                memset(slab, 0, sizeof slab);
-                for (uint32_t i = 0; i < DRAWS; i++) slab[(int)((double)mcs_latin(k * (n - 1) / 2, n, 0, i) * n)]++;
-                uniform(slab, (int)n, DRAWS, "the slab of one point");
-            }
-        memset(pair, 0, sizeof pair);
-        for (uint32_t i = 0; i < DRAWS; i++) {
-            const int a = (int)(mcs_latin(0, LARGEST, 0, i) * LARGEST);
-            const int b = (int)(mcs_latin(8, LARGEST, 0, i) * LARGEST);
-            pair[a * LEFT + b - (b > a)]++; /* b: of the slabs that a leaves */
-        }
-        uniform(pair, LARGEST * LEFT, DRAWS, "the pair of slabs of two points");
-    }
-    if (mcst_case("the place within a cell is uniform, and independent in x and y")) {
-        enum { BINS = 16, SEED_COUNT = 1 << 14 };
-        static double count[BINS * BINS];
-        for (uint32_t k = 0; k < 3; k++) { /* 2: Latin hypercube */
-            const uint32_t nx = k ? 3 : 4;
-            const uint32_t ny = k == 1 ? 5 : nx + k / 2;
-            memset(count, 0, sizeof count);
-            for (uint32_t s = 0; s < SEED_COUNT; s++)
-                for (uint32_t i = 0; i < nx * ny; i++) {
-                    const mcs_vec2 p = mcs_stratified(i, nx, ny, s);
-                    double x = (double)p.x * nx;
-                    double y = (double)p.y * ny;
-                    if (k == 2) {
-                        x = (double)mcs_latin(i, nx * ny, 0, s) * (nx * ny);
-                        y = (double)mcs_latin(i, nx * ny, 1, s) * (nx * ny);
-                    }
-                    count[(int)((x - floor(x)) * BINS) * BINS + (int)((y - floor(y)) * BINS)]++;
-                }
-            uniform(count, BINS * BINS, (double)SEED_COUNT * nx * ny, "the place within a cell");
-        }
-    }
-    if (mcst_case("counts out of range")) {
-        const uint32_t odd[] = {0, 1u << 21, 0xffffffffu};
-        for (uint32_t i = 0; i < 9; i++) {
-            const mcs_vec2 p = mcs_stratified(0xfffffff0u + i, odd[i % 3], odd[i / 3], i);
-            const float l = mcs_latin(0xfffffff0u + i, odd[i % 3], odd[i / 3], i);
-            CHECK(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1 && l >= 0 && l < 1, "%u, %u", odd[i % 3], odd[i / 3]);
-        }
-    }
+        if (mcst_case("one point to a cell, %u x %u", sizes[k][0], sizes[k][1])) one_to_a_cell(sizes[k][0], sizes[k][1]);
+    if (mcst_case("Latin hypercube: one point to a slab in each dimension")) one_to_a_slab();
+    if (mcst_case("Latin hypercube: the slab of a point is uniform over seeds, and pairs of dimensions are independent"))
+        slabs_are_uniform();
+    if (mcst_case("Latin hypercube: the permutation is random over seeds")) permutation_is_random();
+    if (mcst_case("the place within a cell is uniform, and independent in x and y")) place_is_uniform();
+    if (mcst_case("counts out of range")) counts_out_of_range();
 }
 
 /* Coverage of R2 in one dimension. Gaps of N points of i alpha mod 1 are at most |q_(k-1) alpha| < 1/q_k for q_k <= N < q_(k+1),
