@@ -118,57 +118,160 @@ static void describe(const mcst_row *row, const float *p) {
     else mcst_case("%g %g", (double)p[0], (double)p[1]);
 }
 
-static void check_point(const mcst_row *row, const float *p, const float *u, ld peak, double extent) {
-    const mcst_map map = mcst_map_make(row, p);
-    const ld pdf_u = row->truth.pdf_u(p, u[0], u[1]);
-    ld exact[3] = {0, 0, 0};
-    float out[5] = {0};
-    float back[2] = {0, 0};
+/* A point of the grid: parameters, numbers, where they lead and how much the exact map magnifies rounding; all errors are in units
+ * of their tolerances. */
+typedef struct {
+    const mcst_row *row;
+    const float *p, *u;
+    ld peak;
+    double extent, magnified;
+    ld exact[3];
+    float x[3], out[5];
+} grid_point;
+
+/* Where: 4 ulp, that is 8 EPS; the normal distribution's quantile has 5, and two more operations. For a direction about +z or a
+ * half-vector the unit is 1, and a direction without a lobe has 2^-23; the reflection 2 (h.wo) h - wo magnifies an error of h
+ * (3 EPS) by 4 and adds 3 roundings. */
+static void check_where(const grid_point *g) {
+    const mcst_row *row = g->row;
+    const float *u = g->u;
+    const float *x = g->x;
+    const ld *exact = g->exact;
     double err = 0;
     double size = 0;
-    double magnified = 0;
-    row->truth.map(p, u[0], u[1], exact);
-    if (!strncmp(row->name, "ggx_vndf", 8) || !strncmp(row->name, "ggx_bounded", 11)) magnified = magnification(p, row, exact);
-    row->fn[0].sample(p, &u[0], &u[1], out);
-    float x[3];
-    for (int i = 0; i < 3; i++) x[i] = out[i];
-    for (int i = 0; i < 5; i++) CHECK(isfinite(out[i]), "u %a %a: out[%d] = %g", (double)u[0], (double)u[1], i, (double)out[i]);
-    /* where: 4 ulp, that is 8 EPS; the normal distribution's quantile has 5, and two more operations. For a direction about +z or a
-     * half-vector the unit is 1, and a direction without a lobe has 2^-23; the reflection 2 (h.wo) h - wo magnifies an error of h
-     * (3 EPS) by 4 and adds 3 roundings. */
     for (int i = 0; i < row->dim; i++) {
         err = fmax(err, fabs((double)((ld)x[i] - exact[i])));
         size = fmax(size, fabs((double)exact[i]));
     }
-    if (row->dim == 1) size = fmax(size, line_scale(row, p));
+    if (row->dim == 1) size = fmax(size, line_scale(row, g->p));
     else if (row->dim == 3) size = 1;
     double steps = row->shape == MCST_IS_BRDF ? 16 : row->shape == MCST_IS_DIR ? 2 : !strcmp(row->name, "normal") ? 12 : 8;
-    steps *= 1 + magnified;
-    CHECK(within(WHERE, err, steps * EPS * size + 0x1p-149 * fmax(1, extent)),
+    steps *= 1 + g->magnified;
+    CHECK(within(WHERE, err, steps * EPS * size + 0x1p-149 * fmax(1, g->extent)),
           "u %a %a: (%.9g %.9g %.9g), exact (%.9Lg %.9Lg %.9Lg)", (double)u[0], (double)u[1], (double)x[0], (double)x[1],
           (double)x[2], exact[0], exact[1], exact[2]);
+}
+/* The same relative to the lobe's own width: slopes in units of alpha, off by a fraction of themselves or, of visible normals, which
+ * are sums c + i, of the whole vector; the least radius is about the root of the least subnormal. */
+static void check_width(const grid_point *g) {
+    const mcst_row *row = g->row;
+    const float *u = g->u;
+    const float *x = g->x;
+    const ld *exact = g->exact;
+    const mcst_map map = mcst_map_make(row, g->p);
+    const double wx = row->coord == MCST_SLOPES ? map.a : 1 / sqrt(map.a + 1);
+    const double wy = row->coord == MCST_SLOPES ? map.b : 1 / sqrt(map.b + 1);
+    const double dx = (double)((ld)x[0] - exact[0]) / wx;
+    const double dy = (double)((ld)x[1] - exact[1]) / wy;
+    const double ex = (double)exact[0] / wx;
+    const double ey = (double)exact[1] / wy;
+    const double scale =
+        row->shape == MCST_IS_VLOBE ? stretched_length(g->p, o_vec(exact[0], exact[1], exact[2])) : sqrt(ex * ex + ey * ey);
+    CHECK(within(WIDTH, sqrt(dx * dx + dy * dy), 16 * EPS * (1 + g->magnified) * scale + 0x1p-73),
+          "u %a %a: off by (%g %g) of the lobe's width", (double)u[0], (double)u[1], dx, dy);
+}
+/* Rounded over the rim: 0 or what is inside. */
+static void check_rim(const grid_point *g, float pdf) {
+    const mcst_row *row = g->row;
+    const float *u = g->u;
+    const float *p = g->p;
+    const float *x = g->x;
+    float inside[3];
+    for (int i = 0; i < 3; i++)
+        inside[i] = x[i] * (1 - 8 * (float)EPS) + (row->shape == MCST_IS_VLOBE ? 8 * (float)EPS * p[3 + i] : 0);
+    if (row->shape == MCST_IS_DIR) inside[2] = x[2]; /* towards the axis of a cone */
+    const ld pdf_x = row->truth.pdf(p, inside);
+    CHECK(pdf >= 0 && (ld)pdf <= pdf_x * 1.001L, "u %a %a: pdf(x) %.9g on the rim, %.9Lg inside", (double)u[0], (double)u[1],
+          (double)pdf, pdf_x);
+}
+static void check_values(const grid_point *g, float pdf, ld pdf_x) {
+    const mcst_row *row = g->row;
+    const float *u = g->u;
+    const float *p = g->p;
+    const float *x = g->x;
+    const float *out = g->out;
+    const ld peak = g->peak;
+    const ld f = row->truth.eval(p, x);
+    const ld w = row->truth.weight(p, x);
+    /* a weight is a function of the cosines alone; the float wi.z is known to EPS, so to EPS / wi.z of itself */
+    const double wtol = 2e-6 + 40 * EPS / (double)x[2];
+    float value;
+    row->fn[0].eval(p, x, &value);
+    float weight;
+    row->fn[0].weight(p, x, &weight);
+    if (pdf_x > 0) /* not rounded over the rim of a Phong lobe */
+        CHECK(near(WEIGHT, out[4], w, wtol, 1), "u %a %a: weight %.9g, exact %.9Lg", (double)u[0], (double)u[1], (double)out[4], w);
+    double tol = mcst_claim_of(row, CLAIM_WEIGHT, p) * 1e-6;
+    CHECK(near(WEIGHT_X, weight, w, tol, 1), "u %a %a: weight(x) %.9g, exact %.9Lg", (double)u[0], (double)u[1], (double)weight, w);
+    tol = mcst_claim_of(row, CLAIM_EVAL, p) * direction_tol(row, p, x, pdf_x, peak);
+    CHECK(near(EVAL, value, f, tol, peak), "u %a %a: eval(x) %.9g, exact %.9Lg (%.3g)", (double)u[0], (double)u[1], (double)value,
+          f, (double)((ld)value / f - 1));
+    if (f < (ld)FLT_MAX && pdf_x < (ld)FLT_MAX && f > (ld)FLT_MIN && pdf_x > (ld)FLT_MIN)
+        CHECK(within(CLOSURE, fabs((double)weight * (double)pdf / ((double)value * (double)x[2]) - 1), 2 * tol + 1e-6),
+              "u %a %a: weight pdf = %.9g, f cos = %.9g", (double)u[0], (double)u[1], (double)weight * (double)pdf,
+              (double)value * (double)x[2]);
+}
+static void check_inverse(const grid_point *g) {
+    const mcst_row *row = g->row;
+    const float *u = g->u;
+    const float *p = g->p;
+    const float *x = g->x;
+    float back[2] = {0, 0};
+    ld truth[2] = {0, 0};
+    ld moved[2] = {0, 0};
+    /* a few roundings; visible normals first take c = d h - i apart, with d of five */
+    const double base = (row->shape == MCST_IS_VLOBE ? 16 : 8) * EPS;
+    double step[2] = {0, 0};
+    row->truth.invert(p, x, truth);
+    row->fn[0].invert(p, x, back);
+    CHECK(back[0] >= 0 && back[0] < 1 && back[1] >= 0 && back[1] < 1, "u %a %a: invert gives %a %a", (double)u[0], (double)u[1],
+          (double)back[0], (double)back[1]);
+    /* what 8 ulp in each coordinate do to the exact inverse: its arithmetic takes about as many roundings */
+    for (int k = 0; k < 2 * row->dim; k++) {
+        float y[3];
+        memcpy(y, x, sizeof y);
+        y[k / 2] *= k % 2 ? 1 + 8 * 0x1p-23f : 1 - 8 * 0x1p-23f;
+        row->truth.invert(p, y, moved);
+        for (int i = 0; i < row->inputs; i++) step[i] = fmax(step[i], u_error(row, i, (double)moved[i], (double)truth[i]));
+    }
+    for (int i = 0; i < row->inputs; i++) {
+        const double d = u_error(row, i, (double)back[i], (double)truth[i]);
+        const double trip = u_error(row, i, (double)back[i], (double)u[i]);
+        if (x[0] == 0 && x[1] == 0 && is_azimuth(row, i)) continue; /* without a radius there is no azimuth */
+        CHECK(within(INVERT, d, base + 2 * step[i]), "u %a %a: invert u%d %.9g, exact %.9Lg", (double)u[0], (double)u[1], i + 1,
+              (double)back[i], truth[i]);
+        /* the trip back: the roundings of the point, then those of its inverse */
+        CHECK(within(ROUND_TRIP, trip, base + 2 * step[i]), "u%d of %a %a comes back as %a", i + 1, (double)u[0], (double)u[1],
+              (double)back[i]);
+    }
+}
+static void check_point(const mcst_row *row, const float *p, const float *u, ld peak, double extent) {
+    const ld pdf_u = row->truth.pdf_u(p, u[0], u[1]);
+    grid_point g;
+    memset(&g, 0, sizeof g);
+    g.row = row;
+    g.p = p;
+    g.u = u;
+    g.peak = peak;
+    g.extent = extent;
+    row->truth.map(p, u[0], u[1], g.exact);
+    if (!strncmp(row->name, "ggx_vndf", 8) || !strncmp(row->name, "ggx_bounded", 11)) g.magnified = magnification(p, row, g.exact);
+    row->fn[0].sample(p, &u[0], &u[1], g.out);
+    const float *out = g.out;
+    const float *x = g.x;
+    for (int i = 0; i < 3; i++) g.x[i] = out[i];
+    for (int i = 0; i < 5; i++) CHECK(isfinite(out[i]), "u %a %a: out[%d] = %g", (double)u[0], (double)u[1], i, (double)out[i]);
+    check_where(&g);
     if (row->dim == 3) {
         const ld l2 = (ld)x[0] * x[0] + (ld)x[1] * x[1] + (ld)x[2] * x[2];
         CHECK(within(UNIT, fabs((double)(sqrtl(l2) - 1)), 4 * EPS), "u %a %a: length - 1 = %Lg", (double)u[0], (double)u[1],
               sqrtl(l2) - 1);
     }
-    if (row->shape == MCST_IS_LOBE || row->shape == MCST_IS_VLOBE) {
-        /* the same relative to the lobe's own width: slopes in units of alpha, off by a fraction of themselves or, of visible
-         * normals, which are sums c + i, of the whole vector; the least radius is about the root of the least subnormal */
-        const double wx = row->coord == MCST_SLOPES ? map.a : 1 / sqrt(map.a + 1);
-        const double wy = row->coord == MCST_SLOPES ? map.b : 1 / sqrt(map.b + 1);
-        const double dx = (double)((ld)x[0] - exact[0]) / wx;
-        const double dy = (double)((ld)x[1] - exact[1]) / wy;
-        const double ex = (double)exact[0] / wx;
-        const double ey = (double)exact[1] / wy;
-        const double scale =
-            row->shape == MCST_IS_VLOBE ? stretched_length(p, o_vec(exact[0], exact[1], exact[2])) : sqrt(ex * ex + ey * ey);
-        CHECK(within(WIDTH, sqrt(dx * dx + dy * dy), 16 * EPS * (1 + magnified) * scale + 0x1p-73),
-              "u %a %a: off by (%g %g) of the lobe's width", (double)u[0], (double)u[1], dx, dy);
-    }
+    if (row->shape == MCST_IS_LOBE || row->shape == MCST_IS_VLOBE) check_width(&g);
     /* the returned density belongs to u */
     double tol = mcst_claim_of(row, CLAIM_PDF_U, p) * pdf_tol(pdf_u, peak);
-    if (row->shape != MCST_IS_BRDF || fabsl(exact[2]) > 40 * EPS) /* otherwise above or below the horizon is a matter of rounding */
+    if (row->shape != MCST_IS_BRDF ||
+        fabsl(g.exact[2]) > 40 * EPS) /* otherwise above or below the horizon is a matter of rounding */
         CHECK(near(PDF_U, out[3], pdf_u, tol, peak), "u %a %a: pdf %.9g, exact %.9Lg (%.3g, tolerance %.3g)", (double)u[0],
               (double)u[1], (double)out[3], pdf_u, (double)((ld)out[3] / pdf_u - 1), tol);
     if (row->shape == MCST_IS_BRDF && !(out[3] > 0)) {
@@ -176,75 +279,18 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
         return;
     }
     /* _pdf belongs to the float point */
-    ld pdf_x = row->truth.pdf(p, x);
+    const ld pdf_x = row->truth.pdf(p, x);
     float pdf;
     row->fn[0].pdf(p, x, &pdf);
     if (pdf_x == 0 && (row->shape == MCST_IS_PLANE || row->shape == MCST_IS_DIR || row->shape == MCST_IS_VLOBE)) {
-        /* rounded over the rim: 0 or what is inside */
-        float inside[3];
-        for (int i = 0; i < 3; i++)
-            inside[i] = x[i] * (1 - 8 * (float)EPS) + (row->shape == MCST_IS_VLOBE ? 8 * (float)EPS * p[3 + i] : 0);
-        if (row->shape == MCST_IS_DIR) inside[2] = x[2]; /* towards the axis of a cone */
-        pdf_x = row->truth.pdf(p, inside);
-        CHECK(pdf >= 0 && (ld)pdf <= pdf_x * 1.001L, "u %a %a: pdf(x) %.9g on the rim, %.9Lg inside", (double)u[0], (double)u[1],
-              (double)pdf, pdf_x);
+        check_rim(&g, pdf);
         return;
     }
     tol = mcst_claim_of(row, CLAIM_PDF_W, p) * direction_tol(row, p, x, pdf_x, peak);
     CHECK(near(PDF_X, pdf, pdf_x, tol, peak), "u %a %a: pdf(x) %.9g, exact %.9Lg (%.3g, tolerance %.3g)", (double)u[0],
           (double)u[1], (double)pdf, pdf_x, (double)((ld)pdf / pdf_x - 1), tol);
-    if (row->fn[0].eval) {
-        const ld f = row->truth.eval(p, x);
-        const ld w = row->truth.weight(p, x);
-        /* a weight is a function of the cosines alone; the float wi.z is known to EPS, so to EPS / wi.z of itself */
-        const double wtol = 2e-6 + 40 * EPS / (double)x[2];
-        float value;
-        row->fn[0].eval(p, x, &value);
-        float weight;
-        row->fn[0].weight(p, x, &weight);
-        if (pdf_x > 0) /* not rounded over the rim of a Phong lobe */
-            CHECK(near(WEIGHT, out[4], w, wtol, 1), "u %a %a: weight %.9g, exact %.9Lg", (double)u[0], (double)u[1], (double)out[4],
-                  w);
-        tol = mcst_claim_of(row, CLAIM_WEIGHT, p) * 1e-6;
-        CHECK(near(WEIGHT_X, weight, w, tol, 1), "u %a %a: weight(x) %.9g, exact %.9Lg", (double)u[0], (double)u[1], (double)weight,
-              w);
-        tol = mcst_claim_of(row, CLAIM_EVAL, p) * direction_tol(row, p, x, pdf_x, peak);
-        CHECK(near(EVAL, value, f, tol, peak), "u %a %a: eval(x) %.9g, exact %.9Lg (%.3g)", (double)u[0], (double)u[1],
-              (double)value, f, (double)((ld)value / f - 1));
-        if (f < (ld)FLT_MAX && pdf_x < (ld)FLT_MAX && f > (ld)FLT_MIN && pdf_x > (ld)FLT_MIN)
-            CHECK(within(CLOSURE, fabs((double)weight * (double)pdf / ((double)value * (double)x[2]) - 1), 2 * tol + 1e-6),
-                  "u %a %a: weight pdf = %.9g, f cos = %.9g", (double)u[0], (double)u[1], (double)weight * (double)pdf,
-                  (double)value * (double)x[2]);
-    }
-    if (row->fn[0].invert) {
-        ld truth[2] = {0, 0};
-        ld moved[2] = {0, 0};
-        /* a few roundings; visible normals first take c = d h - i apart, with d of five */
-        const double base = (row->shape == MCST_IS_VLOBE ? 16 : 8) * EPS;
-        double step[2] = {0, 0};
-        row->truth.invert(p, x, truth);
-        row->fn[0].invert(p, x, back);
-        CHECK(back[0] >= 0 && back[0] < 1 && back[1] >= 0 && back[1] < 1, "u %a %a: invert gives %a %a", (double)u[0], (double)u[1],
-              (double)back[0], (double)back[1]);
-        /* what 8 ulp in each coordinate do to the exact inverse: its arithmetic takes about as many roundings */
-        for (int k = 0; k < 2 * row->dim; k++) {
-            float y[3];
-            memcpy(y, x, sizeof y);
-            y[k / 2] *= k % 2 ? 1 + 8 * 0x1p-23f : 1 - 8 * 0x1p-23f;
-            row->truth.invert(p, y, moved);
-            for (int i = 0; i < row->inputs; i++) step[i] = fmax(step[i], u_error(row, i, (double)moved[i], (double)truth[i]));
-        }
-        for (int i = 0; i < row->inputs; i++) {
-            const double d = u_error(row, i, (double)back[i], (double)truth[i]);
-            const double trip = u_error(row, i, (double)back[i], (double)u[i]);
-            if (x[0] == 0 && x[1] == 0 && is_azimuth(row, i)) continue; /* without a radius there is no azimuth */
-            CHECK(within(INVERT, d, base + 2 * step[i]), "u %a %a: invert u%d %.9g, exact %.9Lg", (double)u[0], (double)u[1], i + 1,
-                  (double)back[i], truth[i]);
-            /* the trip back: the roundings of the point, then those of its inverse */
-            CHECK(within(ROUND_TRIP, trip, base + 2 * step[i]), "u%d of %a %a comes back as %a", i + 1, (double)u[0], (double)u[1],
-                  (double)back[i]);
-        }
-    }
+    if (row->fn[0].eval) check_values(&g, pdf, pdf_x);
+    if (row->fn[0].invert) check_inverse(&g);
 }
 
 /* Directions that the sampler would never pick: density and weight must be as exact there. */
@@ -404,89 +450,102 @@ static int parameter_is_bad(const mcst_row *row, int i, float v) {
     }
 }
 
-static void check_bad_input(const mcst_row *row) {
+static const float fine[2] = {0.3f, 0.6f}, side[3] = {0.36f, 0.48f, 0.8f};
+
+static void check_bad_u(const mcst_row *row, const float *p) {
     static const float bad_u[] = {-1, -0x1p-149f, 1, 1.5f, -FLT_MAX, FLT_MAX};
+    float out[5];
+    for (int i = 0; i < 9; i++) {
+        const float v = i < 6 ? bad_u[i] : i == 6 ? NAN : i == 7 ? INFINITY : -INFINITY;
+        for (int j = 0; j < row->inputs; j++) {
+            float u[2] = {0.3f, 0.6f};
+            u[j] = v;
+            must_be_zero(row, p, u, "bad u");
+        }
+    }
+    for (int j = 0; j < 2; j++) { /* -0 is 0 */
+        float u[2] = {0.3f, 0.6f};
+        u[j] = 0;
+        float zero[5];
+        call_all(row, p, u, side, zero);
+        u[j] = -0.0f;
+        call_all(row, p, u, side, out);
+        CHECK(out[3] == zero[3] && out[0] == zero[0] && out[1] == zero[1] && out[2] == zero[2], "u%d = -0 is not 0: pdf %g and %g",
+              j + 1, (double)out[3], (double)zero[3]);
+    }
+}
+
+static void check_bad_wo(const mcst_row *row, const float *p) {
     static const float bad_wo[][3] = {{0, 0, 0},          {0, 0, -1},           {0.6f, 0, -0.8f},    {1, 0, 0},
                                       {1, 0, -0x1p-149f}, {-0.6f, 0.8f, -0.0f}, {6e-31f, 0, 8e-31f}, {6e29f, 0, 8e29f}};
+    float q[MCST_P];
+    for (int i = 0; i < 8 + 9; i++) {
+        memcpy(q, p, sizeof q);
+        if (i < 8) memcpy(q + 3, bad_wo[i], sizeof bad_wo[i]);
+        else q[3 + (i - 8) % 3] = i < 11 ? NAN : i < 14 ? INFINITY : -INFINITY;
+        must_be_zero(row, q, fine, "bad wo");
+        pdf_must_be_zero(row, q, side, "bad wo");
+    }
+}
+
+static void check_bad_points(const mcst_row *row, const float *p) {
     static const float bad_wi[][3] = {{0, 0, -1}, {0.6f, 0, -0.8f}, {1, 0, 0}, {0, 0, 0}};
+    for (int i = 0; i < 3 * row->dim; i++) {
+        float x[3] = {0.36f, 0.48f, 0.8f};
+        x[i % row->dim] = i < row->dim ? NAN : i < 2 * row->dim ? INFINITY : -INFINITY;
+        pdf_must_be_zero(row, p, x, "bad point");
+        if (row->fn[0].invert && i < row->dim) { /* of NaN; infinity is past the end of a line */
+            float v[2] = {0, 0};
+            row->fn[0].invert(p, x, v);
+            CHECK(v[0] == 0 && v[1] == 0, "NaN for coordinate %d: invert gives %g %g", i, (double)v[0], (double)v[1]);
+        }
+    }
+    for (int i = 0; row->shape == MCST_IS_BRDF && i < 4; i++) pdf_must_be_zero(row, p, bad_wi[i], "wi not above the surface");
+}
+
+static void check_bad_parameters(const mcst_row *row, const float *p) {
     static const float bad_parameter[] = {0, -0.0f, -0x1p-149f, -1, -FLT_MAX, 3};
-    const float fine[2] = {0.3f, 0.6f};
-    const float side[3] = {0.36f, 0.48f, 0.8f};
+    float q[MCST_P];
+    for (int i = 0; i < 7; i++) {
+        const float v = i < 6 ? bad_parameter[i] : NAN;
+        for (int j = 0; j < row->params; j++) {
+            if (!parameter_is_bad(row, j, v)) continue;
+            memcpy(q, p, sizeof q);
+            q[j] = v;
+            must_be_zero(row, q, fine, "bad parameter");
+            pdf_must_be_zero(row, q, side, "bad parameter");
+            must_assert(row, q, fine, side);
+        }
+    }
+}
+
+static void check_odd_numbers(const mcst_row *row, const float *p) {
+    float q[MCST_P];
+    float out[5];
     uint64_t state = mcst_seed_for(row->name, "odd", 0);
+    const int rounds = (int)(6000 * fmin(1, mcst_scale()));
+    for (int k = 0; k < rounds; k++) {
+        memcpy(q, p, sizeof q);
+        float u[2];
+        memcpy(u, fine, sizeof u);
+        float x[3];
+        memcpy(x, side, sizeof x);
+        for (int i = 0; i < 11; i++) { /* a third of all inputs are odd */
+            float *slot = i < 6 ? &q[i] : i < 8 ? &u[i - 6] : &x[i - 8];
+            if (mcst_mix(&state) % 3 == 0) *slot = odd_number(&state);
+        }
+        call_all(row, q, u, x, out);
+    }
+}
+
+static void check_bad_input(const mcst_row *row) {
     float p[MCST_P];
     mcst_fill(row, row->grid[0][0], row->grid[0][1], 0.70710678f, 0.7f, p);
-    float out[5];
-    if (mcst_case("u outside [0,1)")) {
-        for (int i = 0; i < 9; i++) {
-            const float v = i < 6 ? bad_u[i] : i == 6 ? NAN : i == 7 ? INFINITY : -INFINITY;
-            for (int j = 0; j < row->inputs; j++) {
-                float u[2] = {0.3f, 0.6f};
-                u[j] = v;
-                must_be_zero(row, p, u, "bad u");
-            }
-        }
-        for (int j = 0; j < 2; j++) { /* -0 is 0 */
-            float u[2] = {0.3f, 0.6f};
-            u[j] = 0;
-            float zero[5];
-            call_all(row, p, u, side, zero);
-            u[j] = -0.0f;
-            call_all(row, p, u, side, out);
-            CHECK(out[3] == zero[3] && out[0] == zero[0] && out[1] == zero[1] && out[2] == zero[2],
-                  "u%d = -0 is not 0: pdf %g and %g", j + 1, (double)out[3], (double)zero[3]);
-        }
-    }
-    float q[MCST_P];
-    if (row->has_wo && mcst_case("wo below the surface or no direction")) {
-        for (int i = 0; i < 8 + 9; i++) {
-            memcpy(q, p, sizeof q);
-            if (i < 8) memcpy(q + 3, bad_wo[i], sizeof bad_wo[i]);
-            else q[3 + (i - 8) % 3] = i < 11 ? NAN : i < 14 ? INFINITY : -INFINITY;
-            must_be_zero(row, q, fine, "bad wo");
-            pdf_must_be_zero(row, q, side, "bad wo");
-        }
-    }
-    if (mcst_case("a point or direction that is none")) {
-        for (int i = 0; i < 3 * row->dim; i++) {
-            float x[3] = {0.36f, 0.48f, 0.8f};
-            x[i % row->dim] = i < row->dim ? NAN : i < 2 * row->dim ? INFINITY : -INFINITY;
-            pdf_must_be_zero(row, p, x, "bad point");
-            if (row->fn[0].invert && i < row->dim) { /* of NaN; infinity is past the end of a line */
-                float v[2] = {0, 0};
-                row->fn[0].invert(p, x, v);
-                CHECK(v[0] == 0 && v[1] == 0, "NaN for coordinate %d: invert gives %g %g", i, (double)v[0], (double)v[1]);
-            }
-        }
-        for (int i = 0; row->shape == MCST_IS_BRDF && i < 4; i++) pdf_must_be_zero(row, p, bad_wi[i], "wi not above the surface");
-    }
-    if (row->params && mcst_case("parameters out of range")) {
-        for (int i = 0; i < 7; i++) {
-            const float v = i < 6 ? bad_parameter[i] : NAN;
-            for (int j = 0; j < row->params; j++) {
-                if (!parameter_is_bad(row, j, v)) continue;
-                memcpy(q, p, sizeof q);
-                q[j] = v;
-                must_be_zero(row, q, fine, "bad parameter");
-                pdf_must_be_zero(row, q, side, "bad parameter");
-                must_assert(row, q, fine, side);
-            }
-        }
-    }
-    if (mcst_case("odd numbers everywhere")) {
-        const int rounds = (int)(6000 * fmin(1, mcst_scale()));
-        for (int k = 0; k < rounds; k++) {
-            memcpy(q, p, sizeof q);
-            float u[2];
-            memcpy(u, fine, sizeof u);
-            float x[3];
-            memcpy(x, side, sizeof x);
-            for (int i = 0; i < 11; i++) { /* a third of all inputs are odd */
-                float *slot = i < 6 ? &q[i] : i < 8 ? &u[i - 6] : &x[i - 8];
-                if (mcst_mix(&state) % 3 == 0) *slot = odd_number(&state);
-            }
-            call_all(row, q, u, x, out);
-        }
-    }
+    if (mcst_case("u outside [0,1)")) check_bad_u(row, p);
+    if (row->has_wo && mcst_case("wo below the surface or no direction")) check_bad_wo(row, p);
+    if (mcst_case("a point or direction that is none")) check_bad_points(row, p);
+    if (row->params && mcst_case("parameters out of range")) check_bad_parameters(row, p);
+    if (mcst_case("odd numbers everywhere")) check_odd_numbers(row, p);
 }
 
 int main(int argc, char **argv) {
