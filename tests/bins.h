@@ -27,6 +27,55 @@ typedef struct {
 
 static inline double mcst_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+/* A frame about the mirror direction: x is the axis least along z, made orthogonal, y = z cross x. */
+static inline void mcst_map_mirror(mcst_map *m) {
+    const double *z = m->ez;
+    m->frame = MCST_MIRROR;
+    m->ez[0] = -m->wo[0];
+    m->ez[1] = -m->wo[1];
+    m->ez[2] = m->wo[2];
+    if (fabs(z[0]) < fabs(z[1])) {
+        m->ex[0] = 1 - z[0] * z[0];
+        m->ex[1] = -z[0] * z[1];
+        m->ex[2] = -z[0] * z[2];
+    } else {
+        m->ex[0] = -z[1] * z[0];
+        m->ex[1] = 1 - z[1] * z[1];
+        m->ex[2] = -z[1] * z[2];
+    }
+    const double l = sqrt(mcst_dot(m->ex, m->ex));
+    for (int i = 0; i < 3; i++) m->ex[i] /= l;
+    m->ey[0] = z[1] * m->ex[2] - z[2] * m->ex[1];
+    m->ey[1] = z[2] * m->ex[0] - z[0] * m->ex[2];
+    m->ey[2] = z[0] * m->ex[1] - z[1] * m->ex[0];
+}
+/* The constants a, b, k of the coordinates. */
+static inline void mcst_map_constants(mcst_map *m, const mcst_row *row) {
+    switch (row->coord) {
+    case MCST_UNIT:
+        m->a = 0;
+        m->b = 1;
+        break; /* x = a + b s */
+    case MCST_TENT:
+        m->b = 2 * m->a;
+        m->a = -m->a;
+        m->coord = MCST_UNIT;
+        break;
+    case MCST_SPHERE: m->k = 2; break; /* 1 - z = k s */
+    case MCST_HEMISPHERE: m->k = 1; break;
+    case MCST_CONE: m->k = m->a; break;
+    case MCST_COSPOWER: /* exponents along x and y */
+        if (row->params == 1) m->b = m->a;
+        break;
+    case MCST_SLOPES: /* slopes are a X, b Y; above 1 the reflected part of the lobe is the part with slopes below 1 */
+        if (row->shape == MCST_IS_BRDF) {
+            m->a = fmin(m->a, 1);
+            m->b = fmin(m->b, 1);
+        }
+        break;
+    default: break;
+    }
+}
 static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
     mcst_map m;
     memset(&m, 0, sizeof m);
@@ -36,30 +85,7 @@ static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
     m.a = (double)p[0];
     m.b = (double)p[1];
     for (int i = 0; i < 3; i++) m.wo[i] = (double)p[3 + i];
-    switch (row->coord) {
-    case MCST_UNIT:
-        m.a = 0;
-        m.b = 1;
-        break; /* x = a + b s */
-    case MCST_TENT:
-        m.b = 2 * m.a;
-        m.a = -m.a;
-        m.coord = MCST_UNIT;
-        break;
-    case MCST_SPHERE: m.k = 2; break; /* 1 - z = k s */
-    case MCST_HEMISPHERE: m.k = 1; break;
-    case MCST_CONE: m.k = m.a; break;
-    case MCST_COSPOWER: /* exponents along x and y */
-        if (row->params == 1) m.b = m.a;
-        break;
-    case MCST_SLOPES: /* slopes are a X, b Y; above 1 the reflected part of the lobe is the part with slopes below 1 */
-        if (row->shape == MCST_IS_BRDF) {
-            m.a = fmin(m.a, 1);
-            m.b = fmin(m.b, 1);
-        }
-        break;
-    default: break;
-    }
+    mcst_map_constants(&m, row);
     m.noise = 0x1p-24;
     if (row->coord == MCST_WHOLELINE) m.noise *= 1 + fabs(m.a) / m.b;
     if (row->coord == MCST_POWER || row->coord == MCST_EVENPOWER) m.noise *= 1 + m.a;
@@ -70,28 +96,7 @@ static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
         m.noise /= width;
         if (strcmp(row->name, "phong") != 0) m.noise /= fmax(m.wo[2], width); /* Phong's lobe is of directions */
         m.frame = MCST_HALF;
-        if (!strcmp(row->name, "phong")) {
-            const double *z = m.ez;
-            m.frame = MCST_MIRROR;
-            m.ez[0] = -m.wo[0];
-            m.ez[1] = -m.wo[1];
-            m.ez[2] = m.wo[2];
-            /* x = the axis least along z, made orthogonal; y = z cross x */
-            if (fabs(z[0]) < fabs(z[1])) {
-                m.ex[0] = 1 - z[0] * z[0];
-                m.ex[1] = -z[0] * z[1];
-                m.ex[2] = -z[0] * z[2];
-            } else {
-                m.ex[0] = -z[1] * z[0];
-                m.ex[1] = 1 - z[1] * z[1];
-                m.ex[2] = -z[1] * z[2];
-            }
-            const double l = sqrt(mcst_dot(m.ex, m.ex));
-            for (int i = 0; i < 3; i++) m.ex[i] /= l;
-            m.ey[0] = z[1] * m.ex[2] - z[2] * m.ex[1];
-            m.ey[1] = z[2] * m.ex[0] - z[0] * m.ex[2];
-            m.ey[2] = z[0] * m.ex[1] - z[1] * m.ex[0];
-        }
+        if (!strcmp(row->name, "phong")) mcst_map_mirror(&m);
     }
     return m;
 }

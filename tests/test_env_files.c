@@ -62,21 +62,27 @@ static int check_damaged(mcs_env *e, const arena *was, const char *what, size_t 
     return rc != MCS_OK;
 }
 
-static void check_file(picture p, mcs_status status) {
-    arena a = build(&p, status);
-    const size_t bytes = a.bytes;
-    mcs_env *e = copy_of(a.at, bytes);
+/* What must be noticed when the word at i of the header is `now` instead of `was`; odd: it is none of its neighbours. */
+static void check_word(mcs_env *e, const arena *a, size_t i, uint32_t now, uint32_t was, int odd) {
+    const int no = check_damaged(e, a, "header word at", i);
+    /* magic, version, the whole layout and both sizes are what everything else is found by */
+    if (i < offsetof(mcs_env, total) || i == offsetof(mcs_env, w) || i == offsetof(mcs_env, h) ||
+        (i >= offsetof(mcs_env, row0) && i <= offsetof(mcs_env, col1)))
+        CHECK(no, "header word at %zu: %08x accepted for %08x", i, now, was);
+    /* and words of the frame that are no numbers, sizes of a column that are off by more than rounding */
+    if ((i == offsetof(mcs_env, turn) || i == offsetof(mcs_env, inner) || in_frame(i)) &&
+        (now == 0x7f800000u || now == 0xffffffffu))
+        CHECK(no, "NaN at %zu accepted", i);
+    if ((i == offsetof(mcs_env, turn) || i == offsetof(mcs_env, inner)) && odd)
+        CHECK(no, "column of %08x turns accepted for %08x", now, was);
+}
+static void check_header(mcs_env *e, const arena *a) {
     unsigned char *byte = (unsigned char *)e;
-    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 127);
-    const int all_lit = p.value == v_random && !e->uniform;
-    size_t guides_tried = 0;
-    CHECK(mcs_env_check(e, bytes) == MCS_OK && mcs_env_check(e, bytes + 8) == MCS_OK, "a good table");
-    check_harmless(e, "nothing", 0);
     for (size_t i = 0; i < sizeof *e; i++) { /* every bit of the header, then whole bytes */
         const unsigned char was = byte[i];
         for (size_t k = 0; k < 11; k++) {
             byte[i] = (unsigned char)(k < 8 ? was ^ 1u << k : k == 8 ? 0 : k == 9 ? 0xff : 0x7f);
-            if (byte[i] != was) check_damaged(e, &a, "header byte", i);
+            if (byte[i] != was) check_damaged(e, a, "header byte", i);
         }
     }
     for (size_t i = 0; i < sizeof *e; i += 4) { /* words to what numbers break at */
@@ -86,56 +92,54 @@ static void check_file(picture p, mcs_status status) {
         for (size_t k = 0; k < 10; k++) {
             const uint32_t now = k < 8 ? odd[k] : k == 8 ? was + 1 : was - 1;
             memcpy(byte + i, &now, 4);
-            if (now != was) {
-                const int no = check_damaged(e, &a, "header word at", i);
-                /* magic, version, the whole layout and both sizes are what everything else is found by */
-                if (i < offsetof(mcs_env, total) || i == offsetof(mcs_env, w) || i == offsetof(mcs_env, h) ||
-                    (i >= offsetof(mcs_env, row0) && i <= offsetof(mcs_env, col1)))
-                    CHECK(no, "header word at %zu: %08x accepted for %08x", i, now, was);
-                /* and words of the frame that are no numbers, sizes of a column that are off by more than rounding */
-                if ((i == offsetof(mcs_env, turn) || i == offsetof(mcs_env, inner) || in_frame(i)) &&
-                    (now == 0x7f800000u || now == 0xffffffffu))
-                    CHECK(no, "NaN at %zu accepted", i);
-                if ((i == offsetof(mcs_env, turn) || i == offsetof(mcs_env, inner)) && k < 8)
-                    CHECK(no, "column of %08x turns accepted for %08x", now, was);
-            }
+            if (now != was) check_word(e, a, i, now, was, k < 8);
         }
     }
+}
+static void check_sums(const picture *p, mcs_env *e, const arena *a, mcs_pcg32 *rng) {
+    const size_t bytes = a->bytes;
+    const int all_lit = p->value == v_random && !e->uniform;
+    unsigned char *byte = (unsigned char *)e;
+    size_t guides_tried = 0;
     for (size_t i = 0; i < (size_t)scaled(4000); i++) {
-        const size_t at = sizeof *e + mcs_pcg32_next(&rng) % (bytes - sizeof *e);
-        const size_t n = 1 + mcs_pcg32_next(&rng) % 8;
-        for (size_t k = at; k < at + n && k < bytes; k++)
-            byte[k] = (unsigned char)(i % 3 ? mcs_pcg32_next(&rng) : i % 2 ? 0xff : 0);
-        {
-            const size_t guides = env_in(&a)->at.col_guide;
-            const int changed = memcmp(e, a.at, bytes) != 0;
-            const int no = changed && check_damaged(e, &a, "table byte", at);
-            /* guides follow from the sums: none but the right one passes, forged or not */
-            if (all_lit && changed && at >= guides && at + n <= guides + (size_t)p.h * env_in(&a)->at.guides * 2) {
-                guides_tried++;
-                CHECK(no, "guide byte %zu changed, accepted", at);
-            }
+        const size_t at = sizeof *e + mcs_pcg32_next(rng) % (bytes - sizeof *e);
+        const size_t n = 1 + mcs_pcg32_next(rng) % 8;
+        for (size_t k = at; k < at + n && k < bytes; k++) byte[k] = (unsigned char)(i % 3 ? mcs_pcg32_next(rng) : i % 2 ? 0xff : 0);
+        const size_t guides = env_in(a)->at.col_guide;
+        const int changed = memcmp(e, a->at, bytes) != 0;
+        const int no = changed && check_damaged(e, a, "table byte", at);
+        /* guides follow from the sums: none but the right one passes, forged or not */
+        if (all_lit && changed && at >= guides && at + n <= guides + (size_t)p->h * env_in(a)->at.guides * 2) {
+            guides_tried++;
+            CHECK(no, "guide byte %zu changed, accepted", at);
         }
     }
     CHECK(!all_lit || guides_tried > 0, "no guide tried");
-    for (size_t i = 0; i < bytes; i += i < sizeof *e || i + 64 >= bytes ? 1 : 1 + mcs_pcg32_next(&rng) % (bytes / 64 + 1)) {
-        mcs_env *cut = copy_of(a.at, i);
+}
+static void check_cut(const arena *a, mcs_pcg32 *rng) {
+    const size_t bytes = a->bytes;
+    for (size_t i = 0; i < bytes; i += i < sizeof(mcs_env) || i + 64 >= bytes ? 1 : 1 + mcs_pcg32_next(rng) % (bytes / 64 + 1)) {
+        mcs_env *cut = copy_of(a->at, i);
         CHECK(mcs_env_check(cut, i) == MCS_ERR_MEMORY, "%zu of %zu bytes: %d", i, bytes, mcs_env_check(cut, i));
         free(cut);
     }
+}
+static void check_other_formats(mcs_env *e, const arena *a, mcs_pcg32 *rng) {
+    const size_t bytes = a->bytes;
+    unsigned char *byte = (unsigned char *)e;
     for (size_t i = 4; i <= 8; i += 4) { /* another byte order: of the words, of the whole header */
-        for (size_t k = 0; k < sizeof *e; k++) byte[k] = a.at[i == 4 ? k ^ 3 : k ^ 7];
+        for (size_t k = 0; k < sizeof *e; k++) byte[k] = a->at[i == 4 ? k ^ 3 : k ^ 7];
         CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "bytes swapped by %zu: %d", i, mcs_env_check(e, bytes));
     }
-    memcpy(e, a.at, bytes);
+    memcpy(e, a->at, bytes);
     e->magic ^= 0x20202020u;
     seal(e);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "magic");
-    memcpy(e, a.at, bytes);
+    memcpy(e, a->at, bytes);
     e->version++;
     seal(e);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "a later version");
-    memcpy(e, a.at, bytes);
+    memcpy(e, a->at, bytes);
     e->total = -1;
     seal(e);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "negative light");
@@ -143,11 +147,23 @@ static void check_file(picture p, mcs_status status) {
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "zeros");
     memset(e, 0xff, bytes);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "ones");
-    for (size_t i = 0; i < bytes; i++) byte[i] = (unsigned char)mcs_pcg32_next(&rng);
+    for (size_t i = 0; i < bytes; i++) byte[i] = (unsigned char)mcs_pcg32_next(rng);
     CHECK(mcs_env_check(e, bytes) == MCS_ERR_FORMAT, "noise");
     CHECK(mcs_env_check(NULL, bytes) == MCS_ERR_ARG, "no memory");
     for (size_t i = 1; i < 8; i += 2)
-        CHECK(mcs_env_check((const mcs_env *)(const void *)(a.at + i), bytes - 8) == MCS_ERR_ARG, "off by %zu", i);
+        CHECK(mcs_env_check((const mcs_env *)(const void *)(a->at + i), bytes - 8) == MCS_ERR_ARG, "off by %zu", i);
+}
+
+static void check_file(picture p, mcs_status status) {
+    arena a = build(&p, status);
+    mcs_env *e = copy_of(a.at, a.bytes);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 127);
+    CHECK(mcs_env_check(e, a.bytes) == MCS_OK && mcs_env_check(e, a.bytes + 8) == MCS_OK, "a good table");
+    check_harmless(e, "nothing", 0);
+    check_header(e, &a);
+    check_sums(&p, e, &a, &rng);
+    check_cut(&a, &rng);
+    check_other_formats(e, &a, &rng);
     free(e);
     free(p.lum);
     arena_free(&a);

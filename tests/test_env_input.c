@@ -396,6 +396,50 @@ static void test_seam(void) {
 
 static double dot(mcs_vec3 a, mcs_vec3 b) { return (double)a.x * b.x + (double)a.y * b.y + (double)a.z * b.z; }
 
+/* One draw of the map and of the turned one; 1 where the direction is found in a neighbour of the texel that was drawn. */
+static int check_turned_draw(const map *m, const mcs_env *straight, const mcs_env *turned, int k, float u1, float u2) {
+    const mcs_texel s = mcs_env_sample(straight, u1, u2);
+    const mcs_texel t = mcs_env_sample(turned, u1, u2);
+    const mcs_frame *f = &turned->frame;
+    const double x = (double)f->s.x * s.w.x + (double)f->t.x * s.w.y + (double)f->n.x * s.w.z;
+    const double y = (double)f->s.y * s.w.x + (double)f->t.y * s.w.y + (double)f->n.y * s.w.z;
+    const double z = (double)f->s.z * s.w.x + (double)f->t.z * s.w.y + (double)f->n.z * s.w.z;
+    CHECK(t.col == s.col && t.row == s.row && t.pdf == s.pdf, "axis %d: another texel or density", k);
+    CHECK(fabs(t.w.x - x) <= 4 * eps && fabs(t.w.y - y) <= 4 * eps && fabs(t.w.z - z) <= 4 * eps,
+          "axis %d: (%g, %g, %g) turned the wrong way", k, (double)t.w.x, (double)t.w.y, (double)t.w.z);
+    mcs_vec3 local;
+    local.x = (float)dot(f->s, t.w);
+    local.y = (float)dot(f->t, t.w);
+    local.z = (float)dot(f->n, t.w);
+    double col, row;
+    texel_of(m->w, m->h, local, &col, &row);
+    const double margin_row = 8 * eps * m->h;
+    const double margin_col = 8 * eps * m->w / hypot((double)local.x, (double)local.y);
+    col -= floor(col);
+    row -= floor(row);
+    mcs_texel at = mcs_env_texel(turned, t.w);
+    CHECK(mcs_env_pdf(turned, t.w) == at.pdf && at.pdf == mcs_env_pdf(straight, point(m->w, m->h, at.col, at.row, 0.5, 0.5)),
+          "axis %d: pdf %g is not the texel's", k, (double)at.pdf);
+    if (at.col == s.col && at.row == s.row) return 0;
+    CHECK((at.col == s.col || col <= margin_col || 1 - col <= margin_col) &&
+              (at.row == s.row || row <= margin_row || 1 - row <= margin_row),
+          "axis %d: drawn in (%u, %u), found in (%u, %u)", k, s.col, s.row, at.col, at.row);
+    return 1;
+}
+static void check_turned_mass(const map *m, const mcs_env *turned, int k) {
+    double mass = 0;
+    for (uint32_t r = 0; r < m->h; r++)
+        for (uint32_t c = 0; c < m->w; c++) {
+            const mcs_vec3 p = point(m->w, m->h, c, r, 0.5, 0.5);
+            const mcs_vec3 w = mcs_to_world(&turned->frame, p);
+            float pdf = 0;
+            mcs_env_pdf_n(turned, 1, &w.x, &w.y, &w.z, &pdf);
+            CHECK(pdf == mcs_env_pdf(turned, w), "axis %d: pdf_n %g", k, (double)pdf);
+            mass += pdf * (double)solid_angle(r, m->w, m->h);
+        }
+    CHECK(fabs(mass - 1) <= 4 * eps, "axis %d: the density integrates to 1 + %g", k, mass - 1);
+}
+
 /* A turned map is the same map: drawn where the turned sample lies, with its density. Turning rounds each coordinate by 4 eps,
  * so a direction closer than that to a border of its texel may be found on the other side of it: 8 eps of a turn for columns,
  * divided by sin(theta), and for rows; such ones are counted, and few. */
@@ -408,8 +452,7 @@ static void test_frame(void) {
     mcs_env *turned = env_in(&b);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 83);
     for (int k = 0; k < 4; k++) {
-        int near = 0;
-        double mass = 0;
+        int neighbours = 0;
         turned->frame = mcs_frame_make(up[k]);
         if (k == 3) { /* and turned about its axis, and mirrored */
             const mcs_vec3 s = turned->frame.s;
@@ -420,47 +463,11 @@ static void test_frame(void) {
         for (int i = 0; i < draws; i++) {
             const float u1 = mcs_pcg32_float(&rng);
             const float u2 = mcs_pcg32_float(&rng);
-            const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2);
-            const mcs_texel t = mcs_env_sample(turned, u1, u2);
-            const mcs_frame *f = &turned->frame;
-            const double x = (double)f->s.x * s.w.x + (double)f->t.x * s.w.y + (double)f->n.x * s.w.z;
-            const double y = (double)f->s.y * s.w.x + (double)f->t.y * s.w.y + (double)f->n.y * s.w.z;
-            const double z = (double)f->s.z * s.w.x + (double)f->t.z * s.w.y + (double)f->n.z * s.w.z;
-            CHECK(t.col == s.col && t.row == s.row && t.pdf == s.pdf, "axis %d: another texel or density", k);
-            CHECK(fabs(t.w.x - x) <= 4 * eps && fabs(t.w.y - y) <= 4 * eps && fabs(t.w.z - z) <= 4 * eps,
-                  "axis %d: (%g, %g, %g) turned the wrong way", k, (double)t.w.x, (double)t.w.y, (double)t.w.z);
-            mcs_vec3 local;
-            local.x = (float)dot(f->s, t.w);
-            local.y = (float)dot(f->t, t.w);
-            local.z = (float)dot(f->n, t.w);
-            double col, row;
-            texel_of(m->w, m->h, local, &col, &row);
-            const double margin_row = 8 * eps * m->h;
-            const double margin_col = 8 * eps * m->w / hypot((double)local.x, (double)local.y);
-            col -= floor(col);
-            row -= floor(row);
-            mcs_texel at = mcs_env_texel(turned, t.w);
-            CHECK(mcs_env_pdf(turned, t.w) == at.pdf &&
-                      at.pdf == mcs_env_pdf(env_in(&a), point(m->w, m->h, at.col, at.row, 0.5, 0.5)),
-                  "axis %d: pdf %g is not the texel's", k, (double)at.pdf);
-            if (at.col == s.col && at.row == s.row) continue;
-            near++;
-            CHECK((at.col == s.col || col <= margin_col || 1 - col <= margin_col) &&
-                      (at.row == s.row || row <= margin_row || 1 - row <= margin_row),
-                  "axis %d: drawn in (%u, %u), found in (%u, %u)", k, s.col, s.row, at.col, at.row);
+            neighbours += check_turned_draw(m, env_in(&a), turned, k, u1, u2);
         }
         /* at both borders of a column 8 eps w / sin(theta), 1.3 in the mean, at those of a row 8 eps h, twice as much allowed */
-        CHECK(near <= draws * 64 * eps * m->w + 10, "axis %d: %d of %d draws found in a neighbour", k, near, draws);
-        for (uint32_t r = 0; r < m->h; r++)
-            for (uint32_t c = 0; c < m->w; c++) {
-                const mcs_vec3 p = point(m->w, m->h, c, r, 0.5, 0.5);
-                const mcs_vec3 w = mcs_to_world(&turned->frame, p);
-                float pdf = 0;
-                mcs_env_pdf_n(turned, 1, &w.x, &w.y, &w.z, &pdf);
-                CHECK(pdf == mcs_env_pdf(turned, w), "axis %d: pdf_n %g", k, (double)pdf);
-                mass += pdf * (double)solid_angle(r, m->w, m->h);
-            }
-        CHECK(fabs(mass - 1) <= 4 * eps, "axis %d: the density integrates to 1 + %g", k, mass - 1);
+        CHECK(neighbours <= draws * 64 * eps * m->w + 10, "axis %d: %d of %d draws found in a neighbour", k, neighbours, draws);
+        check_turned_mass(m, turned, k);
     }
     arena_free(&a);
     arena_free(&b);

@@ -529,6 +529,118 @@ static void numbers(int i, mcs_pcg32 *rng, float *u1, float *u2) {
     *u2 = i < CORNERS * CORNERS ? corner[i / CORNERS] : mcs_pcg32_float(rng);
 }
 
+/* A window of a picture: its texels' light, solid angle, and by how much their integers may move it. */
+typedef struct {
+    const picture *p;
+    const mcs_env *e;
+    const mcs_env_window *m;
+    rectangle t;
+    ld all, omega, moved;
+    int uniform;
+    char what[120];
+} windowed;
+
+static windowed windowed_of(const picture *p, const mcs_env *e, const mcs_env_window *m, rectangle t) {
+    windowed v;
+    memset(&v, 0, sizeof v);
+    v.p = p;
+    v.e = e;
+    v.m = m;
+    v.t = t;
+    snprintf(v.what, sizeof v.what, "%s, rows %u + %u, columns %u + %u", p->name, t.row, t.rows, t.col, t.cols);
+    for (uint32_t r = 0; r < p->h; r++)
+        for (uint32_t c = 0; c < p->w; c++) {
+            const ld prob = p->prob[(size_t)r * p->w + c];
+            if (!inside(p, &t, c, r)) continue;
+            v.omega += solid_angle(r, p->w, p->h);
+            v.all += prob;
+            if (prob > 0) v.moved += prob * slack(p, c, r);
+        }
+    v.uniform = !(v.all > 0) || e->uniform;
+    return v;
+}
+
+/* The density of every texel; expected: of so many draws. */
+static void check_window_density(const windowed *v, int draws, double *expected) {
+    const picture *p = v->p;
+    const rectangle t = v->t;
+    ld mass = 0;
+    for (uint32_t r = 0; r < p->h; r++) {
+        const ld each = solid_angle(r, p->w, p->h);
+        ld in_row = 0;
+        for (uint32_t c = 0; c < p->w; c++)
+            in_row += inside(p, &t, c, r) && v->all > 0 ? p->prob[(size_t)r * p->w + c] / v->all : 0;
+        for (uint32_t c = 0; c < p->w; c++) {
+            const int in = inside(p, &t, c, r);
+            const double found = (double)(mcs_env_window_pdf(v->m, v->e, point(p->w, p->h, c, r, 0.5, 0.5)) * each);
+            const double want = (double)(!in ? 0 : v->uniform ? each / v->omega : p->prob[(size_t)r * p->w + c] / v->all);
+            double off = 4 * eps;
+            /* the integers of the texel in the map, of the window's part of the map, of the row in the window; four roundings */
+            if (!v->uniform && want > 0)
+                off += slack(p, c, r) + (double)(v->moved / v->all) + (2 / (double)in_row + t.rows) * quantum;
+            mass += found;
+            expected[(size_t)r * p->w + c] = want * draws;
+            CHECK((found > 0) == (want > 0), "%s: texel (%u, %u): probability %g, not %g", v->what, c, r, found, want);
+            if (want > 0)
+                CHECK(fabs(found - want) <= want * off, "%s: texel (%u, %u): probability %g, not %g", v->what, c, r, found, want);
+        }
+    }
+    CHECK(fabsl(mass - 1) <= 2 * eps, "%s: the density integrates to 1 + %Lg", v->what, mass - 1);
+}
+
+/* A batch is drawn as one by one; so many are not. */
+static int unequal_in_batch(const windowed *v, const float *u1, const float *u2) {
+    static float out[4][BATCH];
+    static uint32_t cols[BATCH], rows[BATCH];
+    int unequal = 0;
+    mcs_env_window_sample_n(v->m, v->e, BATCH, u1, u2, out[0], out[1], out[2], out[3], cols, rows);
+    for (int k = 0; k < BATCH; k++) {
+        const mcs_texel s = mcs_env_window_sample(v->m, v->e, u1[k], u2[k]);
+        unequal += !(s.w.x == out[0][k] && s.w.y == out[1][k] && s.w.z == out[2][k] && s.pdf == out[3][k]);
+        unequal += !(s.col == cols[k] && s.row == rows[k]);
+    }
+    return unequal;
+}
+static void check_window_draws(const windowed *v, int draws, double *observed) {
+    static float u1[BATCH], u2[BATCH];
+    const picture *p = v->p;
+    const rectangle t = v->t;
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 151);
+    int stray = 0;
+    int unequal = 0;
+    for (int i = 0; i < draws + CORNERS * CORNERS; i++) {
+        const int at = i % BATCH;
+        numbers(i, &rng, &u1[at], &u2[at]);
+        const mcs_texel s = mcs_env_window_sample(v->m, v->e, u1[at], u2[at]);
+        double col, row;
+        texel_of(p->w, p->h, s.w, &col, &row);
+        col = fmin(floor(col), p->w - 1.0);
+        row = fmin(floor(row), p->h - 1.0);
+        stray += !(inside(p, &t, s.col, s.row) && inside(p, &t, (uint32_t)col, (uint32_t)row));
+        unequal += !(mcs_env_window_pdf(v->m, v->e, s.w) == s.pdf && s.pdf > 0);
+        if (!v->uniform) CHECK(p->lum[(size_t)s.row * p->w + s.col] > 0, "%s: black texel (%u, %u)", v->what, s.col, s.row);
+        if (i >= CORNERS * CORNERS) observed[(size_t)(uint32_t)row * p->w + (uint32_t)col]++;
+        if (at == BATCH - 1) unequal += unequal_in_batch(v, u1, u2);
+    }
+    CHECK(stray == 0, "%s: %d draws outside", v->what, stray);
+    CHECK(unequal == 0, "%s: %d draws whose density is another, alone or in a batch", v->what, unequal);
+}
+
+static void check_window_order(const windowed *v) {
+    uint32_t last_row = 0;
+    uint32_t last_col = 0;
+    uint32_t falls = 0;
+    for (int i = 0; i < 512; i++) {
+        const mcs_texel down = mcs_env_window_sample(v->m, v->e, hash01((uint32_t)i), ((float)i + 0.5f) / 512);
+        const mcs_texel along = mcs_env_window_sample(v->m, v->e, ((float)i + 0.5f) / 512, 0.4f);
+        const uint32_t col = (along.col + v->p->w - v->t.col) % v->p->w;
+        falls += down.row < last_row || col < last_col;
+        last_row = down.row;
+        last_col = col;
+    }
+    CHECK(falls == 0, "%s: rows fall with u2 or columns with u1 %u times", v->what, falls);
+}
+
 /* The table of a rectangle against the picture within it. `uniform`: the picture, or what the window shows of it, has no shape. */
 static void check_window(const picture *p, const mcs_env *e, rectangle t, int draws) {
     const size_t texels = (size_t)p->w * p->h;
@@ -536,88 +648,18 @@ static void check_window(const picture *p, const mcs_env *e, rectangle t, int dr
     mcs_env_window *m = (mcs_env_window *)(void *)a.at;
     double *observed = (double *)get(texels * sizeof *observed);
     double *expected = (double *)get(texels * sizeof *expected);
-    static float u1[BATCH], u2[BATCH], out[4][BATCH];
-    static uint32_t cols[BATCH], rows[BATCH];
-    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 151);
-    ld all = 0;
-    ld omega = 0;
-    ld mass = 0;
-    ld moved = 0;
-    uint32_t last_row = 0;
-    uint32_t last_col = 0;
-    uint32_t falls = 0;
-    int stray = 0;
-    int unequal = 0;
-    char what[120];
-    snprintf(what, sizeof what, "%s, rows %u + %u, columns %u + %u", p->name, t.row, t.rows, t.col, t.cols);
-    for (uint32_t r = 0; r < p->h; r++)
-        for (uint32_t c = 0; c < p->w; c++) {
-            const ld prob = p->prob[(size_t)r * p->w + c];
-            if (!inside(p, &t, c, r)) continue;
-            omega += solid_angle(r, p->w, p->h);
-            all += prob;
-            if (prob > 0) moved += prob * slack(p, c, r);
-        }
-    const int uniform = !(all > 0) || e->uniform;
+    const windowed v = windowed_of(p, e, m, t);
     const mcs_status rc = mcs_env_window_build(m, a.bytes, e, t.row, t.rows, t.col, t.cols);
-    CHECK(rc == (all > 0 ? MCS_OK : MCS_UNIFORM) || (e->uniform && rc == MCS_OK), "%s: returns %d", what, rc);
-    CHECK(arena_intact(&a), "%s: written outside", what);
-    for (uint32_t r = 0; r < p->h; r++) {
-        const ld each = solid_angle(r, p->w, p->h);
-        ld in_row = 0;
-        for (uint32_t c = 0; c < p->w; c++) in_row += inside(p, &t, c, r) && all > 0 ? p->prob[(size_t)r * p->w + c] / all : 0;
-        for (uint32_t c = 0; c < p->w; c++) {
-            const int in = inside(p, &t, c, r);
-            const double found = (double)(mcs_env_window_pdf(m, e, point(p->w, p->h, c, r, 0.5, 0.5)) * each);
-            const double want = (double)(!in ? 0 : uniform ? each / omega : p->prob[(size_t)r * p->w + c] / all);
-            mass += found;
-            expected[(size_t)r * p->w + c] = want * draws;
-            CHECK((found > 0) == (want > 0), "%s: texel (%u, %u): probability %g, not %g", what, c, r, found, want);
-            /* the integers of the texel in the map, of the window's part of the map, of the row in the window; four roundings */
-            if (want > 0)
-                CHECK(fabs(found - want) <=
-                          want * (4 * eps +
-                                  (uniform ? 0 : slack(p, c, r) + (double)(moved / all) + (2 / (double)in_row + t.rows) * quantum)),
-                      "%s: texel (%u, %u): probability %g, not %g", what, c, r, found, want);
-        }
-    }
-    CHECK(fabsl(mass - 1) <= 2 * eps, "%s: the density integrates to 1 + %Lg", what, mass - 1);
-    int k;
-    for (int i = 0; i < draws + CORNERS * CORNERS; i++) {
-        const int at = i % BATCH;
-        numbers(i, &rng, &u1[at], &u2[at]);
-        mcs_texel s = mcs_env_window_sample(m, e, u1[at], u2[at]);
-        double col, row;
-        texel_of(p->w, p->h, s.w, &col, &row);
-        col = fmin(floor(col), p->w - 1.0);
-        row = fmin(floor(row), p->h - 1.0);
-        stray += !(inside(p, &t, s.col, s.row) && inside(p, &t, (uint32_t)col, (uint32_t)row));
-        unequal += !(mcs_env_window_pdf(m, e, s.w) == s.pdf && s.pdf > 0);
-        if (!uniform) CHECK(p->lum[(size_t)s.row * p->w + s.col] > 0, "%s: black texel (%u, %u)", what, s.col, s.row);
-        if (i >= CORNERS * CORNERS) observed[(size_t)(uint32_t)row * p->w + (uint32_t)col]++;
-        if (at < BATCH - 1) continue;
-        mcs_env_window_sample_n(m, e, BATCH, u1, u2, out[0], out[1], out[2], out[3], cols, rows);
-        for (k = 0; k < BATCH; k++) {
-            s = mcs_env_window_sample(m, e, u1[k], u2[k]);
-            unequal += !(s.w.x == out[0][k] && s.w.y == out[1][k] && s.w.z == out[2][k] && s.pdf == out[3][k]);
-            unequal += !(s.col == cols[k] && s.row == rows[k]);
-        }
-    }
-    CHECK(stray == 0, "%s: %d draws outside", what, stray);
-    CHECK(unequal == 0, "%s: %d draws whose density is another, alone or in a batch", what, unequal);
+    CHECK(rc == (v.all > 0 ? MCS_OK : MCS_UNIFORM) || (e->uniform && rc == MCS_OK), "%s: returns %d", v.what, rc);
+    CHECK(arena_intact(&a), "%s: written outside", v.what);
+    check_window_density(&v, draws, expected);
+    check_window_draws(&v, draws, observed);
     if (t.rows * t.cols > 1 && draws >= 1000) {
-        const double prob = chi2_test(observed, expected, texels, NULL, &k);
-        CHECK(prob >= level || k == 0, "%s: chi-square of %d degrees of freedom: p = %g", what, k, prob);
+        int dof;
+        const double prob = chi2_test(observed, expected, texels, NULL, &dof);
+        CHECK(prob >= level || dof == 0, "%s: chi-square of %d degrees of freedom: p = %g", v.what, dof, prob);
     }
-    for (int i = 0; i < 512; i++) {
-        const mcs_texel down = mcs_env_window_sample(m, e, hash01((uint32_t)i), ((float)i + 0.5f) / 512);
-        const mcs_texel along = mcs_env_window_sample(m, e, ((float)i + 0.5f) / 512, 0.4f);
-        const uint32_t col = (along.col + p->w - t.col) % p->w;
-        falls += down.row < last_row || col < last_col;
-        last_row = down.row;
-        last_col = col;
-    }
-    CHECK(falls == 0, "%s: rows fall with u2 or columns with u1 %u times", what, falls);
+    check_window_order(&v);
     free(observed);
     free(expected);
     arena_free(&a);

@@ -42,11 +42,7 @@ static int tells(const mcst_row *row, int which, const float *p, const float *x)
     return asserted;
 }
 
-static void check_row(const mcst_row *row) {
-    static const int takes_point[] = {1, 1, 0, 1, 1};
-    uint64_t state = mcst.seed;
-    float p[MCST_P];
-    mcst_grid_get(row, 0, p);
+static void check_numbers(const mcst_row *row, const float *p) {
     for (int i = 0; i < US; i++) {
         const float good = 0.3f;
         asserted = 0;
@@ -57,29 +53,30 @@ static void check_row(const mcst_row *row) {
         row->fn[0].sample(p, &good, &wrong_u[i], out);
         CHECK(row->inputs < 2 || asserted > 0, "u2 = %g", (double)wrong_u[i]);
     }
-    if (row->dim < 3) return;
+}
+static void check_lengths(const mcst_row *row, int which, float *p) {
+    static const int takes_point[] = {1, 1, 0, 1, 1};
     float x[3];
-    for (int which = 0; which < 5; which++) {
-        if (which == 1 && !row->fn[0].invert) continue;
-        if (which > 2 && !row->fn[0].eval) continue;
-        for (int i = 0; i < LENGTHS; i++) {
-            const float w[3] = {0.48f, 0.6f, 0.64f};
-            const float length = wrong_length[i];
-            for (int k = 0; k < 3; k++) {
-                x[k] = w[k];
-                p[3 + k] = w[k];
-            }
-            CHECK(!tells(row, which, p, x), "function %d tells of unit vectors", which);
-            for (int k = 0; k < 3; k++) x[k] = length * w[k];
-            CHECK(!takes_point[which] || tells(row, which, p, x), "function %d, point of length %g", which, (double)length);
-            for (int k = 0; k < 3; k++) {
-                x[k] = w[k];
-                p[3 + k] = length * w[k];
-            }
-            CHECK(!row->has_wo || tells(row, which, p, x), "function %d, wo of length %g", which, (double)length);
+    for (int i = 0; i < LENGTHS; i++) {
+        const float w[3] = {0.48f, 0.6f, 0.64f};
+        const float length = wrong_length[i];
+        for (int k = 0; k < 3; k++) {
+            x[k] = w[k];
+            p[3 + k] = w[k];
         }
+        CHECK(!tells(row, which, p, x), "function %d tells of unit vectors", which);
+        for (int k = 0; k < 3; k++) x[k] = length * w[k];
+        CHECK(!takes_point[which] || tells(row, which, p, x), "function %d, point of length %g", which, (double)length);
+        for (int k = 0; k < 3; k++) {
+            x[k] = w[k];
+            p[3 + k] = length * w[k];
+        }
+        CHECK(!row->has_wo || tells(row, which, p, x), "function %d, wo of length %g", which, (double)length);
     }
-    for (int i = 0; i < LENGTHS && row->has_wo; i++) { /* the wo of an array form */
+}
+/* The wo of an array form. */
+static void check_arrays(const mcst_row *row, float *p) {
+    for (int i = 0; i < LENGTHS; i++) {
         const float u[3] = {0.1f, 0.2f, 0.3f};
         float y[5][3];
         float *const to[5] = {y[0], y[1], y[2], y[3], y[4]};
@@ -94,6 +91,9 @@ static void check_row(const mcst_row *row) {
         row->pdf_n(p, 3, u, u, u, y[0]);
         CHECK(asserted > 0, "densities in arrays, wo of length %g", (double)wrong_length[i]);
     }
+}
+static void check_careful(const mcst_row *row, float *p) {
+    uint64_t state = mcst.seed;
     for (int i = 0; i < CAREFUL; i++) {
         const mcs_vec3 w = careful(&state);
         const mcs_vec3 wo = careful(&state);
@@ -104,6 +104,20 @@ static void check_row(const mcst_row *row) {
         for (int which = 0; which < 5; which++)
             CHECK(!tells(row, which, p, good), "function %d tells of a careful caller's vectors", which);
     }
+}
+
+static void check_row(const mcst_row *row) {
+    float p[MCST_P];
+    mcst_grid_get(row, 0, p);
+    check_numbers(row, p);
+    if (row->dim < 3) return;
+    for (int which = 0; which < 5; which++) {
+        if (which == 1 && !row->fn[0].invert) continue;
+        if (which > 2 && !row->fn[0].eval) continue;
+        check_lengths(row, which, p);
+    }
+    if (row->has_wo) check_arrays(row, p);
+    check_careful(row, p);
 }
 
 /* Calls FUNCTION with a good vector `w` and with wrong ones. */

@@ -274,62 +274,62 @@ static int leaves_unit_interval(float (*u)(uint32_t bits)) {
 
 static float u_right(uint32_t bits) { return mcs_u01(bits); }
 
+static void check_mutant(const mutant *t, double level) {
+    mcst_row row = *mcst_find(t->row);
+    float p[MCST_P];
+    mcst_fill(&row, t->a, t->b, t->cos_o, 0.7f, p);
+    if (t->sample) {
+        row.fn[0].sample = t->sample;
+        row.sample_n = array_of_one;
+    }
+    if (t->pdf) row.fn[0].pdf = t->pdf;
+    const verdict v = judge(&row, p, mcst_seed_for(t->name, "mutant", 0));
+    CHECK(is_caught(&v, level), "survived: p = %g, mass %.3g tolerances off", v.p, v.gap);
+    mcst_note("  %-50s %s%s%s p = %.3g, mass %.3g tolerances off\n", t->name, is_caught(&v, level) ? "caught by" : "SURVIVED",
+              !(v.p >= level) ? " chi-square" : "", !(v.gap <= 1) ? " mass" : "", v.p, v.gap);
+}
+/* The formula that the mutant is a slip of passes where the mutant does not. */
+static void check_control(const mutant *t, double level) {
+    mcst_row row = *mcst_find(t->row);
+    float p[MCST_P];
+    mcst_fill(&row, t->a, t->b, t->cos_o, 0.7f, p);
+    if (t->sample == columns) {
+        row.fn[0].sample = columns;
+        row.sample_n = array_of_one;
+        row.fn[0].pdf = columns_right;
+    }
+    const verdict v = judge(&row, p, mcst_seed_for(t->name, "control", 0));
+    CHECK(!is_caught(&v, level), "p = %g, mass %.3g tolerances off", v.p, v.gap);
+}
+/* The mass of Beckmann's visible normals with a density of theirs. */
+static mcst_mass mass_with(void (*pdf)(const float *p, const float *x, float *out)) {
+    mcst_row row = *mcst_find("ggx_vndf_h");
+    float p[MCST_P];
+    mcst_fill(&row, 0.5f, 0.5f, 0.5f, 0.7f, p);
+    row.fn[0].pdf = pdf;
+    return mcst_mass_of(&row, p);
+}
+
 int main(int argc, char **argv) {
     const double level = mcst_level();
     mcst_start(argc, argv);
     mcst_group("mutants");
-    for (size_t i = 0; i < MCST_COUNT(mutants); i++) {
-        const mutant *t = &mutants[i];
-        mcst_row row = *mcst_find(t->row);
-        if (!mcst_case("%s", t->name)) continue;
-        float p[MCST_P];
-        mcst_fill(&row, t->a, t->b, t->cos_o, 0.7f, p);
-        if (t->sample) {
-            row.fn[0].sample = t->sample;
-            row.sample_n = array_of_one;
-        }
-        if (t->pdf) row.fn[0].pdf = t->pdf;
-        const verdict v = judge(&row, p, mcst_seed_for(t->name, "mutant", 0));
-        CHECK(is_caught(&v, level), "survived: p = %g, mass %.3g tolerances off", v.p, v.gap);
-        mcst_note("  %-50s %s%s%s p = %.3g, mass %.3g tolerances off\n", t->name, is_caught(&v, level) ? "caught by" : "SURVIVED",
-                  !(v.p >= level) ? " chi-square" : "", !(v.gap <= 1) ? " mass" : "", v.p, v.gap);
-    }
+    for (size_t i = 0; i < MCST_COUNT(mutants); i++)
+        if (mcst_case("%s", mutants[i].name)) check_mutant(&mutants[i], level);
     if (mcst_case("Beckmann visible normals with a rational Lambda")) {
-        mcst_row row = *mcst_find("ggx_vndf_h");
-        float p[MCST_P];
-        mcst_fill(&row, 0.5f, 0.5f, 0.5f, 0.7f, p);
-        row.fn[0].pdf = beckmann_rational;
-        const mcst_mass m = mcst_mass_of(&row, p);
+        const mcst_mass m = mass_with(beckmann_rational);
         CHECK(!(fabs(m.integral - 1) <= m.tolerance), "survived: mass %.8f", m.integral);
-        mcst_note("  %-50s %s mass %.6f\n", "Beckmann visible normals with a rational Lambda",
-                  fabs(m.integral - 1) <= m.tolerance ? "SURVIVED" : "caught by", m.integral);
+        mcst_note("  %-50s %s mass %.6f\n", mcst.name, fabs(m.integral - 1) <= m.tolerance ? "SURVIVED" : "caught by", m.integral);
     }
     if (mcst_case("u = bits * 2^-32")) {
         CHECK(leaves_unit_interval(u_by_rounding), "survived");
-        mcst_note("  %-50s %s\n", "u = bits * 2^-32",
-                  leaves_unit_interval(u_by_rounding) ? "caught by range: gives 1" : "SURVIVED");
+        mcst_note("  %-50s %s\n", mcst.name, leaves_unit_interval(u_by_rounding) ? "caught by range: gives 1" : "SURVIVED");
     }
     mcst_group("controls");
-    for (size_t i = 0; i < MCST_COUNT(mutants); i++) {
-        const mutant *t = &mutants[i];
-        mcst_row row = *mcst_find(t->row);
-        if (!mcst_case("right formula for: %s", t->name)) continue;
-        float p[MCST_P];
-        mcst_fill(&row, t->a, t->b, t->cos_o, 0.7f, p);
-        if (t->sample == columns) {
-            row.fn[0].sample = columns;
-            row.sample_n = array_of_one;
-            row.fn[0].pdf = columns_right;
-        }
-        const verdict v = judge(&row, p, mcst_seed_for(t->name, "control", 0));
-        CHECK(!is_caught(&v, level), "p = %g, mass %.3g tolerances off", v.p, v.gap);
-    }
+    for (size_t i = 0; i < MCST_COUNT(mutants); i++)
+        if (mcst_case("right formula for: %s", mutants[i].name)) check_control(&mutants[i], level);
     if (mcst_case("Beckmann visible normals with the exact Lambda")) {
-        mcst_row row = *mcst_find("ggx_vndf_h");
-        float p[MCST_P];
-        mcst_fill(&row, 0.5f, 0.5f, 0.5f, 0.7f, p);
-        row.fn[0].pdf = beckmann_exact;
-        const mcst_mass m = mcst_mass_of(&row, p);
+        const mcst_mass m = mass_with(beckmann_exact);
         CHECK(fabs(m.integral - 1) <= m.tolerance, "mass %.8f", m.integral);
     }
     if (mcst_case("mcs_u01 stays below 1")) CHECK(!leaves_unit_interval(u_right), "mcs_u01 left [0,1)");

@@ -341,6 +341,37 @@ static uint32_t *integers_of(uint32_t n) {
     return cdf;
 }
 
+/* The forms with a float, of which test_pwc and test_pwl know more, are those of its bits. */
+static void check_forms_of_bits(const mcs_pwc *t, const mcs_pwl *l, uint32_t n, mcs_pcg32 *r) {
+    for (uint32_t i = 0; i < 100000; i++) {
+        const uint32_t b1 = mcs_pcg32_next(r) & 0xffffff00u >> (i & 7);
+        const float u = (float)(b1 >> 1) * 0x1p-31f;
+        const mcs_pick d = mcs_discrete_sample(t, u);
+        const mcs_pick e = mcs_discrete_sample_bits(t, b1, 0);
+        const mcs_cell c = mcs_pwc_sample(t, u);
+        const mcs_cell f = mcs_pwc_sample_bits(t, b1, 0);
+        const mcs_cell g = mcs_pwl_sample(l, u);
+        const mcs_cell h = mcs_pwl_sample_bits(l, b1, 0);
+        CHECK(d.i == e.i && d.u == e.u && d.pmf == e.pmf && c.i == f.i && c.x == f.x && c.pdf == f.pdf && g.i == h.i &&
+                  g.x == h.x && g.pdf == h.pdf,
+              "n = %u, u = %a: other draws by bits", n, (double)u);
+    }
+}
+/* Tables of one entry that holds all 2^64, up to the last. */
+static void check_last_bits(const arena *a, const arena *b) {
+    const mcs_pwc *t = (const mcs_pwc *)a->at;
+    const mcs_pwl *l = (const mcs_pwl *)b->at;
+    for (uint32_t k = 0; k < 2; k++) { /* with no density there in the second */
+        const float one[2] = {1, k ? 0.0f : 1.0f};
+        CHECK(mcs_pwl_build((mcs_pwl *)b->at, b->bytes, one, 1) == MCS_OK, "build");
+        const mcs_cell c = mcs_pwl_sample_bits(l, 0xffffffffu, 0xffffffffu);
+        CHECK(c.x == 0x0.ffffffp0f && c.pdf >= 0, "the last bits: x %a, pdf %g", (double)c.x, (double)c.pdf);
+    }
+    CHECK(mcs_pwc_build((mcs_pwc *)a->at, a->bytes, weight + 1, 1) == MCS_OK, "build");
+    CHECK(mcs_discrete_sample_bits(t, 0xffffffffu, 0xffffffffu).u == 0x0.ffffffp0f, "the last bits: rest");
+    CHECK(mcs_pwc_sample_bits(t, 0xffffffffu, 0xffffffffu).x == 0x0.ffffffp0f, "the last bits: x");
+}
+
 /* 64 bits over 2^33 are a place among 2^31 shares: found by bisection, and the rest within the entry, in long double, whose 64
  * digits hold the difference. Half the bits lie at a border of entries. The rest is rounded twice, as double and as float. x of
  * pwc is (i + rest)/n, rounded to double and to float and moved by a float into its cell. */
@@ -379,29 +410,8 @@ static void test_discrete_bits(uint32_t n) {
         CHECK(c.x >= 0 && c.x < 1 && fabs((double)(c.x - x)) <= 2.0001 * eps * (double)x, "n = %u, bits %016llx: x %a, not %a", n,
               (unsigned long long)v, (double)c.x, (double)x);
     }
-    for (uint32_t i = 0; i < 100000;
-         i++) { /* the forms with a float, of which test_pwc and test_pwl know more, are those of its bits */
-        const uint32_t b1 = mcs_pcg32_next(&r) & 0xffffff00u >> (i & 7);
-        const float u = (float)(b1 >> 1) * 0x1p-31f;
-        const mcs_pick d = mcs_discrete_sample(t, u);
-        const mcs_pick e = mcs_discrete_sample_bits(t, b1, 0);
-        const mcs_cell c = mcs_pwc_sample(t, u);
-        const mcs_cell f = mcs_pwc_sample_bits(t, b1, 0);
-        const mcs_cell g = mcs_pwl_sample(l, u);
-        const mcs_cell h = mcs_pwl_sample_bits(l, b1, 0);
-        CHECK(d.i == e.i && d.u == e.u && d.pmf == e.pmf && c.i == f.i && c.x == f.x && c.pdf == f.pdf && g.i == h.i &&
-                  g.x == h.x && g.pdf == h.pdf,
-              "n = %u, u = %a: other draws by bits", n, (double)u);
-    }
-    for (uint32_t k = 0; k < 2; k++) { /* one entry that holds all 2^64, up to the last; of pwl, with no density there */
-        const float one[2] = {1, k ? 0.0f : 1.0f};
-        CHECK(mcs_pwl_build((mcs_pwl *)b.at, b.bytes, one, 1) == MCS_OK, "build");
-        const mcs_cell c = mcs_pwl_sample_bits(l, 0xffffffffu, 0xffffffffu);
-        CHECK(c.x == 0x0.ffffffp0f && c.pdf >= 0, "the last bits: x %a, pdf %g", (double)c.x, (double)c.pdf);
-    }
-    CHECK(mcs_pwc_build((mcs_pwc *)a.at, a.bytes, weight + 1, 1) == MCS_OK, "build");
-    CHECK(mcs_discrete_sample_bits(t, 0xffffffffu, 0xffffffffu).u == 0x0.ffffffp0f, "the last bits: rest");
-    CHECK(mcs_pwc_sample_bits(t, 0xffffffffu, 0xffffffffu).x == 0x0.ffffffp0f, "the last bits: x");
+    check_forms_of_bits(t, l, n, &r);
+    check_last_bits(&a, &b);
     arena_free(&a);
     arena_free(&b);
     free(cdf);

@@ -149,68 +149,74 @@ static void test_errors(const kind *k) {
     arena_free(&a);
 }
 
+static double even_density(const kind *k, uint32_t n) { return k == &kinds[DISCRETE] || k == &kinds[ALIAS] ? 1.0 / n : 1.0; }
+
+/* Entries that are no weights count as 0, with `suns` infinite ones as the largest float; `b`: room for a table without them. */
+static void check_cleaned(const kind *k, uint32_t n, int suns, const arena *a, const arena *b) {
+    static const float nothing[5] = {NAN, -1, -INFINITY, -FLT_MAX, -FLT_MIN};
+    static float clean[41];
+    uint32_t bad = 0;
+    for (uint32_t i = 0; i < n + k->extra; i++) {
+        weight[i] = clean[i] = hash01(i + 100);
+        if (i % 4 == 1) {
+            weight[i] = nothing[i / 4 % 5];
+            clean[i] = 0;
+            bad++;
+        }
+        if (suns && i % 8 == 2) {
+            weight[i] = INFINITY;
+            clean[i] = FLT_MAX;
+            bad++;
+        }
+    }
+    int rc = k->build(a->at, a->bytes, weight, n);
+    CHECK(rc == MCS_OK && k->bad(a->at) == bad, "build returns %d, %llu bad, not %u", rc, k->bad(a->at), bad);
+    rc = k->build(b->at, b->bytes, clean, n);
+    CHECK(rc == MCS_OK && k->bad(b->at) == 0 && k->total(a->at) == k->total(b->at) && k->total(a->at) <= n * (double)FLT_MAX,
+          "build returns %d, %llu bad, total %g", rc, k->bad(b->at), k->total(a->at));
+    for (int j = 0; j < US; j += 7) {
+        const draw c = k->sample(a->at, us[j]);
+        const draw d = k->sample(b->at, us[j]);
+        CHECK(c.i == d.i && c.x == d.x && c.pdf == d.pdf && c.rest == d.rest, "u = %a: not as with clean entries", (double)us[j]);
+    }
+}
+static void check_all_infinite(const kind *k, uint32_t n, const arena *a) {
+    for (uint32_t i = 0; i < n + k->extra; i++) weight[i] = INFINITY;
+    const int rc = k->build(a->at, a->bytes, weight, n);
+    CHECK(rc == MCS_OK && k->bad(a->at) == n + k->extra && fabs(k->total(a->at) / (n * (double)FLT_MAX) - 1) <= 1e-12,
+          "all infinite: build returns %d, %llu bad, total %g", rc, k->bad(a->at), k->total(a->at));
+    for (uint32_t i = 0; i < 1 << 12; i++) {
+        const draw d = k->sample(a->at, (float)i * 0x1p-12f);
+        const double want = even_density(k, n);
+        CHECK(fabs(d.pdf - want) <= (2 * eps + 2 * n * quantum) * want, "all infinite: u = %u/2^12: density %g", i, (double)d.pdf);
+    }
+}
+static void check_all_zero(const kind *k, uint32_t n, int j, const arena *a) {
+    const float fill[3] = {0, -0.0f, NAN};
+    for (uint32_t i = 0; i < n + k->extra; i++) weight[i] = fill[j];
+    const int rc = k->build(a->at, a->bytes, weight, n);
+    CHECK(rc == MCS_UNIFORM && arena_intact(a), "all %g: build returns %d", (double)fill[j], rc);
+    CHECK(k->bad(a->at) == (j == 2 ? n + k->extra : 0) && k->total(a->at) == 0, "all %g: %llu bad, total %g", (double)fill[j],
+          k->bad(a->at), k->total(a->at));
+    for (uint32_t i = 0; i < n; i++) hits[i] = 0;
+    for (uint32_t i = 0; i < 1 << 16; i++) {
+        const draw d = k->sample(a->at, (float)i * 0x1p-16f);
+        const double want = even_density(k, n);
+        CHECK(fabs(d.pdf - want) <= 2 * eps * want + n * quantum && d.i < n, "u = %u/2^16: entry %u, density %g", i, d.i,
+              (double)d.pdf);
+        if (d.i < n) hits[d.i]++;
+    }
+    for (uint32_t i = 0; i < n; i++) CHECK(fabs(hits[i] - 65536.0 / n) <= 2, "entry %u: %u draws of 65536", i, hits[i]);
+}
+
 /* Bad entries are 0, but +infinity is FLT_MAX: the table is that of such a list. */
 static void test_bad_weights(const kind *k) {
-    const float inf = INFINITY;
-    const float nothing[5] = {NAN, -1, -inf, -FLT_MAX, -FLT_MIN};
     const uint32_t n = 40;
     arena a = arena_make(k->bytes(n));
     arena b = arena_make(k->bytes(n));
-    static float clean[41];
-    int rc;
-    for (uint32_t suns = 0; suns < 2; suns++) {
-        uint32_t bad = 0;
-        for (uint32_t i = 0; i < n + k->extra; i++) {
-            weight[i] = clean[i] = hash01(i + 100);
-            if (i % 4 == 1) {
-                weight[i] = nothing[i / 4 % 5];
-                clean[i] = 0;
-                bad++;
-            }
-            if (suns && i % 8 == 2) {
-                weight[i] = inf;
-                clean[i] = FLT_MAX;
-                bad++;
-            }
-        }
-        rc = k->build(a.at, a.bytes, weight, n);
-        CHECK(rc == MCS_OK && k->bad(a.at) == bad, "build returns %d, %llu bad, not %u", rc, k->bad(a.at), bad);
-        rc = k->build(b.at, b.bytes, clean, n);
-        CHECK(rc == MCS_OK && k->bad(b.at) == 0 && k->total(a.at) == k->total(b.at) && k->total(a.at) <= n * (double)FLT_MAX,
-              "build returns %d, %llu bad, total %g", rc, k->bad(b.at), k->total(a.at));
-        for (int j = 0; j < US; j += 7) {
-            const draw c = k->sample(a.at, us[j]);
-            const draw d = k->sample(b.at, us[j]);
-            CHECK(c.i == d.i && c.x == d.x && c.pdf == d.pdf && c.rest == d.rest, "u = %a: not as with clean entries",
-                  (double)us[j]);
-        }
-    }
-    for (uint32_t i = 0; i < n + k->extra; i++) weight[i] = inf;
-    rc = k->build(a.at, a.bytes, weight, n);
-    CHECK(rc == MCS_OK && k->bad(a.at) == n + k->extra && fabs(k->total(a.at) / (n * (double)FLT_MAX) - 1) <= 1e-12,
-          "all infinite: build returns %d, %llu bad, total %g", rc, k->bad(a.at), k->total(a.at));
-    for (uint32_t i = 0; i < 1 << 12; i++) {
-        const draw d = k->sample(a.at, (float)i * 0x1p-12f);
-        const double want = k == &kinds[DISCRETE] || k == &kinds[ALIAS] ? 1.0 / n : 1.0;
-        CHECK(fabs(d.pdf - want) <= (2 * eps + 2 * n * quantum) * want, "all infinite: u = %u/2^12: density %g", i, (double)d.pdf);
-    }
-    for (int j = 0; j < 3; j++) {
-        const float fill[3] = {0, -0.0f, NAN};
-        for (uint32_t i = 0; i < n + k->extra; i++) weight[i] = fill[j];
-        rc = k->build(a.at, a.bytes, weight, n);
-        CHECK(rc == MCS_UNIFORM && arena_intact(&a), "all %g: build returns %d", (double)fill[j], rc);
-        CHECK(k->bad(a.at) == (j == 2 ? n + k->extra : 0) && k->total(a.at) == 0, "all %g: %llu bad, total %g", (double)fill[j],
-              k->bad(a.at), k->total(a.at));
-        for (uint32_t i = 0; i < n; i++) hits[i] = 0;
-        for (uint32_t i = 0; i < 1 << 16; i++) {
-            const draw d = k->sample(a.at, (float)i * 0x1p-16f);
-            const double want = k == &kinds[DISCRETE] || k == &kinds[ALIAS] ? 1.0 / n : 1.0;
-            CHECK(fabs(d.pdf - want) <= 2 * eps * want + n * quantum && d.i < n, "u = %u/2^16: entry %u, density %g", i, d.i,
-                  (double)d.pdf);
-            if (d.i < n) hits[d.i]++;
-        }
-        for (uint32_t i = 0; i < n; i++) CHECK(fabs(hits[i] - 65536.0 / n) <= 2, "entry %u: %u draws of 65536", i, hits[i]);
-    }
+    for (int suns = 0; suns < 2; suns++) check_cleaned(k, n, suns, &a, &b);
+    check_all_infinite(k, n, &a);
+    for (int j = 0; j < 3; j++) check_all_zero(k, n, j, &a);
     arena_free(&a);
     arena_free(&b);
 }

@@ -527,34 +527,36 @@ static void measure_env(uint32_t w, int sun) {
     text_env.rows = NULL;
 }
 
-/* ---- output ---- */
-
-static void write_results(void) {
-    static const char *const forms[] = {"text", "scalar", "n"};
+static void write_row(FILE *f, const table_row *r) {
+    fprintf(f, "%s,%s,%s,%u,%u,", r->table, r->form, r->source, r->w, r->h ? r->h : 1);
+    if (r->built > 0) fprintf(f, "%.4g,%.4g,", r->built, r->copies);
+    else fprintf(f, ",,");
+    fprintf(f, "%.4g,", r->bytes);
+    if (r->sample.median > 0) fprintf(f, "%.4g,%.4g,%.4g,", r->sample.median, r->sample.min, r->sample.max);
+    else fprintf(f, ",,,");
+    if (r->pdf.median > 0) fprintf(f, "%.4g,%.4g,%.4g,", r->pdf.median, r->pdf.min, r->pdf.max);
+    else fprintf(f, ",,,");
+    if (r->sample.median > 0) fprintf(f, "%.4g", r->faster);
+    fprintf(f, "\n");
+}
+static void write_csv(void) {
     FILE *f = bench_csv("tables.csv",
                         "table,form,source,width,height,build_s,build_times_memcpy,bytes_per_cell,ns_sample_median,ns_sample_min,"
                         "ns_sample_max,ns_pdf_median,ns_pdf_min,ns_pdf_max,times_faster_than_text");
+    for (int i = 0; i < row_count; i++) write_row(f, &table_rows[i]);
+    bench_close(f, "tables.csv");
+}
+static void plot_env(void) {
+    static const char *const forms[] = {"text", "scalar", "n"};
     double lo = 1;
     double hi = 0;
     double wide = 0;
     for (int i = 0; i < row_count; i++) {
         const table_row *const r = &table_rows[i];
-        fprintf(f, "%s,%s,%s,%u,%u,", r->table, r->form, r->source, r->w, r->h ? r->h : 1);
-        if (r->built > 0) fprintf(f, "%.4g,%.4g,", r->built, r->copies);
-        else fprintf(f, ",,");
-        fprintf(f, "%.4g,", r->bytes);
-        if (r->sample.median > 0) fprintf(f, "%.4g,%.4g,%.4g,", r->sample.median, r->sample.min, r->sample.max);
-        else fprintf(f, ",,,");
-        if (r->pdf.median > 0) fprintf(f, "%.4g,%.4g,%.4g,", r->pdf.median, r->pdf.min, r->pdf.max);
-        else fprintf(f, ",,,");
-        if (r->sample.median > 0) fprintf(f, "%.4g", r->faster);
-        fprintf(f, "\n");
-        if (!strcmp(r->table, "env")) {
-            svg_range(1, &r->sample.median, 1, &lo, &hi);
-            wide = fmax(wide, (double)r->w * r->h);
-        }
+        if (strcmp(r->table, "env") != 0) continue;
+        svg_range(1, &r->sample.median, 1, &lo, &hi);
+        wide = fmax(wide, (double)r->w * r->h);
     }
-    bench_close(f, "tables.csv");
     svg_plot p;
     svg_begin(&p, bench_path("tables.svg"), "Sampling an environment map", "texels", "time per direction with pdf, ns (median)", 1,
               1, 2e4, wide * 1.6, lo / 1.5, hi * 1.5);
@@ -577,6 +579,8 @@ static void write_results(void) {
         fprintf(stderr, "cannot write %s\n", bench_path("tables.svg"));
         exit(2);
     }
+}
+static void print_table(void) {
     printf("\n%-7s %-11s %-13s %13s %10s %9s %9s %10s %9s %9s %9s %9s\n", "table", "form", "source", "size", "build ms", "x memcpy",
            "B/cell", "ns/sample", "min", "max", "ns/pdf", "x text");
     for (int i = 0; i < row_count; i++) {
@@ -595,6 +599,14 @@ static void write_results(void) {
         }
         putchar('\n');
     }
+}
+
+/* ---- output ---- */
+
+static void write_results(void) {
+    write_csv();
+    plot_env();
+    print_table();
 }
 
 /* ---- targets ---- */

@@ -91,6 +91,33 @@ static float *floats(size_t n) {
     return f;
 }
 
+/* The array forms of a row: numbers from the bytes while there are any, then u and x. */
+static void fuzz_arrays(const mcst_row *row, const float *p, const float *u, const float *x, int tame, size_t n, bytes *b) {
+    float *in[3];
+    for (int k = 0; k < 3; k++) in[k] = floats(n);
+    float *to[5];
+    for (int k = 0; k < 5; k++) {
+        to[k] = floats(n);
+        memset(to[k], 0, n * sizeof(float));
+    }
+    float *value = floats(n);
+    for (size_t i = 0; i < n; i++)
+        for (int k = 0; k < 3; k++) in[k][i] = b->left ? take_u(b, tame && k < 2) : k < 2 ? u[k] : x[k];
+    row->sample_n(p, n, in[0], in[1], to);
+    for (size_t i = 0; i < n; i++) {
+        MUST(finite(to[0][i]) && finite(to[1][i]) && finite(to[2][i]) && proper(to[3][i]) && proper(to[4][i]));
+        MUST(to[3][i] > 0 || to[4][i] == 0);
+    }
+    if (row->pdf_n) {
+        row->pdf_n(p, n, in[0], in[1], in[2], value);
+        for (size_t i = 0; i < n; i++) MUST(proper(value[i]));
+        row->eval_n(p, n, in[0], in[1], in[2], value);
+        for (size_t i = 0; i < n; i++) MUST(proper(value[i]));
+    }
+    for (int k = 0; k < 3; k++) free(in[k]);
+    for (int k = 0; k < 5; k++) free(to[k]);
+    free(value);
+}
 /* --- the functions ---------------------------------------------------------------------------------------------------------- */
 
 static void fuzz_row(const mcst_row *row, bytes *b) {
@@ -130,30 +157,7 @@ static void fuzz_row(const mcst_row *row, bytes *b) {
         row->fn[0].weight(p, x, &v[1]);
         MUST(proper(v[0]) && proper(v[1]));
     }
-    float *in[3];
-    for (int k = 0; k < 3; k++) in[k] = floats(n);
-    float *to[5];
-    for (int k = 0; k < 5; k++) {
-        to[k] = floats(n);
-        memset(to[k], 0, n * sizeof(float));
-    }
-    float *value = floats(n);
-    for (size_t i = 0; i < n; i++)
-        for (int k = 0; k < 3; k++) in[k][i] = b->left ? take_u(b, tame && k < 2) : k < 2 ? u[k] : x[k];
-    row->sample_n(p, n, in[0], in[1], to);
-    for (size_t i = 0; i < n; i++) {
-        MUST(finite(to[0][i]) && finite(to[1][i]) && finite(to[2][i]) && proper(to[3][i]) && proper(to[4][i]));
-        MUST(to[3][i] > 0 || to[4][i] == 0);
-    }
-    if (row->pdf_n) {
-        row->pdf_n(p, n, in[0], in[1], in[2], value);
-        for (size_t i = 0; i < n; i++) MUST(proper(value[i]));
-        row->eval_n(p, n, in[0], in[1], in[2], value);
-        for (size_t i = 0; i < n; i++) MUST(proper(value[i]));
-    }
-    for (int k = 0; k < 3; k++) free(in[k]);
-    for (int k = 0; k < 5; k++) free(to[k]);
-    free(value);
+    fuzz_arrays(row, p, u, x, tame, n, b);
 }
 
 static void fuzz_numbers(bytes *b) {
@@ -435,6 +439,52 @@ static void fuzz_product(const mcs_env *e, bytes *b) {
     free(t);
 }
 
+/* A rectangle of rows and columns in the map, and any other. */
+typedef struct {
+    uint32_t row, rows, col, cols, wild_row, wild_rows, wild_col, wild_cols;
+} rectangle;
+
+static rectangle take_rectangle(bytes *b, uint32_t w, uint32_t h) {
+    rectangle t;
+    t.row = take_u8(b) % h;
+    t.rows = 1 + take_u8(b) % (h - t.row);
+    t.col = take_u8(b) % w;
+    t.cols = 1 + take_u8(b) % w;
+    t.wild_row = take_u32(b);
+    t.wild_rows = take_u32(b);
+    t.wild_col = take_u32(b);
+    t.wild_cols = take_u32(b);
+    return t;
+}
+static void fuzz_window(const mcs_env *e, const rectangle *t, bytes *b) {
+    const size_t size = mcs_env_window_bytes(t->rows);
+    mcs_env_window *m = (mcs_env_window *)room(size);
+    mcs_status s;
+    MUST(mcs_env_window_build(m, size - 1, e, t->row, t->rows, t->col, t->cols) == MCS_ERR_MEMORY);
+    if (mcs_env_window_bytes(t->wild_rows) <= size) {
+        s = mcs_env_window_build(m, size, e, t->wild_row, t->wild_rows, t->wild_col, t->wild_cols);
+        MUST(s == MCS_OK || s == MCS_UNIFORM || s == MCS_ERR_SIZE);
+    }
+    s = mcs_env_window_build(m, size, e, t->row, t->rows, t->col, t->cols);
+    MUST(s == MCS_OK || s == MCS_UNIFORM);
+    draw_env(e, m, 1, b);
+    free(m);
+}
+/* A table of the image in `e`, and in `other` in two parts; `wrong`: an image that is not there. */
+static void fuzz_builds(const mcs_image *im, const mcs_image *wrong, uint32_t cut, mcs_env *e, mcs_env *other, size_t size) {
+    memset(e, 0, size);
+    memset(other, 0, size);
+    MUST(mcs_env_build(e, size - 1, im) == MCS_ERR_MEMORY);
+    mcs_status s;
+    if (mcs_env_bytes(wrong->w, wrong->h) == 0 || mcs_env_bytes(wrong->w, wrong->h) > size) {
+        s = mcs_env_build(e, size, wrong);
+        MUST(s == MCS_ERR_SIZE || s == MCS_ERR_MEMORY);
+    }
+    s = mcs_env_build(e, size, im);
+    MUST((s == MCS_OK || s == MCS_UNIFORM) && e->total >= 0 && e->total <= 1e300 && mcs_env_check(e, size) == MCS_OK);
+    MUST(mcs_env_build_rows(other, size, im, cut, im->h) == MCS_OK && mcs_env_build_rows(other, size, im, 0, cut) == MCS_OK);
+    MUST(mcs_env_finish(other, size, im) == s && !memcmp(e, other, size));
+}
 /* An image whose floats are what is left of the input, over and over; then the map, a window and, if asked for, products. */
 static void fuzz_env(int products, bytes *b) {
     const uint32_t w = 1 + take_u8(b) % 70;
@@ -447,14 +497,7 @@ static void fuzz_env(int products, bytes *b) {
     const uint32_t cut = take_u8(b) % (h + 1);
     const size_t n = (size_t)(h - 1) * row + (size_t)(w - 1) * step + channels;
     const size_t size = mcs_env_bytes(w, h);
-    const uint32_t y = take_u8(b) % h;
-    const uint32_t rows = 1 + take_u8(b) % (h - y);
-    const uint32_t x = take_u8(b) % w;
-    const uint32_t cols = 1 + take_u8(b) % w;
-    const uint32_t wild_row = take_u32(b);
-    const uint32_t wild_rows = take_u32(b);
-    const uint32_t wild_col = take_u32(b);
-    const uint32_t wild_cols = take_u32(b);
+    const rectangle t = take_rectangle(b, w, h);
     float *f = floats(n);
     mcs_env *e = (mcs_env *)room(size);
     mcs_env *other = (mcs_env *)room(size);
@@ -479,32 +522,11 @@ static void fuzz_env(int products, bytes *b) {
     }
     if ((kind & 96) == 96) im.floor = mcs_env_mean(&im);
     MUST(proper(mcs_env_mean(&im)));
-    memset(e, 0, size);
-    memset(other, 0, size);
-    MUST(mcs_env_build(e, size - 1, &im) == MCS_ERR_MEMORY);
-    mcs_status s;
-    if (mcs_env_bytes(wrong.w, wrong.h) == 0 || mcs_env_bytes(wrong.w, wrong.h) > size) {
-        s = mcs_env_build(e, size, &wrong);
-        MUST(s == MCS_ERR_SIZE || s == MCS_ERR_MEMORY);
-    }
-    s = mcs_env_build(e, size, &im);
-    MUST((s == MCS_OK || s == MCS_UNIFORM) && e->total >= 0 && e->total <= 1e300 && mcs_env_check(e, size) == MCS_OK);
-    MUST(mcs_env_build_rows(other, size, &im, cut, h) == MCS_OK && mcs_env_build_rows(other, size, &im, 0, cut) == MCS_OK);
-    MUST(mcs_env_finish(other, size, &im) == s && !memcmp(e, other, size));
+    fuzz_builds(&im, &wrong, cut, e, other, size);
     free(e);
     free(f); /* tables hold no addresses */
     draw_env(other, NULL, 1, b);
-    const size_t window_size = mcs_env_window_bytes(rows);
-    mcs_env_window *m = (mcs_env_window *)room(window_size);
-    MUST(mcs_env_window_build(m, window_size - 1, other, y, rows, x, cols) == MCS_ERR_MEMORY);
-    if (mcs_env_window_bytes(wild_rows) <= window_size) {
-        s = mcs_env_window_build(m, window_size, other, wild_row, wild_rows, wild_col, wild_cols);
-        MUST(s == MCS_OK || s == MCS_UNIFORM || s == MCS_ERR_SIZE);
-    }
-    s = mcs_env_window_build(m, window_size, other, y, rows, x, cols);
-    MUST(s == MCS_OK || s == MCS_UNIFORM);
-    draw_env(other, m, 1, b);
-    free(m);
+    fuzz_window(other, &t, b);
     if (products) fuzz_product(other, b);
     for (int i = 0; i < 2; i++) {
         other->frame.s = take_vec3(b);
