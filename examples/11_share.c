@@ -49,16 +49,16 @@ int main(void) {
 
     const int whole = mcs_env_check(shared, bytes);   /* before anything else is asked of it */
     const int cut = mcs_env_check(shared, bytes / 2); /* as if the file had been cut short */
-    const int other =
-        mcs_env_check((const mcs_env *)(const void *)((const char *)shared + 64), bytes - 64); /* no table begins here */
-    int i;
-    for (i = 0; i < 100000 && whole == MCS_OK; i++) {
+    /* no table begins here */
+    const int other = mcs_env_check((const mcs_env *)(const void *)((const char *)shared + 64), bytes - 64);
+    int draws = 0;
+    for (; draws < 100000 && whole == MCS_OK; draws++) {
         const float u1 = mcs_pcg32_float(&rng);
         const float u2 = mcs_pcg32_float(&rng);
         mcs_texel a = mcs_env_sample(built, u1, u2);
         mcs_texel b = mcs_env_sample(shared, u1, u2);
         differ += !(a.w.x == b.w.x && a.w.y == b.w.y && a.w.z == b.w.z && a.pdf == b.pdf && a.col == b.col && a.row == b.row);
     }
-    printf("%zu bytes: check %d, %d of %d samples differ; cut short: %d; no table: %d\n", bytes, whole, differ, i, cut, other);
+    printf("%zu bytes: check %d, %d of %d samples differ; cut short: %d; no table: %d\n", bytes, whole, differ, draws, cut, other);
     return !(whole == MCS_OK && differ == 0 && cut == MCS_ERR_MEMORY && other == MCS_ERR_FORMAT);
 }

@@ -15,7 +15,6 @@ int main(void) {
     const size_t bytes = mcs_env_bytes(W, H);
     const size_t point_bytes = mcs_product_bytes(TILE_ROWS);
     mcs_env *env = (mcs_env *)malloc(bytes);
-    mcs_tiles *tiles = NULL;
     mcs_product *point = (mcs_product *)malloc(point_bytes);
     const mcs_vec3 up = {0, 0, 1};
     const mcs_reflection matte = {mcs_frame_make(up), up, 1, 1, 1, MCS_PROFILE_GGX};
@@ -37,14 +36,14 @@ int main(void) {
         puts("the table could not be built");
         return 1;
     }
-    tiles = (mcs_tiles *)malloc(mcs_tiles_bytes(env, TILE_ROWS)); /* once per map */
+    mcs_tiles *tiles = (mcs_tiles *)malloc(mcs_tiles_bytes(env, TILE_ROWS)); /* once per map */
     if (!tiles || mcs_tiles_build(tiles, mcs_tiles_bytes(env, TILE_ROWS), env, TILE_ROWS) != MCS_OK) {
         puts("no tiles");
         return 1;
     }
-    if (mcs_product_build(point, point_bytes, tiles, env, &matte) != MCS_OK) {
+    if (mcs_product_build(point, point_bytes, tiles, env, &matte) != MCS_OK) { /* once per point */
         puts("no light here");
-        return 1; /* once per point */
+        return 1;
     }
     for (int i = 0; i < 100000; i++) {
         const float u1 = mcs_pcg32_float(&rng);

@@ -1,6 +1,6 @@
-/* Products of environment, reflection and cosine: the variance of one sample, by quadrature, over those of sampling the map, the BRDF
- * and both by MIS. MCS_TEST_VERBOSE=1 prints it. MCS_TEST_MAPS: Radiance pictures, separated by spaces, that are looked at, too. A
- * part of test_product.c. */
+/* Products of environment, reflection and cosine: the variance of one sample, by quadrature, over those of sampling the map, the
+ * BRDF and both by MIS. MCS_TEST_VERBOSE=1 prints it. MCS_TEST_MAPS: Radiance pictures, separated by spaces, that are looked at,
+ * too. A part of test_product.c. */
 #ifndef MCST_PRODUCT_VARIANCE_H
 #define MCST_PRODUCT_VARIANCE_H
 #include "../examples/hdr.h"
@@ -40,7 +40,7 @@ typedef struct {
     double a_env, a_brdf, m_env;              /* of MIS with the balance heuristic: squares of either part, the mean of one */
 } study;
 
-/* A texel with light; half the cosine's distance from 1, which is linear in what is equal areas, at its top and its height in it. */
+/* A texel with light; its top and height in half the cosine's distance from 1, which is linear in what is equal areas. */
 typedef struct {
     uint32_t c, r, tile;
     double light, top, height;

@@ -151,8 +151,8 @@ static void check_where(const grid_point *g) {
           "u %a %a: (%.9g %.9g %.9g), exact (%.9Lg %.9Lg %.9Lg)", (double)u[0], (double)u[1], (double)x[0], (double)x[1],
           (double)x[2], exact[0], exact[1], exact[2]);
 }
-/* The same relative to the lobe's own width: slopes in units of alpha, off by a fraction of themselves or, of visible normals, which
- * are sums c + i, of the whole vector; the least radius is about the root of the least subnormal. */
+/* The same relative to the lobe's own width: slopes in units of alpha, off by a fraction of themselves or, of visible normals,
+ * which are sums c + i, of the whole vector; the least radius is about the root of the least subnormal. */
 static void check_width(const grid_point *g) {
     const mcst_row *row = g->row;
     const float *u = g->u;

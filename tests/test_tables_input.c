@@ -83,8 +83,8 @@ static void test_build_fn(void) {
         mcs_pwc *t = (mcs_pwc *)a.at;
         const int rc = mcs_pwc_build_fn(t, a.bytes, f_bad, NULL, 16);
         CHECK(rc == MCS_OK && t->bad == 12, "build returns %d, %llu bad", rc, pwc_bad(t));
-        for (uint32_t i = 0; i < 16;
-             i++) { /* an infinite one weighs FLT_MAX; 8 cells have one integer each before the rest is shared */
+        /* an infinite one weighs FLT_MAX; 8 cells have one integer each before the rest is shared */
+        for (uint32_t i = 0; i < 16; i++) {
             const double w = i < 8 ? 0 : i < 12 ? (double)FLT_MAX : (double)2e38f;
             const double p = w / (4 * ((double)FLT_MAX + (double)2e38f));
             CHECK(fabs(mcs_discrete_pmf(t, i) - p) <= eps * p + (i < 8 ? 0 : 2 + 8 * p) * quantum, "cell %u: %g, not %g", i,
