@@ -20,8 +20,8 @@ int main(void) {
     for (int i = 0; i < 1000000; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         const float u2 = mcs_pcg32_float(&rng);
-        mcs_sample2 p = mcs_disk_sample(R, u1, u2);
-        mcs_sample2 c = mcs_concentric_sample(R, u1, u2);
+        const mcs_sample2 p = mcs_disk_sample(R, u1, u2);
+        const mcs_sample2 c = mcs_concentric_sample(R, u1, u2);
         mcs_stat_add(&polar, p.x * p.x / p.pdf);
         mcs_stat_add(&concentric, c.x * c.x / c.pdf);
     }

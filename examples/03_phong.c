@@ -23,7 +23,7 @@ int main(void) {
     for (int i = 0; i < 1000000; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         const float u2 = mcs_pcg32_float(&rng);
-        mcs_dir d = mcs_cosine_sample(u1, u2);
+        const mcs_dir d = mcs_cosine_sample(u1, u2);
         mcs_stat_add(&top, mcs_phong_sample(&m, above, u1, u2).weight);
         mcs_stat_add(&lobe, mcs_phong_sample(&m, slant, u1, u2).weight);
         mcs_stat_add(&cosine, d.pdf > 0 ? mcs_phong_eval(&m, slant, d.w) * d.w.z / d.pdf : 0);

@@ -25,8 +25,8 @@ int main(void) {
     for (int i = 0; i < 1000000; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         const float u2 = mcs_pcg32_float(&rng);
-        mcs_vec3 h = mcs_ward_h_sample(&m, u1, u2).w;
-        mcs_dir d = mcs_cosine_sample(u1, u2);
+        const mcs_vec3 h = mcs_ward_h_sample(&m, u1, u2).w;
+        const mcs_dir d = mcs_cosine_sample(u1, u2);
         mcs_stat_add(&x2, h.x * h.x / (h.z * h.z));
         mcs_stat_add(&y2, h.y * h.y / (h.z * h.z));
         mcs_stat_add(&brdf, mcs_ward_sample(&m, wo, u1, u2).weight);

@@ -25,7 +25,7 @@ int main(void) {
     for (int i = 0; i < 1000000; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         const float u2 = mcs_pcg32_float(&rng);
-        mcs_dir h = mcs_ggx_h_sample(&m, u1, u2); /* its pdf is D(h) h.z */
+        const mcs_dir h = mcs_ggx_h_sample(&m, u1, u2); /* its pdf is D(h) h.z */
         const float cos_d = wo.x * h.w.x + wo.y * h.w.y + wo.z * h.w.z;
         mcs_stat_add(&area, cos_d > 0 ? g1 * cos_d * mcs_ggx_d(&m, h.w) / h.pdf : 0);
         mcs_stat_add(&full, mcs_ggx_sample(&m, wo, u1, u2).weight);

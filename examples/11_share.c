@@ -55,8 +55,8 @@ int main(void) {
     for (; draws < 100000 && whole == MCS_OK; draws++) {
         const float u1 = mcs_pcg32_float(&rng);
         const float u2 = mcs_pcg32_float(&rng);
-        mcs_texel a = mcs_env_sample(built, u1, u2);
-        mcs_texel b = mcs_env_sample(shared, u1, u2);
+        const mcs_texel a = mcs_env_sample(built, u1, u2);
+        const mcs_texel b = mcs_env_sample(shared, u1, u2);
         differ += !(a.w.x == b.w.x && a.w.y == b.w.y && a.w.z == b.w.z && a.pdf == b.pdf && a.col == b.col && a.row == b.row);
     }
     printf("%zu bytes: check %d, %d of %d samples differ; cut short: %d; no table: %d\n", bytes, whole, differ, draws, cut, other);

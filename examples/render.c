@@ -116,7 +116,7 @@ static int map_sky(environment *e, const char *name) {
     if (!e->map.pixel) return complain(name, "not enough memory");
     for (uint32_t y = 0; y < e->map.h; y++) {
         for (uint32_t x = 0; x < e->map.w; x++) {
-            vec3 d = texel_direction(e, x, y);
+            const vec3 d = texel_direction(e, x, y);
             const float near_sun = dot(d, to_sun);
             const float disc = fminf(fmaxf((near_sun - sun_cos) / edge, 0), 1);
             vec3 c;
@@ -142,7 +142,7 @@ static void map_survey(environment *e) {
         const float area =
             2 * PI / (float)e->map.w * (cosf(PI * (float)y / (float)e->map.h) - cosf(PI * (float)(y + 1) / (float)e->map.h));
         for (unsigned x = 0; x < e->map.w; x++) {
-            vec3 d = mcs_to_world(&e->table->frame, texel_direction(e, x, y));
+            const vec3 d = mcs_to_world(&e->table->frame, texel_direction(e, x, y));
             const double l = luminance(radiance_at(e, x, y));
             lx += l * l * area * d.x;
             ly += l * l * area * d.y;
@@ -270,7 +270,7 @@ static bounce material_sample(const material *m, vec3 wo, float u_choice, float 
         b.pdf = s.pdf;
         if (b.pdf > 0 && m->p_lobe >= 1) b.weight = scale(s.weight, fresnel(m, wo, s.wi)); /* closed form, no f / pdf */
     } else {
-        mcs_dir s = mcs_cosine_sample(u1, u2);
+        const mcs_dir s = mcs_cosine_sample(u1, u2);
         b.wi = s.w;
         b.pdf = s.pdf;
         if (m->p_lobe <= 0) b.weight = m->base;
@@ -438,7 +438,7 @@ static vec3 sample_environment(const scene *s, const environment *e, const surfa
     const float u1 = mcs_pcg32_float(rng);
     const float u2 = mcs_pcg32_float(rng);
     mcs_texel l = mcs_env_sample(e->table, u1, u2);
-    vec3 wi = mcs_to_local(&x->frame, l.w);
+    const vec3 wi = mcs_to_local(&x->frame, l.w);
     if (!(l.pdf > 0 && wi.z > 0 && visible(s, x->p, l.w, x->object))) return vec(0, 0, 0);
     const vec3 value = scale(1 / l.pdf, mul(material_eval(x->m, x->wo, wi), radiance_at(e, l.col, l.row)));
     return mis ? scale(mcs_mis_power(l.pdf, x->m->share * material_pdf(x->m, x->wo, wi)), value) : value;
@@ -447,7 +447,7 @@ static vec3 sample_environment(const scene *s, const environment *e, const surfa
 static vec3 sample_hemisphere(const scene *s, const environment *e, const surface *x, int cosine, mcs_pcg32 *rng) {
     const float u1 = mcs_pcg32_float(rng);
     const float u2 = mcs_pcg32_float(rng);
-    mcs_dir d = cosine ? mcs_cosine_sample(u1, u2) : mcs_hemisphere_sample(u1, u2);
+    const mcs_dir d = cosine ? mcs_cosine_sample(u1, u2) : mcs_hemisphere_sample(u1, u2);
     const vec3 w = mcs_to_world(&x->frame, d.w);
     if (!(d.pdf > 0 && visible(s, x->p, w, x->object))) return vec(0, 0, 0);
     mcs_texel l = mcs_env_texel(e->table, w);
@@ -472,7 +472,7 @@ static mcs_reflection reflection_of(const surface *x) {
 
 /* The value of a light sample: radiance times f cos over the density. */
 static vec3 product_value(const scene *s, const environment *e, const surface *x, mcs_texel l) {
-    vec3 wi = mcs_to_local(&x->frame, l.w);
+    const vec3 wi = mcs_to_local(&x->frame, l.w);
     if (!(l.pdf > 0 && wi.z > 0 && visible(s, x->p, l.w, x->object))) return vec(0, 0, 0);
     return scale(1 / l.pdf, mul(material_eval(x->m, x->wo, wi), radiance_at(e, l.col, l.row)));
 }

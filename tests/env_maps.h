@@ -182,7 +182,7 @@ static inline void check_sample(const map *m, const mcs_env *e, float u1, float 
     CHECK(s.pdf > 0 && s.pdf <= FLT_MAX, "u = %a, %a: pdf %g", (double)u1, (double)u2, (double)s.pdf);
     CHECK(mcs_env_pdf(e, s.w) == s.pdf, "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2, (double)mcs_env_pdf(e, s.w),
           (double)s.pdf);
-    mcs_texel at = mcs_env_texel(e, s.w);
+    const mcs_texel at = mcs_env_texel(e, s.w);
     CHECK(at.pdf == s.pdf && at.col == s.col && at.row == s.row, "u = %a, %a: texel (%u, %u), returned (%u, %u)", (double)u1,
           (double)u2, at.col, at.row, s.col, s.row);
     double c, r;
@@ -191,7 +191,7 @@ static inline void check_sample(const map *m, const mcs_env *e, float u1, float 
     if (off > m->w / 2.0) off = m->w - off;
     CHECK(off <= 0.5 + 4 * eps * m->w, "u = %a, %a: column %.9g, returned %u", (double)u1, (double)u2, c, s.col);
     CHECK(fabs(r - s.row - 0.5) <= 0.5 + 4 * eps * m->h, "u = %a, %a: row %.9g, returned %u", (double)u1, (double)u2, r, s.row);
-    mcs_vec2 back = mcs_env_invert(e, s.w);
+    const mcs_vec2 back = mcs_env_invert(e, s.w);
     {
         /* In parts of a cell, the place is off by the margin of 4 eps cells times their number that samples keep from borders, by
          * the rounding of the azimuth (2 eps of a turn) or of z (2 eps), and once more that much in the inverse. */

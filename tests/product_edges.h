@@ -52,9 +52,11 @@ typedef struct {
 
 /* The normal: at right angles to the texel's corner, away from the middle, then towards the corner by 2^-i. */
 static surface barely_lit(const lone_texel *at, int shaped, int i) {
-    double corner[3], middle[3], n[3];
+    double corner[3];
     to3(corner, point(at->w, at->h, at->col, at->row, 0, 1));
+    double middle[3];
     to3(middle, point(at->w, at->h, at->col, at->row, 0.5, 0.5));
+    double n[3];
     for (int k = 0; k < 3; k++) n[k] = dot3(corner, middle) * corner[k] - middle[k];
     const double z = sqrt(dot3(n, n));
     for (int k = 0; k < 3; k++) n[k] = n[k] / z + ldexp(corner[k], -i);

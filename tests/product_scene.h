@@ -210,8 +210,8 @@ static inline surface surface_make(mcs_vec3 normal, mcs_vec3 wo, lobe l) {
     mcs_frame f = mcs_frame_make(normal);
     const float c = 0.8f;
     const float d = 0.6f; /* another tangent than the library's own */
-    mcs_vec3 a = f.s;
-    mcs_vec3 b = f.t;
+    const mcs_vec3 a = f.s;
+    const mcs_vec3 b = f.t;
     f.s.x = c * a.x + d * b.x;
     f.s.y = c * a.y + d * b.y;
     f.s.z = c * a.z + d * b.z;
@@ -311,7 +311,7 @@ static inline double lobe_off(const surface *s, mcs_vec3 w, double visible) {
     if (s->profile == MCS_PROFILE_GGX) return 2e-5 * visible;
     double d[3];
     to3(d, w);
-    fall f = fall_at(s, d);
+    const fall f = fall_at(s, d);
     return visible * (2e-5 + 1e-6 * f.root * f.root + 2 * f.root / f.scale * 8 * eps) + 1e-30;
 }
 
@@ -350,7 +350,7 @@ static inline int shapely(const surface *s, const double *w, double size) {
         away = sqrt(away) > size ? sqrt(away) - size : 0;
         return size > 0.5 * sqrt(s->width * s->width + away * away);
     }
-    fall f = fall_at(s, w);
+    const fall f = fall_at(s, w);
     return (size > 0.5 * f.scale && f.root - 2 * size / f.scale < 6) ||
            (s->profile == MCS_PROFILE_PHONG && size > 0.05 && fabs(dot3(s->mirror, w)) < size);
 }

@@ -118,8 +118,9 @@ static void add_texel(study *v, const lit_texel *t, int least) {
     direction_to(w, t->top + 0.5 * t->height, 2 * pi * (t->c + 0.5) / m->w);
     if (dot3(v->s->n, w) < -size) return;
     const int sub = points_of(v, w, size, least);
-    double x[SUB_MOST + FINE], wide[SUB_MOST + FINE], y[SUB_MOST + FINE], high[SUB_MOST + FINE];
+    double x[SUB_MOST + FINE], wide[SUB_MOST + FINE];
     const int across = middles(&v->fits[t->tile], t->at.t1, t->at.part1, sub, x, wide);
+    double y[SUB_MOST + FINE], high[SUB_MOST + FINE];
     const int down = middles(&v->fits[t->tile], t->at.t2, t->at.part2, sub, y, high);
     const int looked_up = hash01(t->r * m->w + t->c, 22) < 1e-3f;
     for (int i = 0; i < down; i++)
@@ -157,8 +158,8 @@ static void add_row(study *v, uint32_t r, int least) {
 static variances variance_of(const scene *m, const surface *s, int least, const double *tile_rows, const double *tile_parts,
                              const double *row_slack) {
     const uint32_t tiles = 2 * m->rows * m->rows;
-    study v;
     int fine = 0;
+    study v;
     memset(&v, 0, sizeof v);
     v.m = m;
     v.s = s;
@@ -238,7 +239,7 @@ static void add_map(const scene *m, mcs_profile profile, ratios *sum, int *n) {
             const surface s = surface_make(vec(sqrt(1 - z * z) * cos(2 * pi * turn), sqrt(1 - z * z) * sin(2 * pi * turn), z),
                                            local_wo(0.35 + 0.6 * golden, 2.4 * i), l);
             /* lobes and cosines are smooth on the scale of a tile, 0.2: eight points of a tile each way leave 0.025^2/24 of them */
-            variances v = variance_of(m, &s, m->h / m->rows < 8 ? 2 : 1, tile_rows, tile_parts, row_slack);
+            const variances v = variance_of(m, &s, m->h / m->rows < 8 ? 2 : 1, tile_rows, tile_parts, row_slack);
             CHECK(v.product > -1e-6 && v.oneshot > -1e-6 && v.env > 0 && v.mis > 0,
                   "%s, alpha %g, normal %d: variances %g, %g, %g, %g", m->name, (double)alpha, i, v.product, v.oneshot, v.env,
                   v.mis);

@@ -347,10 +347,10 @@ static void test_bad_sampler_input(void) {
             else if (j == 1) w.y = odd[i];
             else w.z = odd[i];
             const float pdf = mcs_env_pdf(env_in(&a), w);
-            mcs_vec2 u = mcs_env_invert(env_in(&a), w);
+            const mcs_vec2 u = mcs_env_invert(env_in(&a), w);
             CHECK(pdf == 0, "w = (%g, %g, %g): pdf %g", (double)w.x, (double)w.y, (double)w.z, (double)pdf);
             CHECK(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1, "w = (%g, %g, %g): invert", (double)w.x, (double)w.y, (double)w.z);
-            mcs_texel at = mcs_env_texel(env_in(&a), w);
+            const mcs_texel at = mcs_env_texel(env_in(&a), w);
             CHECK(at.pdf == 0 && at.col < m->w && at.row < m->h && at.w.z == 1, "w = (%g, %g, %g): texel (%u, %u)", (double)w.x,
                   (double)w.y, (double)w.z, at.col, at.row);
         }

@@ -190,13 +190,12 @@ static void test_parts(void) {
             first[n] = y;
             end[n++] = y = to;
         }
-        uint32_t k;
-        for (k = 0; k < 3; k++, n++) {
+        for (uint32_t k = 0; k < 3; k++, n++) {
             first[n] = mcs_pcg32_next(&rng) % p.h;
             end[n] = first[n] + (k ? 0 : mcs_pcg32_next(&rng) % (p.h - first[n] + 1));
         }
         while (n > 0) {
-            k = mcs_pcg32_next(&rng) % n--;
+            const uint32_t k = mcs_pcg32_next(&rng) % n--;
             rc = rc ? rc : mcs_env_build_rows(env_in(&b), b.bytes, &image, first[k], end[k]);
             first[k] = first[n];
             end[k] = end[n];

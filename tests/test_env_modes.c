@@ -798,7 +798,7 @@ static void test_spread(void) {
                     u.x = mcs_sobol(j, 0, seed);
                     u.y = mcs_sobol(j, 1, seed);
                 }
-                mcs_texel s = mcs_env_sample(env_in(&a), u.x, u.y);
+                const mcs_texel s = mcs_env_sample(env_in(&a), u.x, u.y);
                 sum += smooth(s.w) * (s.w.z > 0 ? (double)s.w.z : 0) / s.pdf;
             }
             squares += pow(sum / POINTS - 1.2 * pi, 2);

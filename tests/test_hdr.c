@@ -430,7 +430,6 @@ static void check_width_40000(bytes *file) {
 }
 
 static void check_literals(bytes *file) {
-    hdr_picture p;
     begin(file, "#?RADIANCE\n", "-Y 1 +X 100");
     put_pixel(file, 2, 2, 0, 100);
     for (int channel = 0; channel < 4; channel++) {
@@ -439,6 +438,7 @@ static void check_literals(bytes *file) {
         put(file, "\0\050", 2);
         for (int k = 60; k < 100; k++) put(file, &(unsigned char){(unsigned char)(k + channel + 1)}, 1);
     }
+    hdr_picture p;
     CHECK(load(&p, file), "%s", p.fault);
     for (int k = 0; p.pixel && k < 100; k++) CHECK(same(p.pixel[k], k + 1, k + 2, k + 3, k + 4), "pixel %d", k);
     free(p.pixel);
@@ -455,13 +455,13 @@ static void check_literal_of_128(bytes *file) {
 }
 
 static void check_no_code(bytes *file) {
-    hdr_picture p;
     begin(file, "#?RADIANCE\n", "-Y 2 +X 3"); /* (2, 2, 0, 5) in a width of 3, (1, 1, 1, 9) as the first of a line */
     put_pixel(file, 2, 2, 0, 5);
     put_pixel(file, 200, 200, 200, 129);
     put_run(file, 1);
     put_pixel(file, 1, 1, 1, 9);
     put_run(file, 2);
+    hdr_picture p;
     CHECK(load(&p, file), "%s", p.fault);
     if (p.pixel) {
         CHECK(same(p.pixel[0], 2, 2, 0, 5) && same(p.pixel[2], 200, 200, 200, 129), "first line");
@@ -471,7 +471,6 @@ static void check_no_code(bytes *file) {
 }
 
 static void check_own_bytes(bytes *file) {
-    hdr_picture p;
     static const int red[6] = {150, 150, 150, 160, 160, 170};
     begin(file, "#?RADIANCE\n", "-Y 1 +X 6");
     put_pixel(file, 150, 1, 2, 129);
@@ -479,6 +478,7 @@ static void check_own_bytes(bytes *file) {
     put_pixel(file, 160, 1, 2, 129);
     put_run(file, 1);
     put_pixel(file, 170, 1, 2, 129);
+    hdr_picture p;
     CHECK(load(&p, file), "%s", p.fault);
     for (int k = 0; p.pixel && k < 6; k++) CHECK(same(p.pixel[k], red[k], 1, 2, 129), "pixel %d", k);
     free(p.pixel);
@@ -496,10 +496,10 @@ static void check_runs_beyond(bytes *file) {
 }
 
 static void check_black(bytes *file) {
-    hdr_picture p;
     begin(file, "#?RADIANCE\n", "-Y 1 +X 2");
     put_pixel(file, 0, 0, 0, 140);
     put_pixel(file, 0, 0, 0, 0);
+    hdr_picture p;
     CHECK(load(&p, file), "%s", p.fault);
     for (size_t i = 0; p.pixel && i < 2; i++) {
         float c[3];

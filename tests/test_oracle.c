@@ -454,7 +454,6 @@ static const float fine[2] = {0.3f, 0.6f}, side[3] = {0.36f, 0.48f, 0.8f};
 
 static void check_bad_u(const mcst_row *row, const float *p) {
     static const float bad_u[] = {-1, -0x1p-149f, 1, 1.5f, -FLT_MAX, FLT_MAX};
-    float out[5];
     for (int i = 0; i < 9; i++) {
         const float v = i < 6 ? bad_u[i] : i == 6 ? NAN : i == 7 ? INFINITY : -INFINITY;
         for (int j = 0; j < row->inputs; j++) {
@@ -469,6 +468,7 @@ static void check_bad_u(const mcst_row *row, const float *p) {
         float zero[5];
         call_all(row, p, u, side, zero);
         u[j] = -0.0f;
+        float out[5];
         call_all(row, p, u, side, out);
         CHECK(out[3] == zero[3] && out[0] == zero[0] && out[1] == zero[1] && out[2] == zero[2], "u%d = -0 is not 0: pdf %g and %g",
               j + 1, (double)out[3], (double)zero[3]);
@@ -478,8 +478,8 @@ static void check_bad_u(const mcst_row *row, const float *p) {
 static void check_bad_wo(const mcst_row *row, const float *p) {
     static const float bad_wo[][3] = {{0, 0, 0},          {0, 0, -1},           {0.6f, 0, -0.8f},    {1, 0, 0},
                                       {1, 0, -0x1p-149f}, {-0.6f, 0.8f, -0.0f}, {6e-31f, 0, 8e-31f}, {6e29f, 0, 8e29f}};
-    float q[MCST_P];
     for (int i = 0; i < 8 + 9; i++) {
+        float q[MCST_P];
         memcpy(q, p, sizeof q);
         if (i < 8) memcpy(q + 3, bad_wo[i], sizeof bad_wo[i]);
         else q[3 + (i - 8) % 3] = i < 11 ? NAN : i < 14 ? INFINITY : -INFINITY;
@@ -505,11 +505,11 @@ static void check_bad_points(const mcst_row *row, const float *p) {
 
 static void check_bad_parameters(const mcst_row *row, const float *p) {
     static const float bad_parameter[] = {0, -0.0f, -0x1p-149f, -1, -FLT_MAX, 3};
-    float q[MCST_P];
     for (int i = 0; i < 7; i++) {
         const float v = i < 6 ? bad_parameter[i] : NAN;
         for (int j = 0; j < row->params; j++) {
             if (!parameter_is_bad(row, j, v)) continue;
+            float q[MCST_P];
             memcpy(q, p, sizeof q);
             q[j] = v;
             must_be_zero(row, q, fine, "bad parameter");
@@ -520,11 +520,10 @@ static void check_bad_parameters(const mcst_row *row, const float *p) {
 }
 
 static void check_odd_numbers(const mcst_row *row, const float *p) {
-    float q[MCST_P];
-    float out[5];
     uint64_t state = mcst_seed_for(row->name, "odd", 0);
     const int rounds = (int)(6000 * fmin(1, mcst_scale()));
     for (int k = 0; k < rounds; k++) {
+        float q[MCST_P];
         memcpy(q, p, sizeof q);
         float u[2];
         memcpy(u, fine, sizeof u);
@@ -534,6 +533,7 @@ static void check_odd_numbers(const mcst_row *row, const float *p) {
             float *slot = i < 6 ? &q[i] : i < 8 ? &u[i - 6] : &x[i - 8];
             if (mcst_mix(&state) % 3 == 0) *slot = odd_number(&state);
         }
+        float out[5];
         call_all(row, q, u, x, out);
     }
 }

@@ -34,8 +34,8 @@ static void columns(void) {
     static const struct { uint32_t s, a, m[3]; } poly[3] = {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}};
     if (!mcst_case("dimensions 0 to 3 are Sobol's: every column")) return;
     for (uint32_t d = 0; d < 4; d++) {
-        uint32_t column[32], k;
-        for (k = 0; k < 32; k++) {
+        uint32_t column[32];
+        for (uint32_t k = 0; k < 32; k++) {
             uint32_t m = 1;
             if (d) {
                 const uint32_t s = poly[d - 1].s;
@@ -56,7 +56,7 @@ static void columns(void) {
                 const uint32_t sum = (mcs_hash(draw, 200 + lead) | 1u << 31) >> lead;
                 uint32_t mask = 0;
                 uint32_t rest = sum;
-                for (k = 32; k-- > 0;)
+                for (uint32_t k = 32; k-- > 0;)
                     if (rest >> (31 - k) & 1) {
                         mask |= 1u << k;
                         rest ^= column[k];

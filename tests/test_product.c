@@ -231,9 +231,9 @@ static void check_model(int k) {
 
 /* One tile alone has weight (kind 1), or the others have 1e-44 (kind 2), or all have the same (kind 0). */
 static void check_far_weights(const scene *m, const surface *s, float size, int kind) {
-    float weight[512];
     uint32_t bad = 0;
     double sum = 0;
+    float weight[512];
     for (uint32_t q = 0; q < 512; q++) weight[q] = !kind || q == 100 ? size : kind == 1 ? 0 : 1e-44f;
     sampler d = sampler_weights(m, s, weight);
     CHECK(d.status == MCS_OK, "%g: build returns %d", (double)size, (int)d.status);

@@ -20,7 +20,7 @@ static double reflect_at(const sampler *d, box b, double t1, double t2, span *s,
     double v[3];
     to3(v, w);
     if (d->s->profile != MCS_PROFILE_GGX) {
-        fall f = fall_at(d->s, v);
+        const fall f = fall_at(d->s, v);
         const double root = fmin(f.root, 8);
         *sharp = (2 * root / f.scale + 4 / d->s->wo[2]) * 8 * eps + (767 + 32 * root * root) * eps;
     }

@@ -427,14 +427,13 @@ static void test_reused_digits(void) {
     arena a = arena_make(mcs_pwc_bytes(N));
     const mcs_pwc *t = (const mcs_pwc *)a.at;
     uint32_t *const cdf = integers_of(N);
-    uint32_t i;
-    for (i = 0; i < N; i++) weight[i] = 0.1f + hash01(i);
+    for (uint32_t i = 0; i < N; i++) weight[i] = 0.1f + hash01(i);
     CHECK(mcs_pwc_build((mcs_pwc *)a.at, a.bytes, weight, N) == MCS_OK, "build");
     load_integers(t, N, cdf);
     for (uint32_t j = 0; j < ENTRIES; j++) {
         double cells[64] = {0};
         double digits[64] = {0};
-        i = mcs_pcg32_next(&r) % N;
+        const uint32_t i = mcs_pcg32_next(&r) % N;
         uint32_t equal = 0;
         for (uint32_t k = 0; k < DRAWS; k++) {
             const uint64_t place = (uint64_t)mcs_pcg32_next(&r) << 32 | mcs_pcg32_next(&r);

@@ -450,14 +450,13 @@ static void rows_beside_borders(uint32_t h) {
     uint64_t seed = mcst_seed_for("env", "rows", h);
     int beside = 0;
     if (!light) exit(2);
-    uint32_t k;
-    for (k = 0; k < 2 * h; k++) light[k] = (float)(1 + k % 3);
+    for (uint32_t k = 0; k < 2 * h; k++) light[k] = (float)(1 + k % 3);
     const mcs_image image = mcs_image_make(light, 2, h, 1);
     CHECK(mcs_env_build(e, a.bytes, &image) == MCS_OK, "build");
     for (int i = 0; i < 300000; i++) {
         float u, v;
         mcst_uniform(&seed, 1, &u, &v);
-        k = 1 + (uint32_t)(mcst_mix(&seed) % (h - 1));
+        const uint32_t k = 1 + (uint32_t)(mcst_mix(&seed) % (h - 1));
         double theta = ST_PI * k / h;
         theta += fmin(theta, ST_PI - theta) * ldexp((double)u - 0.5, -18 - (int)(mcst_mix(&seed) % 6));
         float w[3];
@@ -517,7 +516,7 @@ static void lone_texels(void) {
         light[W + c] = 1;
         arena a;
         mcs_env *e = map_of(&a, light, W, H);
-        mcs_texel t = mcs_env_sample(e, 0.3f, 0.7f);
+        const mcs_texel t = mcs_env_sample(e, 0.3f, 0.7f);
         CHECK(t.col == c && t.row == 1 && t.pdf > 0 && mcs_env_pdf(e, t.w) == t.pdf, "column %u: drawn %u, %u, density %g", c,
               t.col, t.row, (double)t.pdf);
         arena_free(&a);
@@ -782,7 +781,7 @@ static void black_rows(void) {
     for (int i = 0; i < 3000; i++) {
         float u1, u2;
         mcst_uniform(&seed, 1, &u1, &u2);
-        mcs_vec3 w = mcs_sphere_sample(u1, u2).w;
+        const mcs_vec3 w = mcs_sphere_sample(u1, u2).w;
         const int black = mcs_env_texel(s.e, w).row % 2 == 0;
         const double p = (double)mcs_product_pdf(s.p, w);
         const double f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, w);
@@ -807,7 +806,7 @@ static void one_shot_draws(void) {
         float u[4];
         mcst_uniform(&seed, 2, u, u + 2);
         if (i % 100 == 0) s.r.frame = mcs_frame_make(mcs_sphere_sample(u[0], u[2]).w);
-        mcs_texel x = mcs_oneshot_sample(s.t, s.e, &s.r, u[1], u[3]);
+        const mcs_texel x = mcs_oneshot_sample(s.t, s.e, &s.r, u[1], u[3]);
         const double p = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, x.w);
         lost += !(x.pdf > 0);
         CHECK(fabs(p - (double)x.pdf) <= 1e-4 * (double)x.pdf, "u %a %a: density %g, of its direction %g", (double)u[1],

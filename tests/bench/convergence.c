@@ -66,9 +66,9 @@ static int print_all(const map *maps, int count, const result *all) {
 int main(int argc, char **argv) {
     static map maps[MAX_MAPS];
     const double start = bench_seconds();
-    const char *files[MAX_MAPS];
     int count = 3;
     int kept = 1;
+    const char *files[MAX_MAPS];
     for (int i = 1; i < argc; i++) { /* bench_start takes what is left */
         if (argv[i][0] != '-' && strcmp(argv[i - 1], "--out") != 0 && count < MAX_MAPS) files[count++] = argv[i];
         else argv[kept++] = argv[i];

@@ -284,7 +284,7 @@ static void print_doubts(int count, const result *all) {
             for (used = i = 0; i < MATERIALS * count; i++)
                 for (int how = 0; how < STRATEGIES; how++)
                     if (!like_product_64(how)) doubt[used++] = all[i].of[how][kind][l].doubt;
-            bench_spread d = bench_spread_of(doubt, used);
+            const bench_spread d = bench_spread_of(doubt, used);
             printf(" %4.1f /%4.0f %%", 100 * d.median, 100 * d.max);
         }
         printf("\n");

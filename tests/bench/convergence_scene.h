@@ -209,7 +209,7 @@ static void brdf_eval_n(const scene *s, block *b, size_t first, size_t last, int
 static void map_look(const scene *s, block *b, size_t n) {
     for (size_t i = 0; i < n; i++) {
         const mcs_vec3 w = {b->x[i], b->y[i], b->z[i]};
-        mcs_texel t = mcs_env_texel(s->e->table, mcs_to_world(&s->frame, w));
+        const mcs_texel t = mcs_env_texel(s->e->table, mcs_to_world(&s->frame, w));
         b->light[i] = s->e->light[(size_t)t.row * s->e->w + t.col];
         b->env_pdf[i] = t.pdf;
     }
@@ -217,8 +217,8 @@ static void map_look(const scene *s, block *b, size_t n) {
 
 static void map_sample(const scene *s, block *b, size_t first, size_t last) {
     for (size_t i = first; i < last; i++) {
-        mcs_texel t = mcs_env_sample(s->e->table, b->u1[i], b->u2[i]);
-        mcs_vec3 w = mcs_to_local(&s->frame, t.w);
+        const mcs_texel t = mcs_env_sample(s->e->table, b->u1[i], b->u2[i]);
+        const mcs_vec3 w = mcs_to_local(&s->frame, t.w);
         b->x[i] = w.x;
         b->y[i] = w.y;
         b->z[i] = w.z;
@@ -256,7 +256,7 @@ static void source_points(source *g, block *b, uint32_t first, size_t n) {
         return;
     case STRATIFIED:
         for (size_t i = 0; i < n; i++) {
-            mcs_vec2 u = mcs_stratified(first + (uint32_t)i, g->nx, g->ny, g->seed);
+            const mcs_vec2 u = mcs_stratified(first + (uint32_t)i, g->nx, g->ny, g->seed);
             b->u1[i] = u.x;
             b->u2[i] = u.y;
         }
@@ -349,9 +349,9 @@ static mcs_product *prepared; /* at the shading point whose turn it is */
 static void by_product(const scene *s, block *b, size_t n, size_t run) {
     for (size_t i = 0; i < n; i++) {
         if (run && i % run == 0) mcs_product_build(prepared, mcs_product_bytes(TILES), s->e->tiles, s->e->table, &s->like);
-        mcs_texel t = run ? mcs_product_sample(prepared, b->u1[i], b->u2[i])
-                          : mcs_oneshot_sample(s->e->tiles, s->e->table, &s->like, b->u1[i], b->u2[i]);
-        mcs_vec3 w = mcs_to_local(&s->frame, t.w);
+        const mcs_texel t = run ? mcs_product_sample(prepared, b->u1[i], b->u2[i])
+                                : mcs_oneshot_sample(s->e->tiles, s->e->table, &s->like, b->u1[i], b->u2[i]);
+        const mcs_vec3 w = mcs_to_local(&s->frame, t.w);
         b->x[i] = w.x;
         b->y[i] = w.y;
         b->z[i] = w.z;

@@ -245,7 +245,7 @@ static inline text_sample text_reflect(text_vec wo, text_sample h) {
     return s;
 }
 static inline text_sample text_phong(float n, text_vec wo, float u1, float u2) {
-    text_sample l = text_phong_lobe(n, u1, u2);
+    const text_sample l = text_phong_lobe(n, u1, u2);
     text_vec r = {-wo.x, -wo.y, wo.z};
     const float sign = copysignf(1, r.z);
     const float a = -1 / (sign + r.z);
@@ -274,11 +274,11 @@ static inline text_sample text_normalised(float x, float y, float z) {
     return s;
 }
 static inline text_sample text_ggx_vndf_h(float ax, float ay, text_vec v, float u1, float u2) {
-    text_sample e = text_normalised(ax * v.x, ay * v.y, v.z);
+    const text_sample e = text_normalised(ax * v.x, ay * v.y, v.z);
     const float l = e.x * e.x + e.y * e.y;
     const float k = 1 / sqrtf(l);
-    text_vec t1 = {l > 0 ? -e.y * k : 1, l > 0 ? e.x * k : 0, 0};
-    text_vec t2 = {e.y * t1.z - e.z * t1.y, e.z * t1.x - e.x * t1.z, e.x * t1.y - e.y * t1.x};
+    const text_vec t1 = {l > 0 ? -e.y * k : 1, l > 0 ? e.x * k : 0, 0};
+    const text_vec t2 = {e.y * t1.z - e.z * t1.y, e.z * t1.x - e.x * t1.z, e.x * t1.y - e.y * t1.x};
     const float r = sqrtf(u1);
     const float phi = 2 * TEXT_PI * u2;
     const float a = r * cosf(phi);
@@ -301,7 +301,7 @@ static inline float text_bound(float ax, float ay, text_vec v) {
     return (1 - a2) * s2 / (s2 + a2 * v.z * v.z);
 }
 static inline text_sample text_ggx_bounded_h(float ax, float ay, text_vec v, float u1, float u2) {
-    text_sample i = text_normalised(ax * v.x, ay * v.y, v.z);
+    const text_sample i = text_normalised(ax * v.x, ay * v.y, v.z);
     const float k = text_bound(ax, ay, v);
     const float b = k * i.z;
     const float phi = 2 * TEXT_PI * u1;

@@ -129,11 +129,11 @@ static void fuzz_row(const mcst_row *row, bytes *b) {
     for (int k = 0; k < 3; k++) p[k] = take_float(b);
     if (tame) /* any bits to a number between 2^-24 and 2^24, mostly in range */
         for (int k = 0; k < 3; k++) p[k] = fabsf(p[k]) > 0x1p-24f && fabsf(p[k]) < 0x1p24f ? fabsf(p[k]) : 0.5f;
-    mcs_vec3 wo = take_direction(b, tame);
+    const mcs_vec3 wo = take_direction(b, tame);
     float u[2];
     u[0] = take_u(b, tame);
     u[1] = take_u(b, tame);
-    mcs_vec3 w = take_direction(b, tame);
+    const mcs_vec3 w = take_direction(b, tame);
     p[3] = wo.x;
     p[4] = wo.y;
     p[5] = wo.z;
@@ -459,8 +459,8 @@ static rectangle take_rectangle(bytes *b, uint32_t w, uint32_t h) {
 static void fuzz_window(const mcs_env *e, const rectangle *t, bytes *b) {
     const size_t size = mcs_env_window_bytes(t->rows);
     mcs_env_window *m = (mcs_env_window *)room(size);
-    mcs_status s;
     MUST(mcs_env_window_build(m, size - 1, e, t->row, t->rows, t->col, t->cols) == MCS_ERR_MEMORY);
+    mcs_status s;
     if (mcs_env_window_bytes(t->wild_rows) <= size) {
         s = mcs_env_window_build(m, size, e, t->wild_row, t->wild_rows, t->wild_col, t->wild_cols);
         MUST(s == MCS_OK || s == MCS_UNIFORM || s == MCS_ERR_SIZE);

@@ -384,7 +384,7 @@ static void check_map_texels(const source *s, const row_of_texels *t, tally *to)
             dir.x = t->x[x];
             dir.y = t->y[x];
             dir.z = t->z[x];
-            mcs_texel at = mcs_env_texel(s->e, dir);
+            const mcs_texel at = mcs_env_texel(s->e, dir);
             CHECK(at.col == x && at.row == y && at.pdf == t->pdf[x], "%s: texel %u %u is %u %u; pdf %a, in an array %a", p->name,
                   (unsigned)x, (unsigned)y, (unsigned)at.col, (unsigned)at.row, (double)at.pdf, (double)t->pdf[x]);
         }
