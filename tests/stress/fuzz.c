@@ -641,7 +641,8 @@ static void replay_number(uint64_t i) {
     const uint64_t z = mcst_mix(&state);
     uint8_t data[1200];
     const size_t size = 64 + z % (sizeof data - 64);
-    for (size_t k = 0; k + 4 <= size; k += 4) {
+    size_t k = 0;
+    for (; k + 4 <= size; k += 4) {
         const uint64_t word = mcst_mix(&state);
         const float f = (z >> 40) & 1 ? st_hostile(word) : mcs_u01((uint32_t)(word >> 32));
         memcpy(data + k, &f, sizeof f);
