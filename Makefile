@@ -37,7 +37,8 @@ STRESS_FILTER = $(if $(findstring -,$(1)),--filter '$(subst .,/,$(subst +, ,$(wo
 DAY ?= $(shell date +%j)
 STRESS_TODAY = $(foreach i,$(shell echo '$(DAY) $(words $(STRESS_PARTS))' | awk '{ print $$1 % $$2 + 1, ($$1 + int($$2 / 2)) % $$2 + 1 }'), \
 	$(word $(i),$(STRESS_PARTS)))
-STRESS_SUM = awk '/^[0-9]+ passed, [0-9]+ failed$$/ { p += $$1; f += $$3 } END { print p + 0 " passed, " f + 0 " failed"; exit f != 0 || p == 0 }'
+STRESS_SUM = awk '/: [0-9]+ passed, [0-9]+ failed, [0-9.]+ s$$/ { p += $$(NF - 5); f += $$(NF - 3) } \
+	END { print p + 0 " passed, " f + 0 " failed"; exit f != 0 || p == 0 }'
 STRESS_CUT = $(if $(filter-out $(TESTS) $(WITHOUT),$(wildcard tests/test_*.c)),,$(STRESS_BINS))
 EXAMPLE_BINS = $(EXAMPLES:%.c=$(BUILD)/%)
 # What most of their compile time went into is compiled once: tests/shared.
