@@ -23,15 +23,17 @@ STRESS_ALL = floats deep hostile fuzz images extremes climb
 STRESS_QUAD = extremes climb
 STRESS = $(if $(QUADMATH),$(STRESS_ALL),$(filter-out $(STRESS_QUAD),$(STRESS_ALL)))
 STRESS_BINS = $(STRESS:%=$(BUILD)/tests/stress/%)
+# The rows of the registry, those of lines among them, and those whose name does not end like another one, whose filter fits both.
+STRESS_LINES := $(shell sed -n 's/^ *M.X, LINE, \([a-z0-9_]*\),.*/\1/p' tests/registry.h)
+STRESS_NAMES := $(shell sed -n 's/^ *M.X, [A-Z]*, \([a-z0-9_]*\),.*/\1/p' tests/registry.h)
+STRESS_ROWS := $(filter-out $(foreach n,$(STRESS_NAMES),$(filter-out $(n),$(filter %$(n),$(STRESS_NAMES)))),$(STRESS_NAMES))
 # Parts of make stress, of up to about five minutes each: program-filter, + for a space and . for a slash in the filter, ^ for all
 # but what follows. stress-whole looks whether they leave a case out.
-STRESS_ROWS = linear tent exponential truncexp normal logistic power disk concentric sphere cosine cone phong ward beckmann \
-	ggx. ggx_h. ggx_vndf ggx_bounded ashikhmin
 STRESS_PARTS = hostile images fuzz-product fuzz-^product $(filter climb,$(STRESS)) \
 	$(addprefix floats-vector+maths.,sin 1 ln e x normal+tail normal+quantile atan2+of) \
 	$(addprefix floats-,y+to+1 y+beyond+1 y+below+0 u+to+x u+to+radius any+float.u) \
-	$(addprefix floats-any+float.x+of+,l t e n p) $(STRESS_ROWS:%=deep-%) \
-	$(if $(filter extremes,$(STRESS)),$(STRESS_ROWS:%=extremes-%) extremes-mass extremes-oracle)
+	$(addprefix floats-any+float.x+of+,$(STRESS_LINES)) $(STRESS_ROWS:%=deep-%.) \
+	$(if $(filter extremes,$(STRESS)),$(STRESS_ROWS:%=extremes-%.) extremes-mass extremes-oracle)
 STRESS_FILTER = $(if $(findstring -,$(1)),--filter '$(subst .,/,$(subst +, ,$(word 2,$(subst -, ,$(1)))))')
 # Two of them each day of the year.
 DAY ?= $(shell date +%j)
@@ -154,7 +156,7 @@ $(TEST_BINS) $(STRESS_BINS): CONTRACT = $(EXACT) -DMCST_LINKED
 SHARED_FLAGS = -DMCST_LINKED -Wno-unused-function -Wno-unused-variable
 $(STRESS_BINS) $(patsubst %,$(BUILD)/tests/test_%,bits chi2_lobes chi2_rest fenv lines mutants values width): $(SHARED)/rows.o
 $(patsubst %,$(BUILD)/tests/test_%,mistakes oracle): $(SHARED)/asserting.o
-$(patsubst %,$(BUILD)/tests/test_%,bits fenv lines width): $(WIDE)
+$(patsubst %,$(BUILD)/tests/%,test_bits test_fenv test_lines test_width stress/floats): $(WIDE)
 $(patsubst %,$(BUILD)/tests/test_%,bits fenv): $(SHARED)/functions.o
 $(STRESS_BINS): $(wildcard tests/stress/*.h)
 $(STRESS_BINS): FLAGS += -Itests/stress

@@ -94,9 +94,9 @@ static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
          * fraction of the lobe's width; wo.h is about the larger of wo.z and the width */
         const double width = row->coord == MCST_SLOPES ? fmin(m.a, m.b) : 1 / sqrt(fmax(m.a, m.b) + 1);
         m.noise /= width;
-        if (strcmp(row->name, "phong") != 0) m.noise /= fmax(m.wo[2], width); /* Phong's lobe is of directions */
+        if (!(row->traits & MCST_ABOUT_R)) m.noise /= fmax(m.wo[2], width); /* Phong's lobe is of directions */
         m.frame = MCST_HALF;
-        if (!strcmp(row->name, "phong")) mcst_map_mirror(&m);
+        if (row->traits & MCST_ABOUT_R) mcst_map_mirror(&m);
     }
     return m;
 }
@@ -224,7 +224,8 @@ static inline double mcst_place(const mcst_map *m, double s, double t, double x[
         for (int i = 0; i < 3; i++) x[i] = 2 * l * v[i] - m->wo[i];
         return 4 * fabs(l) * jac;
     }
-    for (int i = 0; i < 3; i++) x[i] = m->frame == MCST_MIRROR ? v[0] * m->ex[i] + v[1] * m->ey[i] + v[2] * m->ez[i] : v[i];
+    for (int i = 0; i < 3; i++)
+        x[i] = m->frame == MCST_MIRROR ? v[0] * m->ex[i] + v[1] * m->ey[i] + v[2] * m->ez[i] : v[i];
     return jac;
 }
 
@@ -269,7 +270,9 @@ static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
     case MCST_COSPOWER:
         n = v[0] * v[0] + v[1] * v[1];
         z = sqrt(n + v[2] * v[2]);
-        s = n > 0 ? mcst_power_s((m->a * v[0] * v[0] + m->b * v[1] * v[1]) / n, v[2] > 0 ? n / (z * (z + v[2])) : 1 - v[2] / z) : 0;
+        s = n > 0 ? mcst_power_s((m->a * v[0] * v[0] + m->b * v[1] * v[1]) / n,
+                                 v[2] > 0 ? n / (z * (z + v[2])) : 1 - v[2] / z)
+                  : 0;
         t = mcst_diamond(v[0] * sqrt(m->a + 1), v[1] * sqrt(m->b + 1));
         break;
     default:
@@ -366,7 +369,8 @@ static inline void mcst_line(const mcst_density *d, double t, double weight, dou
 
 static inline void mcst_column_rule(const mcst_density *d, double t0, double t1, double *sums) {
     /* Gauss-Legendre, 4 points (Abramowitz and Stegun 1964, table 25.4) */
-    static const double x[2] = {0.1699905217924281, 0.4305681557970263}, w[2] = {0.3260725774312731, 0.1739274225687269};
+    static const double x[2] = {0.1699905217924281, 0.4305681557970263},
+                        w[2] = {0.3260725774312731, 0.1739274225687269};
     const double mid = 0.5 * (t0 + t1);
     const double len = t1 - t0;
     for (int i = 0; i < 2; i++) {
@@ -429,9 +433,10 @@ static inline double mcst_masses(const mcst_row *row, const float *p, double tol
 enum { MCST_BLOCK = 2048, MCST_GRID_U = 16, MCST_FINE_U = 1024 };
 
 typedef struct {
-    double chi2, stray, ks_s, ks_t; /* p-values; stray: too many samples where the integral is 0; ks_t is 1 in one dimension */
-    double chi2_u, ks_u1, ks_u2;    /* the same in u-space, 1 where there is no inverse */
-    double mass;                    /* integral of the density */
+    double chi2, stray, ks_s,
+        ks_t; /* p-values; stray: too many samples where the integral is 0; ks_t is 1 in one dimension */
+    double chi2_u, ks_u1, ks_u2; /* the same in u-space, 1 where there is no inverse */
+    double mass;                 /* integral of the density */
 } mcst_fit;
 
 /* p-value of the largest distance between two distributions given on the same bins (at bin edges only, so conservative). */
@@ -507,7 +512,8 @@ static inline void mcst_fit_xy(const mcst_row *row, const float *p, double n, ui
 /* Takes n samples back to u and compares those with the uniform density on the square. */
 static inline void mcst_fit_u(const mcst_row *row, const float *p, double n, uint64_t seed, mcst_fit *fit) {
     static float buffer[7][MCST_BLOCK];
-    static double observed[MCST_GRID_U * MCST_GRID_U], expected[MCST_GRID_U * MCST_GRID_U], fine[2][MCST_FINE_U], flat[MCST_FINE_U];
+    static double observed[MCST_GRID_U * MCST_GRID_U], expected[MCST_GRID_U * MCST_GRID_U], fine[2][MCST_FINE_U],
+        flat[MCST_FINE_U];
     float *const out[5] = {buffer[2], buffer[3], buffer[4], buffer[5], buffer[6]};
     const int cells = row->inputs == 1 ? MCST_GRID_U : MCST_GRID_U * MCST_GRID_U;
     double done = 0;

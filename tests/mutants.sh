@@ -78,8 +78,8 @@ ONLY="$*" DIR=$dir LC_ALL=C awk '
 # is built, which takes a fraction of the time.
 build() { # HEADER_FOLDER PROGRAM FILTER OUTPUT
     row=
-    case $2 in test_oracle | test_width) row=$(sed -n "s/^ *\(X([A-Z]*, ${3%%[/ ]*},[^)]*)\).*/\1/p" tests/registry.h) ;; esac
-    ${CC:-cc} -O1 -DMCS_MAX_LANES=4 ${row:+"-DMCST_ROWS(X)=$row"} -std=c99 -w -Wno-psabi -ffp-contract=off -I"$1" -I. -Itests \
+    case $2 in test_oracle | test_width) row=$(sed -n "s/^ *\(M(X, [A-Z]*, ${3%%[/ ]*},[^)]*)\).*/\1/p" tests/registry.h) ;; esac
+    ${CC:-cc} -O1 -DMCS_MAX_LANES=4 ${row:+"-DMCST_LIST(M, X)=$row"} -std=c99 -w -Wno-psabi -ffp-contract=off -I"$1" -I. -Itests \
         "tests/$2.c" -o "$4" -lm >"$4.log" 2>&1
 }
 binary() { # FOLDER PROGRAM FILTER

@@ -14,43 +14,47 @@
 #include "oracle.h"
 #include "stats.h"
 
-/* X(shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid). Some rows
- * alone are built much faster: define MCST_ROWS as MCST_LINES, or as one row (tests/mutants.sh). */
-#define MCST_LINES(X)                                       \
-    X(LINE, linear, linear, 2, -, UNIT, linear)             \
-    X(LINE, tent, tent, 1, -, TENT, radius)                 \
-    X(LINE, exponential, exponential, 1, -, HALFLINE, rate) \
-    X(LINE, truncexp, truncexp, 2, -, TRUNCATED, truncexp)  \
-    X(LINE, normal, normal, 2, -, WHOLELINE, normal)        \
-    X(LINE, logistic, logistic, 2, -, WHOLELINE, normal)    \
-    X(LINE, power, power, 1, -, POWER, power)               \
-    X(LINE, evenpower, evenpower, 1, -, EVENPOWER, power)
-#ifndef MCST_ROWS
-#define MCST_ROWS(X)                                                     \
-    MCST_LINES(X)                                                        \
-    X(PLANE, disk, disk, 1, -, DISK, radius)                             \
-    X(PLANE, concentric, concentric, 1, -, DISK, radius)                 \
-    X(DIR, sphere, sphere, 0, -, SPHERE, none)                           \
-    X(DIR, hemisphere, hemisphere, 0, -, HEMISPHERE, none)               \
-    X(DIR, cosine, cosine, 0, -, HEMISPHERE, none)                       \
-    X(DIR, cone, cone, 1, -, CONE, cone)                                 \
-    X(LOBE, phong_lobe, phong_lobe, phong, -, COSPOWER, phong)           \
-    X(BRDF, phong, phong, phong, phong, COSPOWER, phong)                 \
-    X(LOBE, ward_h, ward_h, ward, -, SLOPES, alpha)                      \
-    X(BRDF, ward_gmd, ward, ward_gmd, ward, SLOPES, alpha)               \
-    X(BRDF, ward_duer, ward, ward_duer, ward, SLOPES, alpha)             \
-    X(BRDF, ward_1992, ward, ward_1992, ward, SLOPES, alpha)             \
-    X(LOBE, beckmann_h, beckmann_h, beckmann, -, SLOPES, alpha)          \
-    X(BRDF, beckmann, beckmann, beckmann, beckmann, SLOPES, alpha)       \
-    X(LOBE, ggx_h, ggx_h, ggx, -, SLOPES, alpha)                         \
-    X(BRDF, ggx, ggx, ggx, ggx, SLOPES, alpha)                           \
-    X(VLOBE, ggx_vndf_h, ggx_vndf_h, ggx, -, SLOPES, alpha)              \
-    X(BRDF, ggx_vndf, ggx_vndf, ggx, ggx, SLOPES, alpha)                 \
-    X(VLOBE, ggx_bounded_h, ggx_bounded_h, ggx, -, SLOPES, alpha)        \
-    X(BRDF, ggx_bounded, ggx_bounded, ggx, ggx, SLOPES, alpha)           \
-    X(LOBE, ashikhmin_h, ashikhmin_h, ashikhmin, -, COSPOWER, exponents) \
-    X(BRDF, ashikhmin, ashikhmin, ashikhmin, ashikhmin, COSPOWER, exponents)
+/* M(X, shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid, claims,
+ * the parameters that make the width as bits, traits). Everything that tests know about a sampler beside its truth in oracle.h is
+ * said here. MCST_ROWS hands the first seven to X. Some rows alone are built much faster: define MCST_LIST as MCST_LINES, or as one
+ * row (tests/mutants.sh). */
+#define MCST_LINES(M, X)                                                          \
+    M(X, LINE, linear, linear, 2, -, UNIT, linear, line, 1, 0)                    \
+    M(X, LINE, tent, tent, 1, -, TENT, radius, line, 0, 0)                        \
+    M(X, LINE, exponential, exponential, 1, -, HALFLINE, rate, line, 1, 0)        \
+    M(X, LINE, truncexp, truncexp, 2, -, TRUNCATED, truncexp, line, 1, 0)         \
+    M(X, LINE, normal, normal, 2, -, WHOLELINE, normal, normal, 2, MCST_QUANTILE) \
+    M(X, LINE, logistic, logistic, 2, -, WHOLELINE, normal, line, 2, 0)           \
+    M(X, LINE, power, power, 1, -, POWER, power, line, 1, 0)                      \
+    M(X, LINE, evenpower, evenpower, 1, -, EVENPOWER, power, line, 1, 0)
+#ifndef MCST_LIST
+#define MCST_LIST(M, X)                                                                          \
+    MCST_LINES(M, X)                                                                             \
+    M(X, PLANE, disk, disk, 1, -, DISK, radius, disk, 0, 0)                                      \
+    M(X, PLANE, concentric, concentric, 1, -, DISK, radius, disk, 0, MCST_SQUARE)                \
+    M(X, DIR, sphere, sphere, 0, -, SPHERE, none, direction, 0, 0)                               \
+    M(X, DIR, hemisphere, hemisphere, 0, -, HEMISPHERE, none, direction, 0, 0)                   \
+    M(X, DIR, cosine, cosine, 0, -, HEMISPHERE, none, direction, 0, 0)                           \
+    M(X, DIR, cone, cone, 1, -, CONE, cone, cone, 0, 0)                                          \
+    M(X, LOBE, phong_lobe, phong_lobe, phong, -, COSPOWER, phong, phong_lobe, 1, 0)              \
+    M(X, BRDF, phong, phong, phong, phong, COSPOWER, phong, phong, 1, MCST_ABOUT_R)              \
+    M(X, LOBE, ward_h, ward_h, ward, -, SLOPES, alpha, gauss_h, 3, MCST_GAUSS)                   \
+    M(X, BRDF, ward_gmd, ward, ward_gmd, ward, SLOPES, alpha, gauss, 3, MCST_GAUSS)              \
+    M(X, BRDF, ward_duer, ward, ward_duer, ward, SLOPES, alpha, gauss, 3, MCST_GAUSS)            \
+    M(X, BRDF, ward_1992, ward, ward_1992, ward, SLOPES, alpha, gauss, 3, MCST_GAUSS)            \
+    M(X, LOBE, beckmann_h, beckmann_h, beckmann, -, SLOPES, alpha, gauss_h, 3, MCST_GAUSS)       \
+    M(X, BRDF, beckmann, beckmann, beckmann, beckmann, SLOPES, alpha, gauss, 3, MCST_GAUSS)      \
+    M(X, LOBE, ggx_h, ggx_h, ggx, -, SLOPES, alpha, ggx_h, 3, 0)                                 \
+    M(X, BRDF, ggx, ggx, ggx, ggx, SLOPES, alpha, ggx, 3, 0)                                     \
+    M(X, VLOBE, ggx_vndf_h, ggx_vndf_h, ggx, -, SLOPES, alpha, visible_h, 3, MCST_VISIBLE)       \
+    M(X, BRDF, ggx_vndf, ggx_vndf, ggx, ggx, SLOPES, alpha, visible, 3, MCST_VISIBLE)            \
+    M(X, VLOBE, ggx_bounded_h, ggx_bounded_h, ggx, -, SLOPES, alpha, visible_h, 3, MCST_VISIBLE) \
+    M(X, BRDF, ggx_bounded, ggx_bounded, ggx, ggx, SLOPES, alpha, visible, 3, MCST_VISIBLE)      \
+    M(X, LOBE, ashikhmin_h, ashikhmin_h, ashikhmin, -, COSPOWER, exponents, ashikhmin_h, 3, 0)   \
+    M(X, BRDF, ashikhmin, ashikhmin, ashikhmin, ashikhmin, COSPOWER, exponents, ashikhmin, 3, 0)
 #endif
+#define MCST_SEVEN(X, shape, row, fn, arg, base, coord, grid, claims, vary, traits) X(shape, row, fn, arg, base, coord, grid)
+#define MCST_ROWS(X) MCST_LIST(MCST_SEVEN, X)
 
 /* Samplers of mcsample.h that are not rows, because a table is not a handful of parameters. */
 static const char *const mcst_exempt[] = {"pwc", "pwl", "discrete", "alias", "env", "env_window", "product", "oneshot"};
@@ -106,6 +110,27 @@ typedef struct {
     int millions;
 } mcst_set;
 
+/* What sets a row apart, as bits. */
+enum {
+    MCST_QUANTILE = 1, /* the place is the quantile of the normal distribution, which has a few roundings more */
+    MCST_SQUARE = 2,   /* no random number is an azimuth */
+    MCST_ABOUT_R = 4,  /* a lobe about the mirrored direction, not of half-vectors */
+    MCST_GAUSS = 8,    /* Gaussian half-vectors: the error of a density grows with their exponent */
+    MCST_VISIBLE = 16  /* visible normals */
+};
+
+/* The figures of accuracy that mcsample.h states, as numbers: test_oracle.c holds the header to them on its grids, and looks up that
+ * the header states them (claims.h); stress/climb.c searches for inputs that break them.
+ *
+ * A density is judged in E = 1e-6 (1 + |ln(pdf/peak)|), of Gaussian half-vectors given h or wi in 1e-6 (1 + e), e their exponent;
+ * weights in 1e-6; the length of a direction by its distance from 1 in 2^-24. */
+enum { CLAIM_PDF_U, CLAIM_PDF_W, CLAIM_EVAL, CLAIM_SAMPLE_WEIGHT, CLAIM_WEIGHT, CLAIM_LENGTH, CLAIMS };
+
+/* A range of parameters and what is promised there; 0: nothing. */
+typedef struct {
+    double least[2], most[2], claim[CLAIMS];
+} mcst_claim;
+
 typedef struct {
     const char *name, *function; /* the public sampler is mcs_<function>_sample */
     enum mcst_shape shape;
@@ -121,6 +146,9 @@ typedef struct {
     mcst_sample_n_fn *sample_n;
     mcst_value_n_fn *pdf_n, *eval_n;
     mcst_truth truth;
+    const mcst_claim *claims; /* narrower ranges first */
+    size_t claims_size;
+    unsigned vary, traits;
 } mcst_row;
 
 /* --- parameter grids, extremes included ------------------------------------------------------------------------------- */
@@ -179,6 +207,47 @@ static inline o_vec2 mcst_o2(const float *x) {
     v.y = x[1];
     return v;
 }
+
+/* --- claims ----------------------------------------------------------------------------------------------------------------- */
+
+/* clang-format off */
+/* The figures of u for small exponents: a power n of the cosine gives (1-u1)/cos with ln cos = ln(1-u1)/(n+1), at most 16.7 in
+ * size. Its logarithm, 1/(n+1) and their product round by half an ulp of that or more, 2.5e-6 in all, and with two exponents
+ * 1/(n+1) is a rounded sum. |ln(pdf/peak)| = n/(n+1) 16.7 does not pay for that when n is near 0. */
+#define MCST_NO_PARAMETER {0, 0}, {0, 0}
+#define MCST_ALPHAS {1e-7, 1e-7}, {1e4, 1e4}
+static const mcst_claim mcst_claims_line[] = {{MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 0}}};
+static const mcst_claim mcst_claims_normal[] = {{MCST_NO_PARAMETER, {0.45, 0.45, 0, 0, 0, 0}}};
+static const mcst_claim mcst_claims_disk[] = {{MCST_NO_PARAMETER, {0.1, 0.1, 0, 0, 0, 0}}};
+static const mcst_claim mcst_claims_direction[] = {{MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 4}}};
+static const mcst_claim mcst_claims_cone[] = {{{1e-30, 0}, {2, 0}, {0.2, 0.2, 0, 0, 0, 4}}};
+static const mcst_claim mcst_claims_phong_lobe[] = {
+    {{1, 0}, {1e9, 0}, {0.4, 0, 0, 0, 0, 0}},
+    {{0.1, 0}, {1, 0}, {1.2, 0, 0, 0, 0, 0}},
+    {{0, 0}, {1e9, 0}, {2.9, 0.6, 0, 0, 0, 4}},
+};
+static const mcst_claim mcst_claims_phong[] = {
+    {{1, 0}, {1e9, 0}, {0.4, 0, 0, 0, 0, 0}},
+    {{0.1, 0}, {1, 0}, {1.2, 0, 0, 0, 0, 0}},
+    {{0, 0}, {1e9, 0}, {2.9, 0.6, 0.6, 0.3, 0.3, 4}},
+};
+static const mcst_claim mcst_claims_gauss_h[] = {{MCST_ALPHAS, {1.2, 1, 0, 0, 0, 4}}};
+static const mcst_claim mcst_claims_gauss[] = {{MCST_ALPHAS, {1.2, 1, 1.4, 1.8, 0.8, 4}}};
+static const mcst_claim mcst_claims_ggx_h[] = {{MCST_ALPHAS, {1.2, 1.2, 0, 0, 0, 4}}};
+static const mcst_claim mcst_claims_ggx[] = {{MCST_ALPHAS, {1.2, 1.2, 1.5, 1.6, 0.7, 4}}};
+static const mcst_claim mcst_claims_visible_h[] = {{MCST_ALPHAS, {2.1, 1.5, 0, 0, 0, 4}}};
+static const mcst_claim mcst_claims_visible[] = {{MCST_ALPHAS, {2.1, 1.5, 1.5, 0.7, 0.7, 4}}};
+static const mcst_claim mcst_claims_ashikhmin_h[] = {
+    {{1, 1}, {1e9, 1e9}, {0.8, 0, 0, 0, 0, 0}},
+    {{0.1, 0.1}, {1e9, 1e9}, {1.4, 0, 0, 0, 0, 0}},
+    {{0, 0}, {1e9, 1e9}, {3.7, 0.6, 0, 0, 0, 4}},
+};
+static const mcst_claim mcst_claims_ashikhmin[] = {
+    {{1, 1}, {1e9, 1e9}, {0.8, 0, 0, 0, 0, 0}},
+    {{0.1, 0.1}, {1e9, 1e9}, {1.4, 0, 0, 0, 0, 0}},
+    {{0, 0}, {1e9, 1e9}, {3.7, 0.6, 0.6, 0.1, 0.1, 4}},
+};
+/* clang-format on */
 
 /* --- the functions of the rows ------------------------------------------------------------------------------------------- */
 
@@ -284,12 +353,12 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_T_LOBE(row) MCST_TAIL_UV(row)
 #define MCST_T_VLOBE(row) MCST_TAIL_UV(row)
 #define MCST_T_BRDF(row) MCST_TAIL_BRDF(row)
-#define MCST_TABLE(shape, row, fn, arg, base, coord, grid) \
+#define MCST_TABLE(X, shape, row, fn, arg, base, coord, grid, claims, vary, traits) \
     {#row, #fn, MCST_SHAPE_##shape(row), MCST_##coord, MCST_SIZE_##shape, MCST_COUNT_##arg, MCST_WO_##shape, mcst_grid_##grid, \
-     MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row)},
+     MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row), mcst_claims_##claims, MCST_COUNT(mcst_claims_##claims), vary, traits},
 /* clang-format on */
 
-static const mcst_row mcst_rows[] = {MCST_ROWS(MCST_TABLE)};
+static const mcst_row mcst_rows[] = {MCST_LIST(MCST_TABLE, )};
 enum { MCST_NROWS = MCST_COUNT(mcst_rows) };
 
 static inline const mcst_row *mcst_find(const char *name) {

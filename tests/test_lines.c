@@ -1,7 +1,7 @@
 /* The maps of one dimension over all of the 2^24 numbers that mcs_u01 gives: the estimator that they make at the ends of unbounded
  * densities, and that they never fall. */
 #define MCST_WIDE
-#define MCST_ROWS MCST_LINES /* alone: the others cost compile time */
+#define MCST_LIST MCST_LINES /* alone: the others cost compile time */
 #include "registry.h"
 
 enum { CELLS = 1 << 24, BLOCK = 1 << 12, FORMS = 5 };

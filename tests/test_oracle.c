@@ -71,15 +71,17 @@ static int near(int what, float got, ld want, double rel, ld peak) {
 }
 
 /* 1e-6 (1 + |ln(pdf / peak)|): a density e^-x has the rounding of x in it. */
-static double pdf_tol(ld pdf, ld peak) { return 1e-6 * (1 + (pdf > 0 && peak > 0 ? fabs((double)logl(pdf / peak)) : 0)); }
+static double pdf_tol(ld pdf, ld peak) {
+    return 1e-6 * (1 + (pdf > 0 && peak > 0 ? fabs((double)logl(pdf / peak)) : 0));
+}
 
 /* The same for a given direction. A Gaussian half-vector has factors beside e^-e: the peak of the product is not where e is 0, and
  * the rounding is that of e itself, which has 12 EPS: twice the 5 of a slope over its alpha, and two more. */
 static double direction_tol(const mcst_row *row, const float *p, const float *x, ld pdf, ld peak) {
     const o_vec3 v = o_v3(x[0], x[1], x[2]);
     const o_vec3 h = row->shape == MCST_IS_BRDF ? o_add(mcst_o3(p + 3), v) : v;
-    return mcst_is_gauss(row) && h.z > 0 ? 1e-6 * (1 + (double)(o_slope_rr((ld)p[0], (ld)p[1], h) / (h.z * h.z)))
-                                         : pdf_tol(pdf, peak);
+    return row->traits & MCST_GAUSS && h.z > 0 ? 1e-6 * (1 + (double)(o_slope_rr((ld)p[0], (ld)p[1], h) / (h.z * h.z)))
+                                               : pdf_tol(pdf, peak);
 }
 
 /* Distances on a line are judged by the larger of |x| and this: where x is a difference, the rounding is that of its terms. */
@@ -90,7 +92,7 @@ static double line_scale(const mcst_row *row, const float *p) {
 }
 
 static int is_azimuth(const mcst_row *row, int i) {
-    return row->shape == MCST_IS_VLOBE ? i == 0 : row->dim > 1 && strcmp(row->name, "concentric") != 0 && i == 1;
+    return row->shape == MCST_IS_VLOBE ? i == 0 : row->dim > 1 && !(row->traits & MCST_SQUARE) && i == 1;
 }
 
 /* Distance of two values of random number i; of an azimuth a full turn is no turn. */
@@ -110,11 +112,13 @@ static double stretched_length(const float *p, o_vec3 h) {
  * wider alpha times |n| against the length of that vector. */
 static double magnification(const float *p, const mcst_row *row, const ld *x) {
     const o_vec3 v = o_vec(x[0], x[1], x[2]);
-    return fmax((double)p[0], (double)p[1]) * stretched_length(p, row->shape == MCST_IS_BRDF ? o_half(mcst_o3(p + 3), v) : v);
+    return fmax((double)p[0], (double)p[1]) *
+           stretched_length(p, row->shape == MCST_IS_BRDF ? o_half(mcst_o3(p + 3), v) : v);
 }
 
 static void describe(const mcst_row *row, const float *p) {
-    if (row->has_wo) mcst_case("%g %g, wo %g %g %g", (double)p[0], (double)p[1], (double)p[3], (double)p[4], (double)p[5]);
+    if (row->has_wo)
+        mcst_case("%g %g, wo %g %g %g", (double)p[0], (double)p[1], (double)p[3], (double)p[4], (double)p[5]);
     else mcst_case("%g %g", (double)p[0], (double)p[1]);
 }
 
@@ -145,11 +149,14 @@ static void check_where(const grid_point *g) {
     }
     if (row->dim == 1) size = fmax(size, line_scale(row, g->p));
     else if (row->dim == 3) size = 1;
-    double steps = row->shape == MCST_IS_BRDF ? 16 : row->shape == MCST_IS_DIR ? 2 : !strcmp(row->name, "normal") ? 12 : 8;
+    double steps = row->shape == MCST_IS_BRDF    ? 16
+                   : row->shape == MCST_IS_DIR   ? 2
+                   : row->traits & MCST_QUANTILE ? 12
+                                                 : 8;
     steps *= 1 + g->magnified;
     CHECK(within(WHERE, err, steps * EPS * size + 0x1p-149 * fmax(1, g->extent)),
-          "u %a %a: (%.9g %.9g %.9g), exact (%.9Lg %.9Lg %.9Lg)", (double)u[0], (double)u[1], (double)x[0], (double)x[1],
-          (double)x[2], exact[0], exact[1], exact[2]);
+          "u %a %a: (%.9g %.9g %.9g), exact (%.9Lg %.9Lg %.9Lg)", (double)u[0], (double)u[1], (double)x[0],
+          (double)x[1], (double)x[2], exact[0], exact[1], exact[2]);
 }
 /* The same relative to the lobe's own width: slopes in units of alpha, off by a fraction of themselves or, of visible normals,
  * which are sums c + i, of the whole vector; the least radius is about the root of the least subnormal. */
@@ -165,8 +172,8 @@ static void check_width(const grid_point *g) {
     const double dy = (double)((ld)x[1] - exact[1]) / wy;
     const double ex = (double)exact[0] / wx;
     const double ey = (double)exact[1] / wy;
-    const double scale =
-        row->shape == MCST_IS_VLOBE ? stretched_length(g->p, o_vec(exact[0], exact[1], exact[2])) : sqrt(ex * ex + ey * ey);
+    const double scale = row->shape == MCST_IS_VLOBE ? stretched_length(g->p, o_vec(exact[0], exact[1], exact[2]))
+                                                     : sqrt(ex * ex + ey * ey);
     CHECK(within(WIDTH, sqrt(dx * dx + dy * dy), 16 * EPS * (1 + g->magnified) * scale + 0x1p-73),
           "u %a %a: off by (%g %g) of the lobe's width", (double)u[0], (double)u[1], dx, dy);
 }
@@ -181,8 +188,8 @@ static void check_rim(const grid_point *g, float pdf) {
         inside[i] = x[i] * (1 - 8 * (float)EPS) + (row->shape == MCST_IS_VLOBE ? 8 * (float)EPS * p[3 + i] : 0);
     if (row->shape == MCST_IS_DIR) inside[2] = x[2]; /* towards the axis of a cone */
     const ld pdf_x = row->truth.pdf(p, inside);
-    CHECK(pdf >= 0 && (ld)pdf <= pdf_x * 1.001L, "u %a %a: pdf(x) %.9g on the rim, %.9Lg inside", (double)u[0], (double)u[1],
-          (double)pdf, pdf_x);
+    CHECK(pdf >= 0 && (ld)pdf <= pdf_x * 1.001L, "u %a %a: pdf(x) %.9g on the rim, %.9Lg inside", (double)u[0],
+          (double)u[1], (double)pdf, pdf_x);
 }
 static void check_values(const grid_point *g, float pdf, ld pdf_x) {
     const mcst_row *row = g->row;
@@ -200,12 +207,14 @@ static void check_values(const grid_point *g, float pdf, ld pdf_x) {
     float weight;
     row->fn[0].weight(p, x, &weight);
     if (pdf_x > 0) /* not rounded over the rim of a Phong lobe */
-        CHECK(near(WEIGHT, out[4], w, wtol, 1), "u %a %a: weight %.9g, exact %.9Lg", (double)u[0], (double)u[1], (double)out[4], w);
+        CHECK(near(WEIGHT, out[4], w, wtol, 1), "u %a %a: weight %.9g, exact %.9Lg", (double)u[0], (double)u[1],
+              (double)out[4], w);
     double tol = mcst_claim_of(row, CLAIM_WEIGHT, p) * 1e-6;
-    CHECK(near(WEIGHT_X, weight, w, tol, 1), "u %a %a: weight(x) %.9g, exact %.9Lg", (double)u[0], (double)u[1], (double)weight, w);
+    CHECK(near(WEIGHT_X, weight, w, tol, 1), "u %a %a: weight(x) %.9g, exact %.9Lg", (double)u[0], (double)u[1],
+          (double)weight, w);
     tol = mcst_claim_of(row, CLAIM_EVAL, p) * direction_tol(row, p, x, pdf_x, peak);
-    CHECK(near(EVAL, value, f, tol, peak), "u %a %a: eval(x) %.9g, exact %.9Lg (%.3g)", (double)u[0], (double)u[1], (double)value,
-          f, (double)((ld)value / f - 1));
+    CHECK(near(EVAL, value, f, tol, peak), "u %a %a: eval(x) %.9g, exact %.9Lg (%.3g)", (double)u[0], (double)u[1],
+          (double)value, f, (double)((ld)value / f - 1));
     if (f < (ld)FLT_MAX && pdf_x < (ld)FLT_MAX && f > (ld)FLT_MIN && pdf_x > (ld)FLT_MIN)
         CHECK(within(CLOSURE, fabs((double)weight * (double)pdf / ((double)value * (double)x[2]) - 1), 2 * tol + 1e-6),
               "u %a %a: weight pdf = %.9g, f cos = %.9g", (double)u[0], (double)u[1], (double)weight * (double)pdf,
@@ -224,25 +233,26 @@ static void check_inverse(const grid_point *g) {
     double step[2] = {0, 0};
     row->truth.invert(p, x, truth);
     row->fn[0].invert(p, x, back);
-    CHECK(back[0] >= 0 && back[0] < 1 && back[1] >= 0 && back[1] < 1, "u %a %a: invert gives %a %a", (double)u[0], (double)u[1],
-          (double)back[0], (double)back[1]);
+    CHECK(back[0] >= 0 && back[0] < 1 && back[1] >= 0 && back[1] < 1, "u %a %a: invert gives %a %a", (double)u[0],
+          (double)u[1], (double)back[0], (double)back[1]);
     /* what 8 ulp in each coordinate do to the exact inverse: its arithmetic takes about as many roundings */
     for (int k = 0; k < 2 * row->dim; k++) {
         float y[3];
         memcpy(y, x, sizeof y);
         y[k / 2] *= k % 2 ? 1 + 8 * 0x1p-23f : 1 - 8 * 0x1p-23f;
         row->truth.invert(p, y, moved);
-        for (int i = 0; i < row->inputs; i++) step[i] = fmax(step[i], u_error(row, i, (double)moved[i], (double)truth[i]));
+        for (int i = 0; i < row->inputs; i++)
+            step[i] = fmax(step[i], u_error(row, i, (double)moved[i], (double)truth[i]));
     }
     for (int i = 0; i < row->inputs; i++) {
         const double d = u_error(row, i, (double)back[i], (double)truth[i]);
         const double trip = u_error(row, i, (double)back[i], (double)u[i]);
         if (x[0] == 0 && x[1] == 0 && is_azimuth(row, i)) continue; /* without a radius there is no azimuth */
-        CHECK(within(INVERT, d, base + 2 * step[i]), "u %a %a: invert u%d %.9g, exact %.9Lg", (double)u[0], (double)u[1], i + 1,
-              (double)back[i], truth[i]);
+        CHECK(within(INVERT, d, base + 2 * step[i]), "u %a %a: invert u%d %.9g, exact %.9Lg", (double)u[0],
+              (double)u[1], i + 1, (double)back[i], truth[i]);
         /* the trip back: the roundings of the point, then those of its inverse */
-        CHECK(within(ROUND_TRIP, trip, base + 2 * step[i]), "u%d of %a %a comes back as %a", i + 1, (double)u[0], (double)u[1],
-              (double)back[i]);
+        CHECK(within(ROUND_TRIP, trip, base + 2 * step[i]), "u%d of %a %a comes back as %a", i + 1, (double)u[0],
+              (double)u[1], (double)back[i]);
     }
 }
 static void check_point(const mcst_row *row, const float *p, const float *u, ld peak, double extent) {
@@ -255,25 +265,26 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
     g.peak = peak;
     g.extent = extent;
     row->truth.map(p, u[0], u[1], g.exact);
-    if (!strncmp(row->name, "ggx_vndf", 8) || !strncmp(row->name, "ggx_bounded", 11)) g.magnified = magnification(p, row, g.exact);
+    if (row->traits & MCST_VISIBLE) g.magnified = magnification(p, row, g.exact);
     row->fn[0].sample(p, &u[0], &u[1], g.out);
     const float *out = g.out;
     const float *x = g.x;
     for (int i = 0; i < 3; i++) g.x[i] = out[i];
-    for (int i = 0; i < 5; i++) CHECK(isfinite(out[i]), "u %a %a: out[%d] = %g", (double)u[0], (double)u[1], i, (double)out[i]);
+    for (int i = 0; i < 5; i++)
+        CHECK(isfinite(out[i]), "u %a %a: out[%d] = %g", (double)u[0], (double)u[1], i, (double)out[i]);
     check_where(&g);
     if (row->dim == 3) {
         const ld l2 = (ld)x[0] * x[0] + (ld)x[1] * x[1] + (ld)x[2] * x[2];
-        CHECK(within(UNIT, fabs((double)(sqrtl(l2) - 1)), 4 * EPS), "u %a %a: length - 1 = %Lg", (double)u[0], (double)u[1],
-              sqrtl(l2) - 1);
+        CHECK(within(UNIT, fabs((double)(sqrtl(l2) - 1)), 4 * EPS), "u %a %a: length - 1 = %Lg", (double)u[0],
+              (double)u[1], sqrtl(l2) - 1);
     }
     if (row->shape == MCST_IS_LOBE || row->shape == MCST_IS_VLOBE) check_width(&g);
     /* the returned density belongs to u */
     double tol = mcst_claim_of(row, CLAIM_PDF_U, p) * pdf_tol(pdf_u, peak);
     if (row->shape != MCST_IS_BRDF ||
         fabsl(g.exact[2]) > 40 * EPS) /* otherwise above or below the horizon is a matter of rounding */
-        CHECK(near(PDF_U, out[3], pdf_u, tol, peak), "u %a %a: pdf %.9g, exact %.9Lg (%.3g, tolerance %.3g)", (double)u[0],
-              (double)u[1], (double)out[3], pdf_u, (double)((ld)out[3] / pdf_u - 1), tol);
+        CHECK(near(PDF_U, out[3], pdf_u, tol, peak), "u %a %a: pdf %.9g, exact %.9Lg (%.3g, tolerance %.3g)",
+              (double)u[0], (double)u[1], (double)out[3], pdf_u, (double)((ld)out[3] / pdf_u - 1), tol);
     if (row->shape == MCST_IS_BRDF && !(out[3] > 0)) {
         CHECK(out[4] == 0, "lost, but weight %g", (double)out[4]);
         return;
@@ -307,15 +318,15 @@ static void check_far(const mcst_row *row, const float *p, uint64_t seed, ld pea
         float pdf;
         row->fn[0].pdf(p, x, &pdf);
         double tol = mcst_claim_of(row, CLAIM_PDF_W, p) * direction_tol(row, p, x, want, peak);
-        CHECK(near(PDF_FAR, pdf, want, tol, peak), "pdf at %.9g %.9g %.9g: %.9g, exact %.9Lg (%.3g)", (double)x[0], (double)x[1],
-              (double)x[2], (double)pdf, want, (double)((ld)pdf / want - 1));
+        CHECK(near(PDF_FAR, pdf, want, tol, peak), "pdf at %.9g %.9g %.9g: %.9g, exact %.9Lg (%.3g)", (double)x[0],
+              (double)x[1], (double)x[2], (double)pdf, want, (double)((ld)pdf / want - 1));
         if (row->fn[0].eval) { /* also 0 where the density is */
             const ld w = row->truth.weight(p, x);
             float weight;
             row->fn[0].weight(p, x, &weight);
             tol = mcst_claim_of(row, CLAIM_WEIGHT, p) * 1e-6;
-            CHECK(near(WEIGHT_X, weight, w, tol, 1), "weight at %.9g %.9g %.9g: %.9g, exact %.9Lg", (double)x[0], (double)x[1],
-                  (double)x[2], (double)weight, w);
+            CHECK(near(WEIGHT_X, weight, w, tol, 1), "weight at %.9g %.9g %.9g: %.9g, exact %.9Lg", (double)x[0],
+                  (double)x[1], (double)x[2], (double)weight, w);
         }
     }
 }
@@ -362,8 +373,8 @@ static float odd_number(uint64_t *state) {
 }
 
 static int finite5(const float *out) {
-    return isfinite(out[0]) && isfinite(out[1]) && isfinite(out[2]) && isfinite(out[3]) && isfinite(out[4]) && out[3] >= 0 &&
-           out[4] >= 0;
+    return isfinite(out[0]) && isfinite(out[1]) && isfinite(out[2]) && isfinite(out[3]) && isfinite(out[4]) &&
+           out[3] >= 0 && out[4] >= 0;
 }
 
 /* One call of everything with p, u, x: all results finite, densities, weights and values not negative, inverses in [0,1). */
@@ -372,24 +383,24 @@ static void call_all(const mcst_row *row, const float *p, const float *u, const 
     memset(out, 0, 5 * sizeof *out);
     row->fn[0].sample(p, &u[0], &u[1], out);
     CHECK(finite5(out), "sample p %g %g, wo %g %g %g, u %g %g: %g %g %g, pdf %g, weight %g", (double)p[0], (double)p[1],
-          (double)p[3], (double)p[4], (double)p[5], (double)u[0], (double)u[1], (double)out[0], (double)out[1], (double)out[2],
-          (double)out[3], (double)out[4]);
+          (double)p[3], (double)p[4], (double)p[5], (double)u[0], (double)u[1], (double)out[0], (double)out[1],
+          (double)out[2], (double)out[3], (double)out[4]);
     row->fn[0].pdf(p, x, v);
-    CHECK(isfinite(v[0]) && v[0] >= 0, "pdf p %g %g, wo %g %g %g, x %g %g %g: %g", (double)p[0], (double)p[1], (double)p[3],
-          (double)p[4], (double)p[5], (double)x[0], (double)x[1], (double)x[2], (double)v[0]);
+    CHECK(isfinite(v[0]) && v[0] >= 0, "pdf p %g %g, wo %g %g %g, x %g %g %g: %g", (double)p[0], (double)p[1],
+          (double)p[3], (double)p[4], (double)p[5], (double)x[0], (double)x[1], (double)x[2], (double)v[0]);
     if (row->fn[0].invert) {
         v[0] = v[1] = 0;
         row->fn[0].invert(p, x, v);
-        CHECK(v[0] >= 0 && v[0] < 1 && v[1] >= 0 && v[1] < 1, "invert p %g %g, wo %g %g %g, x %g %g %g: %g %g", (double)p[0],
-              (double)p[1], (double)p[3], (double)p[4], (double)p[5], (double)x[0], (double)x[1], (double)x[2], (double)v[0],
-              (double)v[1]);
+        CHECK(v[0] >= 0 && v[0] < 1 && v[1] >= 0 && v[1] < 1, "invert p %g %g, wo %g %g %g, x %g %g %g: %g %g",
+              (double)p[0], (double)p[1], (double)p[3], (double)p[4], (double)p[5], (double)x[0], (double)x[1],
+              (double)x[2], (double)v[0], (double)v[1]);
     }
     if (row->fn[0].eval) {
         row->fn[0].eval(p, x, &v[0]);
         row->fn[0].weight(p, x, &v[1]);
-        CHECK(isfinite(v[0]) && v[0] >= 0 && isfinite(v[1]) && v[1] >= 0, "p %g %g, wo %g %g %g, wi %g %g %g: eval %g, weight %g",
-              (double)p[0], (double)p[1], (double)p[3], (double)p[4], (double)p[5], (double)x[0], (double)x[1], (double)x[2],
-              (double)v[0], (double)v[1]);
+        CHECK(isfinite(v[0]) && v[0] >= 0 && isfinite(v[1]) && v[1] >= 0,
+              "p %g %g, wo %g %g %g, wi %g %g %g: eval %g, weight %g", (double)p[0], (double)p[1], (double)p[3],
+              (double)p[4], (double)p[5], (double)x[0], (double)x[1], (double)x[2], (double)v[0], (double)v[1]);
     }
 }
 
@@ -397,15 +408,16 @@ static void call_all(const mcst_row *row, const float *p, const float *u, const 
 static void must_be_zero(const mcst_row *row, const float *p, const float *u, const char *why) {
     float out[5];
     call_all(row, p, u, (const float[3]){0.6f, 0, 0.8f}, out);
-    CHECK(out[3] == 0 && out[4] == 0, "%s: p %g %g, wo %g %g %g, u %g %g: pdf %g, weight %g", why, (double)p[0], (double)p[1],
-          (double)p[3], (double)p[4], (double)p[5], (double)u[0], (double)u[1], (double)out[3], (double)out[4]);
+    CHECK(out[3] == 0 && out[4] == 0, "%s: p %g %g, wo %g %g %g, u %g %g: pdf %g, weight %g", why, (double)p[0],
+          (double)p[1], (double)p[3], (double)p[4], (double)p[5], (double)u[0], (double)u[1], (double)out[3],
+          (double)out[4]);
 }
 
 static void pdf_must_be_zero(const mcst_row *row, const float *p, const float *x, const char *why) {
     float v;
     row->fn[0].pdf(p, x, &v);
-    CHECK(v == 0, "%s: pdf %g at %g %g %g, p %g %g, wo %g %g %g", why, (double)v, (double)x[0], (double)x[1], (double)x[2],
-          (double)p[0], (double)p[1], (double)p[3], (double)p[4], (double)p[5]);
+    CHECK(v == 0, "%s: pdf %g at %g %g %g, p %g %g, wo %g %g %g", why, (double)v, (double)x[0], (double)x[1],
+          (double)x[2], (double)p[0], (double)p[1], (double)p[3], (double)p[4], (double)p[5]);
     if (row->fn[0].eval) {
         row->fn[0].eval(p, x, &v);
         CHECK(v == 0, "%s: eval %g", why, (double)v);
@@ -470,8 +482,8 @@ static void check_bad_u(const mcst_row *row, const float *p) {
         u[j] = -0.0f;
         float out[5];
         call_all(row, p, u, side, out);
-        CHECK(out[3] == zero[3] && out[0] == zero[0] && out[1] == zero[1] && out[2] == zero[2], "u%d = -0 is not 0: pdf %g and %g",
-              j + 1, (double)out[3], (double)zero[3]);
+        CHECK(out[3] == zero[3] && out[0] == zero[0] && out[1] == zero[1] && out[2] == zero[2],
+              "u%d = -0 is not 0: pdf %g and %g", j + 1, (double)out[3], (double)zero[3]);
     }
 }
 
@@ -500,7 +512,8 @@ static void check_bad_points(const mcst_row *row, const float *p) {
             CHECK(v[0] == 0 && v[1] == 0, "NaN for coordinate %d: invert gives %g %g", i, (double)v[0], (double)v[1]);
         }
     }
-    for (int i = 0; row->shape == MCST_IS_BRDF && i < 4; i++) pdf_must_be_zero(row, p, bad_wi[i], "wi not above the surface");
+    for (int i = 0; row->shape == MCST_IS_BRDF && i < 4; i++)
+        pdf_must_be_zero(row, p, bad_wi[i], "wi not above the surface");
 }
 
 static void check_bad_parameters(const mcst_row *row, const float *p) {
@@ -553,7 +566,8 @@ int main(int argc, char **argv) {
     mcst_group("claims");
     if (mcst_case("the header states them"))
         for (size_t i = 0; i < MCST_COUNT(mcst_claim_sentences); i++)
-            CHECK(mcst_header_says(MCS_HEADER, mcst_claim_sentences[i]), "not in %s: %s", MCS_HEADER, mcst_claim_sentences[i]);
+            CHECK(mcst_header_says(MCS_HEADER, mcst_claim_sentences[i]), "not in %s: %s", MCS_HEADER,
+                  mcst_claim_sentences[i]);
     for (size_t i = 0; i < MCST_NROWS; i++) {
         const mcst_row *row = &mcst_rows[i];
         mcst_group(row->name);

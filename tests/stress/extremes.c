@@ -226,7 +226,7 @@ static void check_point(const mcst_row *row, const setting *s, const float *p, c
     if (row->coord == MCST_TENT) size = (double)p[0];
     if (row->coord == MCST_WHOLELINE) size = fmax(size, fabs((double)p[0]) + (double)p[1]);
     err = (double)len(add(at, times(-1, x))) / EPS;
-    limit = row->shape == MCST_IS_BRDF ? 16 : s->id == ID_normal ? 12 : 8;
+    limit = row->shape == MCST_IS_BRDF ? 16 : row->traits & MCST_QUANTILE ? 12 : 8;
     err = err * EPS <= 0x1p-125 * extent + 0x1p-148 ? 0 : err / size; /* what is subnormal in units of the range has lost digits */
     if (err <= limit) score(g, WHERE, err, err / limit, where);
     else {

@@ -9,7 +9,8 @@
  * MCS_TEST_SCALE below 1 takes every k-th number, k the next prime; the numbers around the ends and the seams of a range are always
  * all taken. A few sweeps that repeat others with another parameter take every 11th at full scale, too: the table has the
  * counts. */
-#include "registry.h"
+#define MCST_WIDE
+#include "claims.h"
 
 enum { BLOCK = 4096, WIDTHS = 4, SEAMS = 8, AROUND = 64 };
 
@@ -83,80 +84,49 @@ MAP(root)
 MAP(tail)
 MAP(quantile)
 
-/* u to x and its density; x to its density and to u. */
-#define LINE(I, P, name, lead)                     \
-    const P(sample1) s = P(name##_sample)(lead x); \
-    y = s.x, z = s.pdf
-#define BACK(I, P, name, lead) y = P(name##_invert)(lead x), z = P(name##_pdf)(lead x)
-#define A_ONLY a,
-#define A_AND_B a, b,
-#define DO_linear(I, P) LINE(I, P, linear, A_AND_B)
-#define DO_tent(I, P) LINE(I, P, tent, A_ONLY)
-#define DO_exponential(I, P) LINE(I, P, exponential, A_ONLY)
-#define DO_truncexp(I, P) LINE(I, P, truncexp, A_AND_B)
-#define DO_normal(I, P) LINE(I, P, normal, A_AND_B)
-#define DO_logistic(I, P) LINE(I, P, logistic, A_AND_B)
-#define DO_powers(I, P) LINE(I, P, power, A_ONLY)
-#define DO_evenpower(I, P) LINE(I, P, evenpower, A_ONLY)
-#define DO_linear_back(I, P) BACK(I, P, linear, A_AND_B)
-#define DO_tent_back(I, P) BACK(I, P, tent, A_ONLY)
-#define DO_exponential_back(I, P) BACK(I, P, exponential, A_ONLY)
-#define DO_truncexp_back(I, P) BACK(I, P, truncexp, A_AND_B)
-#define DO_normal_back(I, P) BACK(I, P, normal, A_AND_B)
-#define DO_logistic_back(I, P) BACK(I, P, logistic, A_AND_B)
-#define DO_powers_back(I, P) BACK(I, P, power, A_ONLY)
-#define DO_evenpower_back(I, P) BACK(I, P, evenpower, A_ONLY)
-MAP(linear)
-MAP(tent)
-MAP(exponential)
-MAP(truncexp)
-MAP(normal)
-MAP(logistic)
-MAP(powers)
-MAP(evenpower)
-MAP(linear_back)
-MAP(tent_back)
-MAP(exponential_back)
-MAP(truncexp_back)
-MAP(normal_back)
-MAP(logistic_back)
-MAP(powers_back)
-MAP(evenpower_back)
+/* The maps of a row, from u to a coordinate and its density: a line's x, else the first coordinate at u2 = 0, which is the radius
+ * or sin(theta) at azimuth 0. And the way back of a line: from x to u and the density. */
+static const mcst_row *row; /* under test: its oracle is the truth */
 
-/* The radial profile of a map of two numbers: u1 (u2 for the visible normals' caps) to sin(theta) at azimuth 0, and the density. */
-#define RADIAL(I, P, name, lead)                             \
-    const P(dir) d = P(name##_sample)(lead x, P(set)(0.0f)); \
-    y = d.w.x, z = d.pdf
-#define NO_ARGS
-#define MATERIAL &m,
-#define DO_disk(I, P)                                        \
-    const P(sample2) d = P(disk_sample)(a, x, P(set)(0.0f)); \
-    y = d.x, z = d.pdf
-#define DO_sphere(I, P) RADIAL(I, P, sphere, NO_ARGS)
-#define DO_hemisphere(I, P) RADIAL(I, P, hemisphere, NO_ARGS)
-#define DO_cosine(I, P) RADIAL(I, P, cosine, NO_ARGS)
-#define DO_cone(I, P) RADIAL(I, P, cone, A_ONLY)
-#define DO_phong_lobe(I, P)              \
-    const P(phong) m = P(phong_make)(a); \
-    RADIAL(I, P, phong_lobe, MATERIAL)
-#define DO_ward_h(I, P)                                 \
-    const P(ward) m = P(ward_make)(a, b, MCS_WARD_GMD); \
-    RADIAL(I, P, ward_h, MATERIAL)
-#define DO_ggx_h(I, P)                  \
-    const P(ggx) m = P(ggx_make)(a, b); \
-    RADIAL(I, P, ggx_h, MATERIAL)
-#define DO_ashikhmin_h(I, P)                        \
-    const P(ashikhmin) m = P(ashikhmin_make)(a, b); \
-    RADIAL(I, P, ashikhmin_h, MATERIAL)
-MAP(disk)
-MAP(sphere)
-MAP(hemisphere)
-MAP(cosine)
-MAP(cone)
-MAP(phong_lobe)
-MAP(ward_h)
-MAP(ggx_h)
-MAP(ashikhmin_h)
+static void fill_lanes(int lanes, float *p) {
+    int k;
+    memset(p, 0, (size_t)(MCST_P * lanes) * sizeof *p);
+    for (k = 0; k < lanes; k++) p[k] = arg[0], p[lanes + k] = arg[1], p[5 * lanes + k] = 1;
+}
+static void draw_lanes(int form, int lanes, const float *in, float *y_out, float *z_out) {
+    const float u2[16] = {0};
+    float p[MCST_P * 16], out[5 * 16];
+    int i;
+    fill_lanes(lanes, p);
+    for (i = 0; i < BLOCK; i += lanes) {
+        row->fn[form].sample(p, in + i, u2, out);
+        memcpy(y_out + i, out, (size_t)lanes * sizeof *out);
+        memcpy(z_out + i, out + 3 * lanes, (size_t)lanes * sizeof *out);
+    }
+}
+static void back_lanes(int form, int lanes, const float *in, float *y_out, float *z_out) {
+    float p[MCST_P * 16];
+    int i;
+    fill_lanes(lanes, p);
+    for (i = 0; i < BLOCK; i += lanes) {
+        row->fn[form].invert(p, in + i, y_out + i);
+        row->fn[form].pdf(p, in + i, z_out + i);
+    }
+}
+#define AT_LANES(form, lanes)                                                                                            \
+    static void draw_##lanes(const float *in, float *y_out, float *z_out) { draw_lanes(form, lanes, in, y_out, z_out); } \
+    static void back_##lanes(const float *in, float *y_out, float *z_out) { back_lanes(form, lanes, in, y_out, z_out); }
+AT_LANES(0, 1)
+#ifdef MCST_WIDE
+AT_LANES(1, 4)
+AT_LANES(2, 8)
+AT_LANES(3, 16)
+static block_fn *const row_at[WIDTHS] = {draw_1, draw_4, draw_8, draw_16};
+static block_fn *const row_back_at[WIDTHS] = {back_1, back_4, back_8, back_16};
+#else
+static block_fn *const row_at[WIDTHS] = {draw_1, NULL, NULL, NULL};
+static block_fn *const row_back_at[WIDTHS] = {back_1, NULL, NULL, NULL};
+#endif
 
 /* --- the truth -----------------------------------------------------------------------------------------------------------------
  * Near 0, where most floats are, two or three terms of the series: what is left out is below 2^-52. */
@@ -262,7 +232,6 @@ static void exact_logistic(double u, double want[2]) {
     want[0] = (double)arg[0] + (double)arg[1] * (u > 0.25 ? log1p((2 * u - 1) / (1 - u)) : log(v / (1 - v)));
     want[1] = v * (1 - v) / (double)arg[1];
 }
-static const mcst_row *row; /* the row under test: its oracle is the truth */
 static void exact_row(double u, double want[2]) {
     const float p[MCST_P] = {arg[0], arg[1], 0, 0, 0, 1};
     ld x[3];
@@ -586,53 +555,41 @@ static const struct kernel {
      {{"quantile", ULP, 6, 0, 1, -13, 5.5, 0}}},
 };
 
-/* Maps of u in [0,1), and back. Limits of x in ulp and of the density in E, as the header states them. */
-static const struct line {
-    const char *name;
-    block_fn *const *at, *const *back;
-    double x_limit, pdf_limit;
-} lines[] = {
-    {"linear", linear_at, linear_back_at, 4, 0.2},
-    {"tent", tent_at, tent_back_at, 4, 0.2},
-    {"exponential", exponential_at, exponential_back_at, 4, 0.2},
-    {"truncexp", truncexp_at, truncexp_back_at, 4, 0.2},
-    /* 0.38 E for deviations that are powers of 2; the quotient of others rounds once more, 2^-24 of 1.7 E where that is worst */
-    {"normal", normal_at, normal_back_at, 7, 0.45},
-    {"logistic", logistic_at, logistic_back_at, 4, 0.2},
-    {"power", powers_at, powers_back_at, 4, 0.2},
-    {"evenpower", evenpower_at, evenpower_back_at, 4, 0.2},
-};
+/* Limits of a line's x in ulp and of its density in E, as the header states them. */
+static double x_limit_of(const mcst_row *of) { return of->traits & MCST_QUANTILE ? 7 : 4; }
+/* The normal distribution: 0.38 E for deviations that are powers of 2; the quotient of others rounds once more, 2^-24 of 1.7 E where
+ * that is worst. */
+static double pdf_limit_of(const mcst_row *of) { return of->claims[0].claim[CLAIM_PDF_U]; }
 
 /* sin(theta) of a lobe within 1e-6 of itself, of the others every coordinate within 2^-23 of the radius. */
 static const struct radius {
     const char *name;
-    block_fn *const *at;
     float a, b;
     enum unit unit;
     double limit, scale, pdf_limit;
 } radii[] = {
-    {"disk", disk_at, 1, 0, ULP, 1, 1, 0.1},
-    {"disk", disk_at, 1e-18f, 0, RELATIVE, 10, 0, 0.1},
-    {"sphere", sphere_at, 0, 0, ULP, 1, 1, 0.15},
-    {"hemisphere", hemisphere_at, 0, 0, ULP, 1, 1, 0.15},
-    {"cosine", cosine_at, 0, 0, ULP, 1, 1, 0.15},
-    {"cone", cone_at, 0.5f, 0, ULP, 1, 1, 0.15},
-    {"cone", cone_at, 1.9997f, 0, ULP, 1, 1, 0.15},
-    {"cone", cone_at, 1e-20f, 0, RELATIVE, 10, 0, 0.15},
-    {"phong_lobe", phong_lobe_at, 0, 0, RELATIVE, 10, 0, 0.7},
-    {"phong_lobe", phong_lobe_at, 1e-3f, 0, RELATIVE, 10, 0, 2.6},
-    {"phong_lobe", phong_lobe_at, 10, 0, RELATIVE, 10, 0, 0.4},
-    {"phong_lobe", phong_lobe_at, 1e9f, 0, RELATIVE, 10, 0, 0.4},
-    {"ward_h", ward_h_at, 0.5f, 0.5f, RELATIVE, 10, 0, 0.7},
-    {"ward_h", ward_h_at, 1e-6f, 1e-6f, RELATIVE, 10, 0, 0.7},
-    {"ward_h", ward_h_at, 10, 0.1f, RELATIVE, 10, 0, 0.7},
-    {"ggx_h", ggx_h_at, 0.5f, 0.5f, RELATIVE, 10, 0, 0.7},
-    {"ggx_h", ggx_h_at, 1e-6f, 1e-6f, RELATIVE, 10, 0, 0.7},
-    {"ggx_h", ggx_h_at, 10, 0.1f, RELATIVE, 10, 0, 0.7},
-    {"ashikhmin_h", ashikhmin_h_at, 1e-3f, 1e-3f, RELATIVE, 10, 0, 2.6},
-    {"ashikhmin_h", ashikhmin_h_at, 10, 10, RELATIVE, 10, 0, 0.3},
-    {"ashikhmin_h", ashikhmin_h_at, 100, 10, RELATIVE, 10, 0, 0.3},
-    {"ashikhmin_h", ashikhmin_h_at, 1e9f, 1e9f, RELATIVE, 10, 0, 0.3},
+    {"disk", 1, 0, ULP, 1, 1, 0.1},
+    {"disk", 1e-18f, 0, RELATIVE, 10, 0, 0.1},
+    {"sphere", 0, 0, ULP, 1, 1, 0.15},
+    {"hemisphere", 0, 0, ULP, 1, 1, 0.15},
+    {"cosine", 0, 0, ULP, 1, 1, 0.15},
+    {"cone", 0.5f, 0, ULP, 1, 1, 0.15},
+    {"cone", 1.9997f, 0, ULP, 1, 1, 0.15},
+    {"cone", 1e-20f, 0, RELATIVE, 10, 0, 0.15},
+    {"phong_lobe", 0, 0, RELATIVE, 10, 0, 0.7},
+    {"phong_lobe", 1e-3f, 0, RELATIVE, 10, 0, 2.6},
+    {"phong_lobe", 10, 0, RELATIVE, 10, 0, 0.4},
+    {"phong_lobe", 1e9f, 0, RELATIVE, 10, 0, 0.4},
+    {"ward_h", 0.5f, 0.5f, RELATIVE, 10, 0, 0.7},
+    {"ward_h", 1e-6f, 1e-6f, RELATIVE, 10, 0, 0.7},
+    {"ward_h", 10, 0.1f, RELATIVE, 10, 0, 0.7},
+    {"ggx_h", 0.5f, 0.5f, RELATIVE, 10, 0, 0.7},
+    {"ggx_h", 1e-6f, 1e-6f, RELATIVE, 10, 0, 0.7},
+    {"ggx_h", 10, 0.1f, RELATIVE, 10, 0, 0.7},
+    {"ashikhmin_h", 1e-3f, 1e-3f, RELATIVE, 10, 0, 2.6},
+    {"ashikhmin_h", 10, 10, RELATIVE, 10, 0, 0.3},
+    {"ashikhmin_h", 100, 10, RELATIVE, 10, 0, 0.3},
+    {"ashikhmin_h", 1e9f, 1e9f, RELATIVE, 10, 0, 0.3},
 };
 
 static double peak_of(exact_fn *exact) {
@@ -660,7 +617,7 @@ static void support(const mcst_row *of, double *lo, double *hi) {
     case MCST_HALFLINE: *hi = 17 / a; break;
     case MCST_TRUNCATED: *hi = b; break;
     case MCST_WHOLELINE: {
-        const double far = (strcmp(of->name, "normal") ? 17.4 : 5.5) * b + noise;
+        const double far = (of->traits & MCST_QUANTILE ? 5.5 : 17.4) * b + noise;
         *lo = a - far, *hi = a + far;
         break;
     }
@@ -674,11 +631,87 @@ static double scale_of(const mcst_row *of) { /* where x is a difference, the rou
     return of->coord == MCST_WHOLELINE ? fabs((double)arg[0]) + (double)arg[1] : 0;
 }
 
-int main(int argc, char **argv) {
-    const range grid = {GRID, 0, BELOW_1, {0.25f, 0.5f, 0.75f}, 3, 1};
+static const range grid = {GRID, 0, BELOW_1, {0.25f, 0.5f, 0.75f}, 3, 1};
+
+/* Over all u a line with the parameters of its grid. */
+static void sweep_line(void) {
+    exact_fn *exact = row->traits & MCST_QUANTILE ? normal_n : row_n;
     result of[2];
     double lo, hi;
-    size_t i, j;
+    size_t j;
+    for (j = 0; j < row->grid_size; j++) {
+        arg[0] = row->grid[j][0], arg[1] = row->grid[j][1];
+        if (!mcst_case("%s %g %g", row->name, (double)arg[0], (double)arg[1])) continue;
+        support(row, &lo, &hi);
+        set_result(&of[0], "x", ULP, x_limit_of(row), scale_of(row), 1, lo, hi);
+        set_result(&of[1], "pdf", DENSITY, pdf_limit_of(row), peak_of(exact), 0, 0, (double)FLT_MAX);
+        sweep(&grid, row_at, exact, of);
+    }
+}
+
+/* Over all u the radius of one of a plane, a direction or a half-vector. */
+static void sweep_radius(const struct radius *r) {
+    const int past_equator = row->coord == MCST_SPHERE || (row->coord == MCST_CONE && r->a > 1); /* sin falls again */
+    result of[2];
+    arg[0] = r->a, arg[1] = r->b;
+    if (!mcst_case("%s %g %g", row->name, (double)arg[0], (double)arg[1])) return;
+    set_result(&of[0], "x", r->unit, r->limit, r->scale, !past_equator, 0, row->coord == MCST_DISK ? (double)r->a : 1);
+    set_result(&of[1], "pdf", DENSITY, r->pdf_limit, peak_of(row_n), 0, 0, (double)FLT_MAX);
+    sweep(&grid, row_at, row_n, of);
+}
+
+/* The settings of the table above; a row that is not in it is held to what it claims. */
+static void sweep_radii(void) {
+    const struct radius other = {row->name, row->grid[0][0], row->grid[0][1], RELATIVE, 10, 0, pdf_limit_of(row)};
+    int found_one = 0;
+    size_t i;
+    for (i = 0; i < MCST_COUNT(radii); i++)
+        if (!strcmp(radii[i].name, row->name)) found_one = 1, sweep_radius(&radii[i]);
+    if (!found_one) sweep_radius(&other);
+}
+
+/* All floats of [0,1) as u of a map. */
+static void sweep_unit(const char *name, exact_fn *exact) {
+    const range unit = {FLOATS, 0, BELOW_1, {0.25f, 0.5f, 0.75f}, 3, 1};
+    result of[2];
+    double lo, hi;
+    row = mcst_find(name);
+    if (!mcst_case("u of %s in [0,1)", row->name)) return;
+    arg[0] = row->grid[0][0], arg[1] = row->grid[0][1];
+    support(row, &lo, &hi);
+    set_result(&of[0], "x", ULP, x_limit_of(row), scale_of(row), 1, lo, hi);
+    set_result(&of[1], "pdf", DENSITY, pdf_limit_of(row), peak_of(exact), 0, 0, (double)FLT_MAX);
+    sweep(&unit, row_at, exact, of);
+}
+
+/* Any float as u of a line, and as its x: then to u and the density. */
+static void sweep_any(void) {
+    const range as_u = {EVERYTHING, -INFINITY, INFINITY, {-1, 0, 0.5f, 1}, 4, 101};
+    const range as_x = {EVERYTHING, -INFINITY, INFINITY, {-1, 0, 0.5f, 1}, 4, 11};
+    exact_fn *exact = row->traits & MCST_QUANTILE ? any_normal_n : any_row_n;
+    result of[2];
+    double lo, hi;
+    arg[0] = row->grid[0][0], arg[1] = row->grid[0][1];
+    if (mcst_case("u of %s", row->name)) {
+        support(row, &lo, &hi);
+        set_result(&of[0], "x", ULP, x_limit_of(row), scale_of(row), 0, fmin(lo, 0), hi);
+        set_result(&of[1], "pdf", DENSITY, pdf_limit_of(row), peak_of(exact), 0, 0, (double)FLT_MAX);
+        sweep(&as_u, row_at, exact, of);
+    }
+    if (mcst_case("x of %s", row->name)) {
+        set_result(&of[0], "u", NONE, 0, 0, 1, 0, 1 - 0x1p-24);
+        set_result(&of[1], "pdf", NONE, 0, 0, 0, 0, (double)FLT_MAX);
+        of[1].nan_gives_0 = 1;
+        sweep(&as_x, row_back_at, NULL, of);
+    }
+}
+
+static int is_line(const mcst_row *of) { return of->shape == MCST_IS_LINE; }
+/* What has a radius that grows with one random number: half-vectors without a direction to the eye. */
+static int is_radial(const mcst_row *of) { return !is_line(of) && !of->has_wo && !(of->traits & MCST_SQUARE); }
+
+int main(int argc, char **argv) {
+    size_t i;
     mcst_start(argc, argv);
     mcst_group("vector maths");
     for (i = 0; i < MCST_COUNT(kernels); i++) {
@@ -688,59 +721,15 @@ int main(int argc, char **argv) {
         sweep(&k->over, k->at, k->exact, k->of);
     }
     mcst_group("u to x");
-    for (i = 0; i < MCST_COUNT(lines); i++) {
-        row = mcst_find(lines[i].name);
-        for (j = 0; j < row->grid_size; j++) {
-            exact_fn *exact = strcmp(row->name, "normal") ? row_n : normal_n;
-            arg[0] = row->grid[j][0], arg[1] = row->grid[j][1];
-            if (!mcst_case("%s %g %g", row->name, (double)arg[0], (double)arg[1])) continue;
-            support(row, &lo, &hi);
-            set_result(&of[0], "x", ULP, lines[i].x_limit, scale_of(row), 1, lo, hi);
-            set_result(&of[1], "pdf", DENSITY, lines[i].pdf_limit, peak_of(exact), 0, 0, (double)FLT_MAX);
-            sweep(&grid, lines[i].at, exact, of);
-        }
-    }
+    for (row = mcst_rows; row < mcst_rows + MCST_NROWS; row++)
+        if (is_line(row)) sweep_line();
     mcst_group("u to radius");
-    for (i = 0; i < MCST_COUNT(radii); i++) {
-        const struct radius *r = &radii[i];
-        const int past_equator = !strcmp(r->name, "sphere") || (!strcmp(r->name, "cone") && r->a > 1); /* sin falls again */
-        row = mcst_find(r->name);
-        arg[0] = r->a, arg[1] = r->b;
-        if (!mcst_case("%s %g %g", row->name, (double)arg[0], (double)arg[1])) continue;
-        set_result(&of[0], "x", r->unit, r->limit, r->scale, !past_equator, 0, strcmp(row->name, "disk") ? 1 : (double)r->a);
-        set_result(&of[1], "pdf", DENSITY, r->pdf_limit, peak_of(row_n), 0, 0, (double)FLT_MAX);
-        sweep(&grid, r->at, row_n, of);
-    }
+    for (row = mcst_rows; row < mcst_rows + MCST_NROWS; row++)
+        if (is_radial(row)) sweep_radii();
     mcst_group("any float");
-    for (i = 0; i < 2; i++) { /* as u: first all of [0,1), for two maps */
-        exact_fn *exact = i ? logistic_n : exponential_n;
-        const range unit = {FLOATS, 0, BELOW_1, {0.25f, 0.5f, 0.75f}, 3, 1};
-        row = mcst_find(i ? "logistic" : "exponential");
-        if (!mcst_case("u of %s in [0,1)", row->name)) continue;
-        arg[0] = i ? 0 : 1, arg[1] = 1;
-        support(row, &lo, &hi);
-        set_result(&of[0], "x", ULP, 4, scale_of(row), 1, lo, hi);
-        set_result(&of[1], "pdf", DENSITY, 0.2, peak_of(exact), 0, 0, (double)FLT_MAX);
-        sweep(&unit, i ? logistic_at : exponential_at, exact, of);
-    }
-    for (i = 0; i < 2 * MCST_COUNT(lines); i++) {
-        const struct line *l = &lines[i / 2];
-        const range some = {EVERYTHING, -INFINITY, INFINITY, {-1, 0, 0.5f, 1}, 4, i % 2 ? 11 : 101};
-        row = mcst_find(l->name);
-        if (!mcst_case("%c of %s", i % 2 ? 'x' : 'u', row->name)) continue;
-        arg[0] = row->grid[0][0], arg[1] = row->grid[0][1];
-        if (i % 2) { /* as x: to u and the density */
-            set_result(&of[0], "u", NONE, 0, 0, 1, 0, 1 - 0x1p-24);
-            set_result(&of[1], "pdf", NONE, 0, 0, 0, 0, (double)FLT_MAX);
-            of[1].nan_gives_0 = 1;
-            sweep(&some, l->back, NULL, of);
-        } else {
-            exact_fn *exact = strcmp(row->name, "normal") ? any_row_n : any_normal_n;
-            support(row, &lo, &hi);
-            set_result(&of[0], "x", ULP, l->x_limit, scale_of(row), 0, fmin(lo, 0), hi);
-            set_result(&of[1], "pdf", DENSITY, l->pdf_limit, peak_of(exact), 0, 0, (double)FLT_MAX);
-            sweep(&some, l->at, exact, of);
-        }
-    }
+    sweep_unit("exponential", exponential_n);
+    sweep_unit("logistic", logistic_n);
+    for (row = mcst_rows; row < mcst_rows + MCST_NROWS; row++)
+        if (is_line(row)) sweep_any();
     return mcst_finish();
 }
