@@ -19,7 +19,7 @@ EXAMPLES = $(sort $(wildcard examples/[0-9][0-9]_*.c))
 TEST_BINS = $(TESTS:%.c=$(BUILD)/%)
 # Stress programs: at full size by `make stress`, part by part; a small cut of each with every full `make test`. The truth of
 # extremes and climb is __float128, which takes gcc and its libquadmath.
-STRESS_ALL = floats deep hostile fuzz images extremes climb
+STRESS_ALL = extremes floats deep hostile fuzz images climb
 STRESS_QUAD = extremes climb
 STRESS = $(if $(QUADMATH),$(STRESS_ALL),$(filter-out $(STRESS_QUAD),$(STRESS_ALL)))
 STRESS_BINS = $(STRESS:%=$(BUILD)/tests/stress/%)
@@ -63,7 +63,7 @@ test: ## build and run every tests/test_*.c (the default); FILTER=text and SEED=
 	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS) $(EXACT)'
 	+@$(SUBMAKE) test-binaries
 	@$(if $(STRESS_CUT),$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath'))
-	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS) $(STRESS_CUT)
+	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(STRESS_CUT) $(TEST_BINS)
 
 stress: ## every float, deep statistics, extremes, hostile input at full size: an hour; parts that passed are not run again
 	@$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath')
@@ -153,10 +153,10 @@ $(RENDER): examples/render.c examples/hdr.h mcsample.h $(BUILD)/flags
 
 $(TEST_BINS) $(STRESS_BINS): CONTRACT = $(EXACT) -DMCST_LINKED
 # Headers define functions that one object or another does not call.
-SHARED_FLAGS = -DMCST_LINKED -Wno-unused-function -Wno-unused-variable
+SHARED_FLAGS = -DMCST_LINKED -DMCST_SHARED -Wno-unused-function -Wno-unused-variable
 $(STRESS_BINS) $(patsubst %,$(BUILD)/tests/test_%,bits chi2_lobes chi2_rest fenv lines mutants values width): $(SHARED)/rows.o
 $(patsubst %,$(BUILD)/tests/test_%,mistakes oracle): $(SHARED)/asserting.o
-$(patsubst %,$(BUILD)/tests/%,test_bits test_fenv test_lines test_width stress/floats): $(WIDE)
+$(patsubst %,$(BUILD)/tests/%,test_bits test_fenv test_lines test_width stress/floats stress/hostile): $(WIDE)
 $(patsubst %,$(BUILD)/tests/test_%,bits fenv): $(SHARED)/functions.o
 $(STRESS_BINS): $(wildcard tests/stress/*.h)
 $(STRESS_BINS): FLAGS += -Itests/stress

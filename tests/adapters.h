@@ -1,7 +1,7 @@
 /* One uniform shape for every sampler of mcsample.h, at one width.
  *
  * No include guard: registry.h includes this file with MCST_W = 1 (scalar) and, under MCST_WIDE, once more each for 4, 8 and 16;
- * with MCST_LINKED tests/shared does.
+ * with MCST_LINKED tests/shared does, and elsewhere the functions are declared already.
  * With W = MCST_W and every array in structure-of-arrays order (entry i of lane l is at i * W + l), a row's functions are
  *
  *     sample(p, u1, u2, out)   p: 6 numbers (3 parameters, then wo); out: x, y, z, pdf, weight
@@ -9,6 +9,7 @@
  *     eval(p, x, out)          out: f                         weight(p, x, out)
  *
  * The parameters are per lane too, so that a lane that looks at its neighbour's parameters is found. */
+#if defined(MCST_SHARED) || !defined(MCST_LINKED)
 #define MCST_CAT_(a, b) a##b
 #define MCST_CAT(a, b) MCST_CAT_(a, b)
 #if MCST_W == 1
@@ -207,4 +208,5 @@ MCST_ROWS(MCST_ADAPT_N)
 #undef MCST_VLOBE
 #undef MCST_BRDF
 #undef MCST_ADAPT
+#endif
 #undef MCST_W

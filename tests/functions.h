@@ -65,8 +65,8 @@ typedef void bits_array_fn(int kind, size_t n, float (*in)[CASES], float (*out)[
 /* clang-format off */
 BITS_WIDE(BITS_DECLARE) BITS_WORDS(BITS_DECLARE) BITS_SCALAR(BITS_DECLARE_ONCE) BITS_MAPPED(BITS_DECLARE_ONCE)
 BITS_HOST(BITS_DECLARE_ONCE) BITS_ARRAYS(BITS_DECLARE_ARRAY)
-/* clang-format on */
-const bits_map *bits_map_at(int kind);
+    /* clang-format on */
+    const bits_map *bits_map_at(int kind);
 extern int bits_valid; /* tables and maps have no bad entries */
 #else
 #ifdef __CUDACC__
@@ -90,6 +90,7 @@ static int bits_valid; /* tables and maps have no bad entries */
 #endif
 #endif
 
+#ifndef MCST_SHARED
 /* --- functions by name ------------------------------------------------------------------------------------------------------ */
 
 #ifdef MCST_WIDE
@@ -171,4 +172,5 @@ static inline int has_way(target t, int way) {
     if (arrays || way > ARRAYS) return 0;
     return t.form == OTHER ? others[t.at].fn[way] != NULL : mcst_rows[t.at].fn[way].sample != NULL;
 }
+#endif
 #endif

@@ -2,7 +2,7 @@
  *
  * Define MCST_WIDE before including to get the 4, 8 and 16 wide forms too (they cost compile time); a compiler without vectors and
  * -DMCST_ARRAYS leave them out. With -DMCST_LINKED the functions of the rows are only declared: make compiles them once, in
- * tests/shared, for all programs. Without it a program holds them itself, so that it can be compiled alone.
+ * tests/shared (-DMCST_SHARED), for all programs. Without it a program holds them itself, so that it can be compiled alone.
  * The other samplers (tables, alias, discrete, environment, product) have tests of their own: see mcst_exempt. */
 #ifndef MCST_REGISTRY_H
 #define MCST_REGISTRY_H
@@ -358,6 +358,7 @@ MCST_ROWS(MCST_DECLARE)
      MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row), mcst_claims_##claims, MCST_COUNT(mcst_claims_##claims), vary, traits},
 /* clang-format on */
 
+#ifndef MCST_SHARED
 static const mcst_row mcst_rows[] = {MCST_LIST(MCST_TABLE, )};
 enum { MCST_NROWS = MCST_COUNT(mcst_rows) };
 
@@ -368,6 +369,7 @@ static inline const mcst_row *mcst_find(const char *name) {
     fprintf(stderr, "registry: no row %s\n", name);
     exit(2);
 }
+#endif
 
 static inline void mcst_fill(const mcst_row *row, float a, float b, float cos_o, float azimuth, float p[MCST_P]) {
     const double s = sqrt((1 - (double)cos_o) * (1 + (double)cos_o));
