@@ -910,20 +910,42 @@ MCS_API void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u
 #endif
 #endif
 
-/* ==== [estimator] running mean, variance, standard error =======================================================================
- * A zeroed mcs_stat is empty. mcs_stat_add is Welford 1962, mcs_stat_merge Chan, Golub, LeVeque 1983: both stable where sums of
- * squares are not, and merging in a fixed order gives the same result for any number of threads. mcs_stat_variance is the unbiased
- * sample variance, mcs_stat_error the standard error of the mean, sqrt(variance/n): four times as many samples halve it.
- * mcs_stat_ci(s, z) is the half-width of a confidence interval, z standard errors (1.96 for 95 %). 0 where n is too small. Any
- * finite x will do: the mean is right up to DBL_MAX, and a sum of squared deviations m2 above DBL_MAX stays DBL_MAX. A NaN or an
- * infinity stays in the mean for good. */
+/* ==== [estimator] running mean, variance and standard error ========================================================
+ * Estimates an integral as the mean of f(x)/pdf(x) over the samples, and tells how far off that mean may be. Four times as
+ * many samples halve the error.
+ *
+ *     mcs_stat s = {0, 0, 0};
+ *     for (...) mcs_stat_add(&s, value_of_a_sample);
+ *     printf("%g +- %g\n", s.mean, mcs_stat_ci(&s, 1.96));
+ *
+ * Threads keep a mcs_stat each. Merging them in a fixed order gives the same bits for any number of threads, as long as
+ * the same samples go into each.
+ *
+ * range     Any finite values will do. The mean is right up to DBL_MAX; a sum of squares above DBL_MAX stays DBL_MAX.
+ *           NaN and infinities stay in the mean for good.
+ * cost      One division per value. Sums of squares minus squares of sums would be cheaper, but they cancel.
+ * source    Welford 1962 (add); Chan, Golub and LeVeque 1983 (merge). */
+
+/* An estimate. All zeros is the empty one: start with `mcs_stat s = {0, 0, 0};`. */
 typedef struct {
-    double n, mean, m2;
+    double n;    /* how many values */
+    double mean; /* their mean */
+    double m2;   /* the sum of their squared differences to the mean */
 } mcs_stat;
+
+/* Adds the value x. */
 MCS_FN void mcs_stat_add(mcs_stat *s, double x);
-MCS_FN mcs_stat mcs_stat_merge(mcs_stat a, mcs_stat b);
+
+/* Adds all values of `other`, which may be empty, and which may be s itself. */
+MCS_FN void mcs_stat_merge(mcs_stat *s, const mcs_stat *other);
+
+/* The unbiased variance of the values, m2/(n - 1). 0 where n < 2. */
 MCS_FN double mcs_stat_variance(const mcs_stat *s);
+
+/* The standard error of the mean, sqrt(variance/n). 0 where n < 2. */
 MCS_FN double mcs_stat_error(const mcs_stat *s);
+
+/* Half the width of a confidence interval: z standard errors. z = 1.96 holds the true mean 95 times in 100. */
 MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 
 /* ---- END OF PART I. Stop here if you only want to use the header. ------------------------------------------------ */
@@ -5987,33 +6009,45 @@ MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_re
 #if MCSI_W == 1
 /* ==== [estimator] bodies */
 
-/* sum + 4 a b k, where a b >= 0 and k >= 1/2; above DBL_MAX it is DBL_MAX, and nothing overflows on the way. */
+/* Values up to DBL_MAX are good, so their differences and the squares of these may overflow. Differences are therefore
+ * halved, and the sum of squares is computed in two ways: as it stands where every factor is small enough, else scaled by
+ * 2^-1024, the square of 2^-512. */
+
+/* sum + 4 a b k, where a b >= 0 and k >= 1/2, but at most DBL_MAX. */
 MCS_FN double mcsi_stat_sum(double sum, double a, double b, double k) {
-    const double down = 7.458340731200207e-155; /* 2^-512 */
     if (sum < 1e300 && k < 1e25 && a < 1e140 && a > -1e140 && b < 1e140 && b > -1e140)
         return sum + 2.0 * a * (2.0 * b) * k;
-    const double part = (a * down) * (b * down);
-    sum = 0.25 * (sum * down * down) + (part < 8.0 ? part : 8.0) * k;
-    return sum < 0.25 ? 4.0 * sum / down / down : DBL_MAX;
+    const double down = 7.458340731200207e-155; /* 2^-512 */
+    const double product = (a * down) * (b * down);
+    /* A quarter of the result over 2^1024; from 1/4 on, the result is beyond DBL_MAX. A product of 8 is so in any case. */
+    const double quarter = 0.25 * (sum * down * down) + (product < 8.0 ? product : 8.0) * k;
+    return quarter < 0.25 ? 4.0 * quarter / down / down : DBL_MAX;
 }
-/* Differences are halved, because their halves cannot overflow. */
+
+/* Welford's update: with d the difference to the mean before and e that to the mean after, mean += d/n and m2 += d e. */
 MCS_FN void mcs_stat_add(mcs_stat *s, double x) {
-    const double d = 0.5 * x - 0.5 * s->mean;
+    const double half_d = 0.5 * x - 0.5 * s->mean;
     s->n += 1.0;
-    s->mean += 2.0 * (d / s->n);
-    s->m2 = mcsi_stat_sum(s->m2, d, 0.5 * x - 0.5 * s->mean, 1.0);
+    s->mean += 2.0 * (half_d / s->n);
+    s->m2 = mcsi_stat_sum(s->m2, half_d, 0.5 * x - 0.5 * s->mean, 1.0);
 }
-MCS_FN mcs_stat mcs_stat_merge(mcs_stat a, mcs_stat b) {
-    const double d = 0.5 * b.mean - 0.5 * a.mean;
-    if (!(a.n > 0.0)) return b;
-    if (!(b.n > 0.0)) return a;
-    mcs_stat s;
-    s.n = a.n + b.n;
-    const double step = d * (b.n / s.n);
-    s.mean = step < 1e300 && step > -1e300 ? a.mean + 2.0 * step : a.mean + step + step;
-    s.m2 = mcsi_stat_sum(a.m2 < DBL_MAX - b.m2 ? a.m2 + b.m2 : DBL_MAX, d, d, a.n * b.n / s.n);
-    return s;
+
+/* With d the difference of both means, the mean moves by d n_other/n, and m2 is the sum of both and d^2 n_s n_other/n. */
+MCS_FN void mcs_stat_merge(mcs_stat *s, const mcs_stat *other) {
+    if (!(s->n > 0.0)) *s = *other;
+    else if (other->n > 0.0) {
+        const double half_d = 0.5 * other->mean - 0.5 * s->mean;
+        const double n = s->n + other->n;
+        const double half_step = half_d * (other->n / n);
+        const double m2 = s->m2 < DBL_MAX - other->m2 ? s->m2 + other->m2 : DBL_MAX;
+        s->m2 = mcsi_stat_sum(m2, half_d, half_d, s->n * other->n / n);
+        /* Twice a half step may overflow where two half steps do not. */
+        if (half_step < 1e300 && half_step > -1e300) s->mean += 2.0 * half_step;
+        else s->mean = s->mean + half_step + half_step;
+        s->n = n;
+    }
 }
+
 MCS_FN double mcs_stat_variance(const mcs_stat *s) { return s->n > 1.0 ? s->m2 / (s->n - 1.0) : 0.0; }
 MCS_FN double mcs_stat_error(const mcs_stat *s) { return s->n > 1.0 ? mcsi_sqrt_d(mcs_stat_variance(s) / s->n) : 0.0; }
 MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_error(s); }

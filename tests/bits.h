@@ -356,7 +356,10 @@ MCST_HD static void bits_put_stat(float *out, mcs_stat s) {
 }
 FN(stat_add) { bits_put_stat(out, bits_stat(in, (int)(WORD(12) % 9))); }
 FN(stat_merge) {
-    bits_put_stat(out, mcs_stat_merge(bits_stat(in, (int)(WORD(12) % 9)), bits_stat(in + 1, (int)(WORD(13) % 9))));
+    mcs_stat s = bits_stat(in, (int)(WORD(12) % 9));
+    const mcs_stat other = bits_stat(in + 1, (int)(WORD(13) % 9));
+    mcs_stat_merge(&s, &other);
+    bits_put_stat(out, s);
 }
 #define STAT const mcs_stat s = bits_stat(in, (int)(WORD(12) % 9))
 FN(stat_variance) {

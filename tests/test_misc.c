@@ -491,17 +491,21 @@ static void check_hard(const char *what, const mcs_stat *s) {
 }
 
 static mcs_stat stat_of(int from, int to) {
-    mcs_stat s;
-    memset(&s, 0, sizeof s);
+    mcs_stat s = {0, 0, 0};
     for (; from < to; from++) mcs_stat_add(&s, hard[from]);
     return s;
+}
+
+static mcs_stat stat_merged(mcs_stat a, mcs_stat b) {
+    mcs_stat_merge(&a, &b);
+    return a;
 }
 
 /* Merges as a tree: halves, quarters, down to single values. */
 static mcs_stat stat_tree(int from, int to) {
     const int mid = from + (to - from) / 2;
     if (to - from <= 1) return stat_of(from, to);
-    return mcs_stat_merge(stat_tree(from, mid), stat_tree(mid, to));
+    return stat_merged(stat_tree(from, mid), stat_tree(mid, to));
 }
 
 static int same_stat(mcs_stat a, mcs_stat b) { return a.n == b.n && a.mean == b.mean && a.m2 == b.m2; }
@@ -535,8 +539,7 @@ static void test_huge_stat(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 141);
     for (int i = 0; i < 100000; i++) {
         const int cut = i % 6;
-        mcs_stat s;
-        memset(&s, 0, sizeof s);
+        mcs_stat s = {0, 0, 0};
         mcs_stat parts[2];
         parts[0] = parts[1] = s;
         double x[5];
@@ -547,8 +550,8 @@ static void test_huge_stat(void) {
             mcs_stat_add(&parts[k >= cut], x[k]);
         }
         check_huge(&s, x, 5);
-        s = mcs_stat_merge(parts[0], parts[1]);
-        check_huge(&s, x, 5);
+        mcs_stat_merge(&parts[0], &parts[1]);
+        check_huge(&parts[0], x, 5);
     }
 }
 
@@ -563,9 +566,9 @@ static void test_stat_values(void) {
         mcs_stat s = stat_tree(0, HARD);
         check_hard("tree", &s);
         for (int i = 0; i <= HARD; i += i < 20 || i >= HARD - 20 ? 1 : 97) {
-            s = mcs_stat_merge(stat_of(0, i), stat_of(i, HARD));
+            s = stat_merged(stat_of(0, i), stat_of(i, HARD));
             check_hard("two parts", &s);
-            s = mcs_stat_merge(stat_of(i, HARD), stat_of(0, i));
+            s = stat_merged(stat_of(i, HARD), stat_of(0, i));
             check_hard("two parts, swapped", &s);
         }
         for (int i = 0; i < 100; i++) {
@@ -574,32 +577,37 @@ static void test_stat_values(void) {
             while (from < HARD) {
                 int to = from + (int)(mcs_pcg32_next(&r) % 500);
                 if (to > HARD) to = HARD;
-                s = mcs_stat_merge(s, stat_of(from, to));
+                const mcs_stat part = stat_of(from, to);
+                mcs_stat_merge(&s, &part);
                 from = to;
             }
             check_hard("many parts", &s);
         }
     }
     if (mcst_case("empty and single")) {
-        mcs_stat empty;
-        memset(&empty, 0, sizeof empty);
+        mcs_stat empty = {0, 0, 0};
         mcs_stat one = empty;
         mcs_stat_add(&one, 3.5);
         mcs_stat s = stat_of(0, 10);
-        CHECK(same_stat(mcs_stat_merge(empty, s), s) && same_stat(mcs_stat_merge(s, empty), s), "empty is neutral");
-        CHECK(same_stat(mcs_stat_merge(empty, empty), empty), "empty and empty");
+        CHECK(same_stat(stat_merged(empty, s), s) && same_stat(stat_merged(s, empty), s), "empty is neutral");
+        CHECK(same_stat(stat_merged(empty, empty), empty), "empty and empty");
         CHECK(one.n == 1 && one.mean == 3.5 && one.m2 == 0, "single: %g, %g, %g", one.n, one.mean, one.m2);
         CHECK(mcs_stat_variance(&empty) == 0 && mcs_stat_error(&empty) == 0 && mcs_stat_ci(&empty, 2) == 0,
               "empty: variance %g, error %g", mcs_stat_variance(&empty), mcs_stat_error(&empty));
         CHECK(mcs_stat_variance(&one) == 0 && mcs_stat_error(&one) == 0 && mcs_stat_ci(&one, 2) == 0,
               "single: variance %g, error %g", mcs_stat_variance(&one), mcs_stat_error(&one));
         s = one;
+        mcs_stat_merge(&s, &s);
+        CHECK(same_stat(s, stat_merged(one, one)), "merged with itself: %g, %g, %g", s.n, s.mean, s.m2);
+        s = stat_of(0, 10);
+        mcs_stat_merge(&s, &s);
+        CHECK(same_stat(s, stat_merged(stat_of(0, 10), stat_of(0, 10))), "ten values merged with themselves");
+        s = one;
         mcs_stat_add(&s, 5.5);
         CHECK(s.mean == 4.5 && s.m2 == 2 && mcs_stat_variance(&s) == 2 && fabs(mcs_stat_error(&s) - 1) <= 0x1p-52, "3.5 and 5.5");
     }
     if (mcst_case("equal values have no variance")) {
-        mcs_stat s;
-        memset(&s, 0, sizeof s);
+        mcs_stat s = {0, 0, 0};
         for (int i = 0; i < 1000; i++) mcs_stat_add(&s, 0.1);
         CHECK(s.mean == 0.1 && s.m2 == 0 && mcs_stat_error(&s) == 0, "mean %g, sum of squares %g", s.mean, s.m2);
     }
@@ -614,13 +622,11 @@ static void test_standard_error(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 131);
     double last = 0;
     for (int n = 64; n <= 4096; n *= 4) {
-        mcs_stat means;
-        memset(&means, 0, sizeof means);
+        mcs_stat means = {0, 0, 0};
         mcs_stat reported, errors;
         reported = errors = means;
         for (int i = 0; i < R; i++) {
-            mcs_stat s;
-            memset(&s, 0, sizeof s);
+            mcs_stat s = {0, 0, 0};
             for (int j = 0; j < n; j++) {
                 const double x = mcs_pcg32_float(&r);
                 mcs_stat_add(&s, x * x);
@@ -655,8 +661,7 @@ static void test_coverage(void) {
     double above = 0;
     int held = 0;
     for (int i = 0; i < REPEAT; i++) {
-        mcs_stat s;
-        memset(&s, 0, sizeof s);
+        mcs_stat s = {0, 0, 0};
         for (int j = 0; j < N; j++) mcs_stat_add(&s, mcs_normal_sample(5, 2, mcs_u01_open(mcs_pcg32_next(&r))).x);
         held += fabs(s.mean - 5) <= mcs_stat_ci(&s, z);
     }

@@ -234,7 +234,7 @@ static void fuzz_estimator(bytes *b) {
         mcs_stat_add(&all, x);
         mcs_stat_add(&parts[i & 1], x);
     }
-    parts[0] = mcs_stat_merge(parts[0], parts[1]);
+    mcs_stat_merge(&parts[0], &parts[1]);
     MUST(parts[0].n == all.n && isfinite(parts[0].mean));
     MUST(isfinite(all.mean) && mcs_stat_variance(&all) >= 0 && isfinite(mcs_stat_variance(&all)));
     MUST(isfinite(mcs_stat_error(&all)) && isfinite(mcs_stat_ci(&all, 1.96)) && isfinite(mcs_stat_variance(&parts[0])));
