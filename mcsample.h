@@ -1,59 +1,130 @@
-/* mcsample.h, version 0.1.0: Monte Carlo sampling for rendering in one C header (C99 and C++11; MIT licence at the end).
+/* mcsample.h, version 0.1.0: Monte Carlo sampling for rendering in one C header.
  *
- * QUICK START. Copy this file into the project; there is nothing to build or initialise (where the square root is a function, link
- * libm).
+ * The header draws points and directions from the densities that a renderer needs, and it tells the density of any
+ * point. It covers lines, disks and spheres of directions, the Phong, Ward, Beckmann, GGX and Ashikhmin-Shirley lobes,
+ * tables of numbers, environment maps, and the product of a map with a lobe. Random numbers, well-spread points,
+ * weights for multiple importance sampling and a running mean that knows its error come with it. The licence (MIT)
+ * stands at the end.
+ *
+ * ---- How to include it ----
+ *
+ * Copy this file into the project and include it where it is needed. It is C99 and C++11. Nothing has to be built and
+ * nothing has to be initialised. All functions are static inline, and those that are not used leave no code. Link libm
+ * where the compiler calls a function for square roots. The switches stand below, under "configuration".
+ *
+ * ---- Ten lines ----
  *
  *     #include "mcsample.h"
  *
- *     mcs_pcg32 rng = mcs_pcg32_for(1, pixel, sample);         // seed, and what the numbers are for
- *     mcs_ggx   m   = mcs_ggx_make(0.3f, 0.1f);                // alpha along x and y, prepared once per material
+ *     mcs_pcg32 rng = mcs_pcg32_for(1, pixel, sample);         // a generator for seed 1, this pixel and this sample
+ *     mcs_ggx   m   = mcs_ggx_make(0.3f, 0.1f);                // a material, prepared once: alpha along x and along y
  *     mcs_vec3  wo  = {0.6f, 0.0f, 0.8f};                      // to the eye; the surface normal is +z
- *     float     u1  = mcs_pcg32_float(&rng), u2 = mcs_pcg32_float(&rng);
- *     mcs_brdf  s   = mcs_ggx_vndf_sample(&m, wo, u1, u2);
- *     if (s.pdf > 0) radiance += s.weight * incoming(s.wi);    // weight = f cos / pdf
+ *     float     u1  = mcs_pcg32_float(&rng);
+ *     float     u2  = mcs_pcg32_float(&rng);
+ *     mcs_brdf  s   = mcs_ggx_bounded_sample(&m, wo, u1, u2);
+ *     if (s.pdf > 0) radiance += s.weight * incoming(s.wi);    // weight is f cos(theta_i) / pdf
  *
- * CONVENTIONS
- *   u           random numbers in [0,1); every sampler is a deterministic map from u to a point, so stratified and low-discrepancy
- *               points work as well as independent ones. Anything outside [0,1), and NaN, is bad input.
- *   frame       local, the surface normal is +z (mcs_frame_make, mcs_to_local and mcs_to_world convert). wo (given, to the eye) and
- *               wi (sampled, to the light) are unit vectors that point away from the surface; h is their half-vector.
- *   alpha       the width of the slopes itself, never a "roughness" that would have to be squared first.
- *   pdf         density of the returned point: per length (1D), per area (disks), per solid angle (directions). It belongs to the
- *               exact point that u maps to; `_pdf(w)` belongs to the float direction w that it is given. For sharp lobes the two
- *               differ by the rounding of w alone (13 % at alpha 0.01 in the worst thousandth of the samples, without any error in
- *               either).
- *   weight      f cos(theta_i) / pdf in closed form, with reflectance and Fresnel factor 1 (multiply by mcs_schlick or your own).
- *               `_weight(wo, wi)` belongs to the float wi that it is given. The weight of a sample takes the half-vector of the
- *               exact point and the cosines of its float wi, and its accuracy is stated for that. The weight of the exact point
- *               differs by the rounding of wi, which is much of a cosine near the horizon.
- *   lost mass   a half-vector lobe or a Phong lobe may reflect below the surface: such a sample has pdf 0 and weight 0 and still
- *               counts. The pdf over the upper hemisphere then integrates to less than 1; do not renormalise it.
- *   accuracy    stated per block for the whole parameter range. Figures of directions are the worst that an adversary found by
- *               climbing towards it (tests/stress/climb.c), with about a quarter added. pdf errors are relative, in units of
- *               E = 1e-6 (1 + |ln(pdf/peak)|), down to 2^-126 of the peak (below, it is just small); those of weights are relative,
- *               too; those of directions absolute, in units of 2^-24.
- *   bad input   never crashes and never gives NaN: pdf 0, weight 0 and a finite point. Bad are u outside [0,1), NaN anywhere,
- *               directions whose squared length is not within (1/4, 4), wo below the surface, parameters out of range. Densities
- *               above FLT_MAX are returned as FLT_MAX.
- *   unit        a direction between 1/2 and 2 long is not refused but taken as it is, and then densities are wrong by up to a
- *               factor of 2: normalise what was interpolated or scaled.
- *   mistakes    where MCS_ASSERT is defined (as assert, say), scalar functions tell parameters out of range, u outside [0,1), and
- *               directions whose squared length is not within 0.001 of 1; array forms tell such a wo.
- *   widths      every function marked w in the index exists for 4, 8 and 16 lanes too: mcs8_ggx_pdf takes and returns mcs8_f and
- *               structs of mcs8_f. `_n` functions take plain arrays (one per component), pick the widest unit of the CPU at run
- *               time, accept any n and any alignment, may write in place of their inputs, and skip outputs that are NULL. Those of
- *               BRDFs have one material and one wo for all.
- *   same bits   with -ffp-contract=off (which gcc's -std=c99 and -std=c11 imply) scalar, 4, 8, 16 wide and `_n` forms give the same
- *               bits on every CPU. Where the compiler may contract a*b+c they differ by the rounding of single operations, more
- *               where those cancel, and the `_n` forms are up to 30 % faster. -ffast-math compiles, but does not recognise bad
- *               input.
- *   exceptions  good input raises no invalid operation, no division by zero and no overflow, whatever the width, where the compiler
- *               adds none (gcc does not; clang needs -ffp-exception-behavior=maytrap). Cosines are 0, or 1e-15 and more, for that.
- *   rounding    must be to nearest; in another mode results are finite at best. Flush to zero and denormals-are-zero may be on:
- *               subnormal numbers then count as 0, and so may densities below 2^-100 of the peak; cosines must be 0, or 1e-7 and
- *               more.
- *   state       none: no globals, no allocation, no I/O. Everything is thread-safe that does not share a caller's object.
- */
+ * ---- Conventions ----
+ *
+ * Names         X_sample draws from the density X, X_pdf is the density of a given point, and X_invert is the u that
+ *               X_sample maps to a given point. BRDFs also have X_eval, the value f(wo, wi) without the cosine, and
+ *               X_weight.
+ *
+ * u             u, u1 and u2 are numbers in [0,1). Every sampler is a deterministic map from u to a point, so that
+ *               random, stratified and low-discrepancy numbers serve alike.
+ *
+ * Directions    They are unit vectors in a local frame whose +z is the surface normal; [frame] converts to it and back.
+ *               wo points to the eye and is given. wi points to the light and is sampled. Both point away from the
+ *               surface. h is their half-vector. A direction between 1/2 and 2 long is taken as it is, and its
+ *               densities are then wrong by up to a factor of 2: normalise what was interpolated or scaled.
+ *
+ * alpha         It is the width of a lobe's slopes itself, no "roughness" that would have to be squared.
+ *
+ * pdf           A density is per length on a line, per area on a disk and per solid angle among directions. The pdf of
+ *               a sample belongs to the exact point that u maps to. X_pdf belongs to the float point that it is given.
+ *               In a sharp lobe the two differ because the float point is rounded, without an error in either: by 13 %
+ *               at alpha 0.01, in the worst thousandth of the samples.
+ *
+ * weight        It is f cos(theta_i) / pdf in closed form, for a reflectance and a Fresnel factor of 1: multiply by
+ *               mcs_schlick or by your own. X_weight belongs to the float wi that it is given. The weight of a sample
+ *               takes the half-vector of the exact point and the cosines of its float wi, and its accuracy is stated
+ *               for that. The weight of the exact point differs by the rounding of wi, which is much of a cosine near
+ *               the horizon.
+ *
+ * Lost samples  A lobe around a half-vector or around the mirror direction may reflect below the surface. Such a sample
+ *               has pdf 0 and weight 0: add 0 to the estimate and count the sample. The density over the upper
+ *               hemisphere then integrates to less than 1. Do not renormalise it.
+ *
+ * Accuracy      It is stated per block and holds for the whole range of the parameters. Errors of densities are given
+ *               in E, where 1 E is a relative error of 1e-6 (1 + |ln(pdf/peak)|) and peak is the largest density. They
+ *               hold down to 2^-126 of the peak; below, a density is just small. Errors of weights are relative. Errors
+ *               of directions are absolute, in units of 2^-24. The figures of directions are the worst that an
+ *               adversary found by climbing towards it (tests/stress/climb.c), with about a quarter added.
+ *
+ * Bad input     It never crashes and never gives NaN. It gives pdf 0, weight 0 and a finite point. Bad are NaN
+ *               anywhere, u outside [0,1), a direction whose squared length is not within (1/4, 4), wo below the
+ *               surface, and a parameter out of its range. A density above FLT_MAX is returned as FLT_MAX.
+ *
+ * Mistakes      Define MCS_ASSERT, as assert for example, to be told of them. Scalar functions tell parameters out of
+ *               range, u outside [0,1), and directions whose squared length is not within 0.001 of 1. Array functions
+ *               tell such a wo.
+ *
+ * Arrays        X_n does for n points what X does for one. It takes plain arrays, one per component, of any alignment,
+ *               and reads and writes n numbers of each. A result may be NULL and is then left out. A result may be the
+ *               array of an input. BRDFs take one material and one wo for all n. The widest unit of the processor is
+ *               found at run time; mcs_lanes tells it.
+ *
+ * Lanes         mcs4_X, mcs8_X and mcs16_X do for 4, 8 and 16 points what mcs_X does for one. They exist for mcs_u01,
+ *               mcs_u01_open, mcs_sobol, mcs_sobol_bits, mcs_r2, mcs_hash, mcs_set, mcs_load, mcs_store, and for every
+ *               function of [1d] to [mis] that has no _n. float becomes mcs8_f, bits and indices become mcs8_u, int32_t
+ *               becomes mcs8_i, where true is -1, and a struct mcs_T becomes mcs8_T. The dimension and the seed of a
+ *               point stay scalar. One example stands for all:
+ *
+ *                   mcs_brdf  mcs_ggx_bounded_sample (const mcs_ggx  *m, mcs_vec3  wo, float  u1, float  u2);
+ *                   mcs8_brdf mcs8_ggx_bounded_sample(const mcs8_ggx *m, mcs8_vec3 wo, mcs8_f u1, mcs8_f u2);
+ *
+ * Same bits     With -ffp-contract=off, which gcc's -std=c99 and -std=c11 imply, the scalar, wide and array forms give
+ *               the same bits on every processor. Where the compiler may contract a*b + c, they differ by the rounding
+ *               of single operations, and by more where those cancel; array forms are then up to 30 % faster.
+ *               -ffast-math compiles, but bad input is not recognised.
+ *
+ * Exceptions    Good input raises no invalid operation, no division by zero and no overflow in any width, where the
+ *               compiler adds none. gcc adds none; clang needs -ffp-exception-behavior=maytrap. Cosines have to be 0,
+ *               or 1e-15 and more, for that.
+ *
+ * Rounding      It must be to nearest. In another mode results are finite at best. Flush to zero and denormals-are-zero
+ *               may be on. Subnormal numbers then count as 0, and so may densities below 2^-100 of the peak; cosines
+ *               have to be 0, or 1e-7 and more.
+ *
+ * State         There is none: no globals, no allocation, no input and output. Threads may call everything at once that
+ *               does not share an object of the caller.
+ *
+ * ---- Map of the file ----
+ *
+ * Search for a tag with its brackets. In part I the tag heads the documentation; in parts III and IV it heads the
+ * bodies.
+ *
+ *   tag           what it is                                               when you need it
+ *
+ *   PART I        the interface: all that a user needs
+ *   [types]       points, directions, samples, lanes, status codes
+ *   [rng]         random numbers, and a generator for every pixel          independent samples
+ *   [points]      scrambled Sobol, strata, Latin hypercubes, R2            less noise for as many samples
+ *   [1d]          eight densities on a line                                distances, filters
+ *   [disk]        points on a disk                                         lenses, round lights
+ *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte surfaces, spherical lights
+ *   [frame]       local and world coordinates                              every shaded point
+ *   [microfacet]  half-vectors, mirroring, Fresnel                         BRDFs of your own
+ *   [phong] [ward] [beckmann] [ggx] [ashikhmin]   five glossy lobes        glossy surfaces; start with [ggx]
+ *   [mis]         weights of two strategies                                a light and a lobe together
+ *   [tables]      densities given as numbers                               one of many lights, measured curves
+ *   [env]         environment maps                                         light from all around
+ *   [product]     map times lobe times cosine                              light from all around on a given surface
+ *   [estimator]   mean, variance, standard error                           every estimate
+ *
+ *   PART II       machinery: compilers and processors, lanes, vector maths             maintainers
+ *   PART III      the bodies of [rng] to [mis], and why each formula is written so     maintainers
+ *   PART IV       the bodies of [tables] to [estimator]                                maintainers */
 #ifndef MCSAMPLE_H
 #define MCSAMPLE_H
 
@@ -65,18 +136,22 @@
 #define MCS_VERSION 100 /* major * 10000 + minor * 100 + patch */
 #define MCS_VERSION_STRING "0.1.0"
 
-/* ---- configuration: define before the include --------------------------------------------------------------------------------
- * MCS_NO_WIDE     no 4, 8, 16 wide functions; `_n` forms loop over the scalar ones   (default: off; on without vector extensions)
- * MCS_NO_BATCH    no `_n` forms but mcs_pcg32_fill_n                                 (default: off)
- * MCS_NO_1D       leaves out the one-dimensional densities                           (default: off)
- * MCS_NO_LOBES    leaves out [microfacet], the BRDFs and [product]                   (default: off)
- * MCS_NO_TABLES   leaves out [tables], [env] and [product]                           (default: off)
- * MCS_MAX_LANES   4, 8 or 16: the widest unit that `_n` forms use on x86, SSE2, AVX2 or AVX-512; mcs_lanes() tells which it is
- *                 (default: 16)
- * MCS_ASSERT      called with conditions on arguments, see "mistakes": assert, say     (default: nothing)
- * MCS_FN          the linkage of every function: nothing makes a library of a C file that includes this, inline lets a C++ module
- *                 export them                                                        (default: static inline)
- * The MCS_NO_ switches only save compile time: functions that are not used leave no code in any case. */
+/* ---- configuration: define before the include ----
+ *
+ * MCS_NO_WIDE     No mcs4_, mcs8_ and mcs16_ functions. Array functions loop over the scalar ones. On by itself where
+ *                 the compiler has no vector types.
+ * MCS_NO_BATCH    No array functions but mcs_pcg32_fill_n.
+ * MCS_NO_1D       No [1d].
+ * MCS_NO_LOBES    No [microfacet], no BRDFs and no [product].
+ * MCS_NO_TABLES   No [tables], no [env] and no [product].
+ * MCS_MAX_LANES   The widest unit that array functions use on x86: 4 is SSE2, 8 is AVX2, 16 is AVX-512.
+ * MCS_ASSERT      Called with conditions on arguments; see "Mistakes" above. assert is a good value.
+ * MCS_FN          The linkage of every function, static inline by default. Defined as nothing, it makes a library of a
+ *                 C file that includes this one. Defined as inline, it lets a C++ module export the functions.
+ * MCS_SELF        The name under which the header includes itself. Only a renamed copy needs it.
+ *
+ * None of the MCS_NO_ switches is on by default. They save compile time only: functions that are not used leave no
+ * code. */
 
 #ifndef MCS_ASSERT
 #define MCS_ASSERT(condition) ((void)0)
@@ -85,7 +160,7 @@
 #define MCS_MAX_LANES 16
 #endif
 #ifndef MCS_SELF
-#define MCS_SELF "mcsample.h" /* how the header finds itself; only for a renamed copy */
+#define MCS_SELF "mcsample.h"
 #endif
 
 /* ---- platform: the only place that knows compilers and instruction sets ------------------------------------------------------ */
@@ -156,36 +231,57 @@
 /* PART I: THE INTERFACE                                                                                            */
 /* ================================================================================================================ */
 
-/* ==== [types] what samplers return ==== */
+/* ==== [types] what samplers return ================================================================================
+ * All members are plain numbers, to be read and written freely. For lanes see "Lanes" on the title page. */
+
+/* A point of the plane, or a pair (u1, u2). */
 typedef struct {
     float x, y;
 } mcs_vec2;
+
+/* A point or a direction. */
 typedef struct {
     float x, y, z;
 } mcs_vec3;
+
+/* A sample on a line. */
 typedef struct {
-    float x, pdf;
+    float x;
+    float pdf; /* per length */
 } mcs_sample1;
+
+/* A sample of the plane. */
 typedef struct {
-    float x, y, pdf;
+    float x, y;
+    float pdf; /* per area */
 } mcs_sample2;
+
+/* A sampled direction. */
 typedef struct {
-    mcs_vec3 w;
-    float pdf;
+    mcs_vec3 w; /* of unit length */
+    float pdf;  /* per solid angle */
 } mcs_dir;
+
+/* A direction sampled from a BRDF. */
 typedef struct {
-    mcs_vec3 wi;
-    float pdf, weight;
+    mcs_vec3 wi;  /* to the light, of unit length */
+    float pdf;    /* per solid angle; 0 where the sample is lost */
+    float weight; /* f(wo, wi) wi.z / pdf; 0 where the sample is lost */
 } mcs_brdf;
+
+/* What functions return that build a table or check one. Below 0 are errors. */
 typedef enum {
     MCS_OK = 0,
     MCS_UNIFORM = 1,
-    MCS_ERR_ARG = -1,
-    MCS_ERR_SIZE = -2,
-    MCS_ERR_MEMORY = -3,
-    MCS_ERR_FORMAT = -4
+    MCS_ERR_ARG = -1,    /* a pointer is NULL or not aligned */
+    MCS_ERR_SIZE = -2,   /* a count, width or height is out of its range */
+    MCS_ERR_MEMORY = -3, /* there are fewer bytes than the table needs */
+    MCS_ERR_FORMAT = -4  /* the bytes that were read are no such table */
 } mcs_status;
-#ifndef MCS_NO_WIDE /* 16-byte alignment: no vector needs an over-aligned place in the caller's structs or on the stack */
+
+/* 4, 8 and 16 lanes of float, int32_t and uint32_t, with all operators of C. Their alignment is 16 at most, so that
+ * none needs an over-aligned place in the caller's structs or on the stack. */
+#ifndef MCS_NO_WIDE
 typedef float mcs4_f __attribute__((vector_size(16)));
 typedef float mcs8_f __attribute__((vector_size(32), aligned(16)));
 typedef float mcs16_f __attribute__((vector_size(64), aligned(16)));
@@ -196,118 +292,219 @@ typedef uint32_t mcs4_u __attribute__((vector_size(16)));
 typedef uint32_t mcs8_u __attribute__((vector_size(32), aligned(16)));
 typedef uint32_t mcs16_u __attribute__((vector_size(64), aligned(16)));
 #endif
+
+/* The scalar forms of what lanes need: mcs8_set(x) has x in all lanes. */
 MCS_FN float mcs_set(float x);
+/* mcs8_load(p) has p[0] to p[7] in its lanes. p may have any alignment. */
 MCS_FN float mcs_load(const float *p);
+/* mcs8_store(p, v) writes the lanes of v to p[0] to p[7]. p may have any alignment. */
 MCS_FN void mcs_store(float *p, float x);
+
 #ifndef MCS_NO_BATCH
+/* How many lanes array functions compute at once on this processor: 4, 8 or 16; 1 where there are no vector types. */
 MCS_API int mcs_lanes(void);
 #endif
 
-/* ==== [rng] uniform random numbers =============================================================================================
- * mcs_u01(bits)        (bits >> 8) 2^-24: the 2^24 multiples in [0,1), never 1 (bits * 2^-32 rounds to 1 for the top 128 values)
- * mcs_u01_open(bits)   ((bits >> 9) + 1/2) 2^-23: in (0,1), the same from both ends. For maps of your own that have a logarithm or
- *                      a quotient there, and where 1 - u must be such a number too; the maps of this header take 0 from mcs_u01
- * mcs_pcg32_*          O'Neill 2014, "PCG: a family of simple fast space-efficient statistically good algorithms", XSH-RR 64/32:
- *                      2^64 numbers per stream, 2^63 streams; advance(delta) jumps in 64 steps at most, delta modulo 2^64 (so -1
- *                      goes back)
- *   _for(seed, pixel, sample)  a generator for each pixel and sample, or for whatever else two numbers tell apart. Philox mixes all
- *                      three into state and stream: those of neighbours have nothing in common. The one to use.
- *   _make(seed, stream)  O'Neill's own start, bit for bit, for one generator alone. It does not mix: the first numbers of
- *                      neighbouring seeds or streams, as (k, k), (1, k) or (k, 0) for pixel k, follow a pattern that is seen in
- *                      pictures and that no debug build can recognise
- * mcs_philox           Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3", Philox4x32-10: four words that depend
- *                      on key and counter alone; no state to keep
- * fills                out[i] is the float of the i-th word: of the generator, or of word i mod 4 of block counter + i / 4 */
+/* ==== [rng] uniform random numbers ================================================================================
+ * Two kinds: PCG32 is a generator with a state of 16 bytes, Philox a function of a counter without any state.
+ *
+ * cost      mcs_pcg32_next takes one 64-bit product, mcs_philox twenty 32-bit products for four numbers.
+ * source    O'Neill 2014, "PCG: a family of simple fast space-efficient statistically good algorithms" (XSH-RR 64/32);
+ *           Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3" (Philox4x32-10) */
+
+/* A PCG32 generator: 2^63 streams of 2^64 numbers each. */
 typedef struct {
-    uint64_t state, inc;
+    uint64_t state;
+    uint64_t inc; /* 2 stream + 1 */
 } mcs_pcg32;
+
+/* Four random words. */
 typedef struct {
     uint32_t v[4];
 } mcs_philox4;
+
+/* ---- words to floats ---- */
+
+/* (bits >> 8) 2^-24: one of the 2^24 multiples of 2^-24 in [0,1), never 1. (bits 2^-32 would round to 1 for the 128
+ * largest values.) All samplers of this header take the 0. */
 MCS_FN float mcs_u01(uint32_t bits);
+/* ((bits >> 9) + 1/2) 2^-23: in (0,1), the same from both ends. For maps of your own that have a logarithm or a
+ * quotient at 0, or that need 1 - u to be such a number as well. */
 MCS_FN float mcs_u01_open(uint32_t bits);
+
+/* ---- PCG32 ---- */
+
+/* A generator for every pixel and sample, or for whatever else two numbers tell apart. Philox mixes all three arguments
+ * into state and stream, so that those of neighbours have nothing in common. Use this one. */
 MCS_FN mcs_pcg32 mcs_pcg32_for(uint64_t seed, uint64_t pixel, uint64_t sample);
+/* O'Neill's own start, bit for bit, for one generator alone. The highest bit of stream is ignored. Nothing is mixed:
+ * the first numbers of neighbouring seeds or streams, as (k, k), (1, k) or (k, 0) for pixel k, follow a pattern that is
+ * seen in pictures and that no debug build can recognise. */
 MCS_FN mcs_pcg32 mcs_pcg32_make(uint64_t seed, uint64_t stream);
+/* The next 32 random bits. */
 MCS_FN uint32_t mcs_pcg32_next(mcs_pcg32 *r);
+/* The next number in [0,1): mcs_u01 of the next bits. */
 MCS_FN float mcs_pcg32_float(mcs_pcg32 *r);
+/* Jumps over delta numbers in at most 64 steps. delta counts modulo 2^64, so that (uint64_t)-1 goes back by one. */
 MCS_FN void mcs_pcg32_advance(mcs_pcg32 *r, uint64_t delta);
+/* out[0] to out[n-1] become the next n numbers in [0,1). Where out is NULL they are skipped. */
 MCS_API void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out);
+
+/* ---- Philox ---- */
+
+/* Four words that depend on the key and the 128-bit counter alone. Those of neighbouring keys and counters
+ * have nothing in common. */
 MCS_FN mcs_philox4 mcs_philox(uint64_t key, uint64_t counter_lo, uint64_t counter_hi);
 #ifndef MCS_NO_BATCH
+/* out[i] becomes mcs_u01 of word i mod 4 of mcs_philox(key, counter + i/4, 0). Nothing happens where out is NULL. */
 MCS_API void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *out);
 #endif
 
-/* ==== [points] well-spread points instead of independent ones ==================================================================
- * Functions of an index alone: no state, any order, any part of the sequence. `seed` gives independent randomisations, one per
- * pixel or dimension pair, say. Every map of this header but alias keeps their spread, so that the error falls faster than
- * 1/sqrt(N).
- *   mcs_sobol(i, dim, seed)        Owen-scrambled Sobol in [0,1); mcs_sobol_bits 32 bits of it, mcs_sobol_n an array from `first`
- *                                  on. Each 2^k points from a multiple of 2^k on are one to a cell in every dimension, dimensions 0
- *                                  and 1 are a (0,2)-sequence, 0 to 3 Sobol's first four; further groups of four are shuffled
- *                                  copies. About error N^-1.5 for smooth integrands at powers of two. The one to use.
- *   mcs_stratified(i, nx, ny, seed)  a jittered point in cell i modulo nx ny, row by row; nx, ny in [1, 2^20]
- *   mcs_latin(i, n, dim, seed)     Latin hypercube: coordinate dim of point i modulo n; one point in each of the n slabs of every
- *                                  dimension; n in [1, 2^20]
- *   mcs_r2(i, seed)                rank-1 R2 sequence, shifted by seed: no powers of two, and cheap
- *   mcs_hash(a, b)                 32 well-mixed bits of two words
- * Counts out of range count as the nearer end. Sources: Sobol 1967 with Joe and Kuo 2008's direction numbers; Owen 1995; Laine and
- * Karras 2011 and Burley 2020, "Practical hash-based Owen scrambling"; scrambling constants Vegdahl 2021; hash Wellons 2018; McKay,
- * Beckman, Conover 1979; Roberts 2018, "The unreasonable effectiveness of quasirandom sequences". */
-MCS_FN uint32_t mcs_sobol_bits(uint32_t index, uint32_t dim, uint32_t seed);
+/* ==== [points] well-spread points instead of independent ones =====================================================
+ * Points that keep their distance make the error fall faster than 1/sqrt(N). All maps of this header but the alias
+ * table keep that advantage. mcs_sobol is the one to use.
+ *
+ * Each function depends on its arguments alone, so that points can be made in any order and by any thread.
+ *
+ *   index     which point of the sequence; any value
+ *   dim       which coordinate of the point; any value. Take 0 and 1 for the first u1 and u2 of a path, 2 and 3 for the
+ *             next ones, and so on.
+ *   seed      gives independent randomisations, one per pixel for example
+ *
+ * Counts out of range count as the nearer end. The results are in [0,1).
+ *
+ * cost      mcs_sobol is a loop of 32 short steps and two hashes. Dimensions that are multiples of 4 need no loop.
+ *           mcs_r2 is two products and two hashes. mcs_latin repeats a permutation of 12 rounds, less than twice on
+ *           average.
+ * source    Sobol 1967, with the direction numbers of Joe and Kuo 2008; Owen 1995; Laine and Karras 2011; Burley 2020,
+ *           "Practical hash-based Owen scrambling"; constants of the scrambling by Vegdahl 2021; hash by Wellons 2018;
+ *           McKay, Beckman and Conover 1979; Roberts 2018, "The unreasonable effectiveness of quasirandom sequences" */
+
+/* Coordinate dim of point index of a Sobol sequence, scrambled as by Owen. Each 2^k points from a multiple of 2^k on
+ * are one to a cell in every dimension. Dimensions 0 and 1 are a (0,2)-sequence, 0 to 3 are Sobol's first four, and
+ * each further group of four is a shuffled copy of these. For smooth integrands and powers of two the error is about
+ * N^-1.5. */
 MCS_FN float mcs_sobol(uint32_t index, uint32_t dim, uint32_t seed);
-MCS_FN mcs_vec2 mcs_r2(uint32_t index, uint32_t seed);
-MCS_FN uint32_t mcs_hash(uint32_t a, uint32_t b);
-MCS_FN mcs_vec2 mcs_stratified(uint32_t index, uint32_t nx, uint32_t ny, uint32_t seed);
-MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed);
+/* All 32 bits of that coordinate; mcs_sobol is mcs_u01 of them. */
+MCS_FN uint32_t mcs_sobol_bits(uint32_t index, uint32_t dim, uint32_t seed);
 #ifndef MCS_NO_BATCH
+/* out[i] becomes mcs_sobol(first + i, dim, seed). Nothing is written where out is NULL. */
 MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out);
 #endif
 
-/* ==== [1d] densities on a line =================================================================================================
- * domain u in [0,1); codomain and density per length as below; stratified u give stratified x, because every map increases with u:
- * over the 2^24 multiples of 2^-24 none ever falls, by as little as an ulp.
- * `_invert` is the cumulative distribution, clamped into [0, 1 - 2^-24]. One random number each. Bad parameters: pdf 0, x 0; a
- * mean is good within [-1e30, 1e30].
+/* A random point of one of nx * ny equal cells: of cell index modulo nx ny, counted row by row. nx and ny are within
+ * [1, 2^20]. */
+MCS_FN mcs_vec2 mcs_stratified(uint32_t index, uint32_t nx, uint32_t ny, uint32_t seed);
+
+/* Coordinate dim of point index modulo n of a Latin hypercube: in every dimension each of the n slabs has one of the n
+ * points. n is within [1, 2^20]. */
+MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed);
+
+/* Point index of the R2 sequence, a lattice of rank 1, shifted by seed. It is cheap, and any number of points is as
+ * good as a power of two. */
+MCS_FN mcs_vec2 mcs_r2(uint32_t index, uint32_t seed);
+
+/* 32 well-mixed bits of two words: for seeds. */
+MCS_FN uint32_t mcs_hash(uint32_t a, uint32_t b);
+
+/* ==== [1d] densities on a line ====================================================================================
+ * Eight densities, each by inversion from one number u in [0,1). Every map increases with u: over the 2^24 multiples of
+ * 2^-24 none ever falls, by as little as an ulp. Stratified u therefore give stratified x.
  *
- *   linear(a, b)          2 lerp(a,b,x)/(a+b) on [0,1]          a, b >= 0, not both 0          1 sqrt, 2 div
- *   tent(r)               (1-|x|/r)/r on [-r,r]                 r in [1e-18, 1e18]             1 sqrt, 1 div
- *   exponential(rate)     rate e^(-rate x), x >= 0              rate in [1e-18, 1e18]          1 log, 1 div
- *   truncexp(rate, m)     the same cut off at m                 rate in [0, 1e18] (0: uniform), m in [1e-18, 1e18]; rate m up to 80
- *                         counts as is, above the cut is far below 2^-24 and left out          1 log, 1 exp, 2 div
- *   normal(mean, sd)      by inversion, |x - mean| < 5.5 sd     sd in [1e-18, 1e18]            1 log, 1 sqrt, 1 div, 1 exp (pdf)
- *   logistic(mean, s)     e^-z/(s (1+e^-z)^2), z=(x-mean)/s     s in [1e-18, 1e18]             1 log, 2 div; |x - mean| < 17.4 s
- *   power(n)              (n+1) x^n on [0,1]                    n in [0, 1e9]                  1 pow, 1 div
- *   evenpower(n)          (n+1)/2 |x|^n on [-1,1]               n in [0, 1e9]                  1 pow, 1 div; signed root of 2u-1
+ *   X_sample  draws x; its pdf is per length
+ *   X_pdf     is the density of x, 0 outside the domain and for NaN
+ *   X_invert  is the cumulative distribution at x, clamped into [0, 1 - 2^-24]
  *
- * Accuracy: pdf of u and of x within 0.45 E (normal), 0.2 E (the others); x within 7 ulp (normal), 4 (the others) of the exact map
- * or of its scale. normal and logistic are unbounded at u = 0, which stands for all of [0, 2^-24): they take u below 2^-25 as
- * 2^-25, the middle of that cell, because any smaller number would be drawn as often, but stand for less and weigh more. Source:
- * inverse CDFs, e.g. Pharr, Jakob, Humphreys 2023, appendix A; evenpower is slide 13 of the lecture for n = 2. */
+ * A parameter out of the range that is given below makes pdf, x and the inverse 0.
+ *
+ * accuracy  pdf of u and of x within 0.45 E (normal), 0.2 E (the others), where 1 E is a relative error of
+ *           1e-6 (1 + |ln(pdf/peak)|). x is within 7 ulp (normal), 4 ulp (the others) of the exact map or of its scale.
+ * cost      stands with each density, for X_sample.
+ * source    the inverses of the cumulative distributions, as in Pharr, Jakob and Humphreys 2023, appendix A */
 #ifndef MCS_NO_1D
+
+/* ---- linear: a density that rises or falls evenly over [0,1] ----
+ * density    2 ((1-x) a + x b) / (a + b) on [0,1]
+ * a, b       the heights at 0 and at 1, of which only the ratio counts; >= 0, not both 0
+ * cost       1 square root, 2 divisions
+ * functions  mcs_linear_sample, mcs_linear_pdf, mcs_linear_invert */
 MCS_FN mcs_sample1 mcs_linear_sample(float a, float b, float u);
 MCS_FN float mcs_linear_pdf(float a, float b, float x);
 MCS_FN float mcs_linear_invert(float a, float b, float x);
+
+/* ---- tent: the triangle filter ----
+ * density    (1 - |x|/r) / r on [-r, r]
+ * r          half the width; in [1e-18, 1e18]
+ * cost       1 square root, 1 division
+ * functions  mcs_tent_sample, mcs_tent_pdf, mcs_tent_invert */
 MCS_FN mcs_sample1 mcs_tent_sample(float r, float u);
 MCS_FN float mcs_tent_pdf(float r, float x);
 MCS_FN float mcs_tent_invert(float r, float x);
+
+/* ---- exponential: the way to the next collision in an even medium ----
+ * density    rate e^(-rate x) for x >= 0
+ * rate       in [1e-18, 1e18]; the mean is 1/rate
+ * cost       1 logarithm, 1 division
+ * functions  mcs_exponential_sample, mcs_exponential_pdf, mcs_exponential_invert */
 MCS_FN mcs_sample1 mcs_exponential_sample(float rate, float u);
 MCS_FN float mcs_exponential_pdf(float rate, float x);
 MCS_FN float mcs_exponential_invert(float rate, float x);
+
+/* ---- truncexp: the same, given that the collision is before x = m ----
+ * density    rate e^(-rate x) / (1 - e^(-rate m)) on [0, m]
+ * rate       in [0, 1e18]; 0 makes the density uniform
+ * m          the end; in [1e-18, 1e18]. What lies beyond rate x = 80 is far below 2^-24 and left out.
+ * cost       1 logarithm, 1 exponential, 2 divisions
+ * functions  mcs_truncexp_sample, mcs_truncexp_pdf, mcs_truncexp_invert */
 MCS_FN mcs_sample1 mcs_truncexp_sample(float rate, float m, float u);
 MCS_FN float mcs_truncexp_pdf(float rate, float m, float x);
 MCS_FN float mcs_truncexp_invert(float rate, float m, float x);
+
+/* ---- normal: Gauss's distribution, by inversion ----
+ * density    e^(-z^2/2) / (sqrt(2 pi) sd) with z = (x - mean)/sd
+ * mean       in [-1e30, 1e30]
+ * sd         the standard deviation; in [1e-18, 1e18]
+ * cost       1 logarithm, 1 square root, 1 exponential, 2 divisions
+ * tail       No sample is further than 5.5 sd from the mean. The map is unbounded at u = 0, which stands for all of
+ *            [0, 2^-24). So u below 2^-25 counts as 2^-25, the middle of that cell: a smaller number would be drawn as
+ *            often, but would stand for less and weigh more.
+ * functions  mcs_normal_sample, mcs_normal_pdf, mcs_normal_invert */
 MCS_FN mcs_sample1 mcs_normal_sample(float mean, float sd, float u);
 MCS_FN float mcs_normal_pdf(float mean, float sd, float x);
 MCS_FN float mcs_normal_invert(float mean, float sd, float x);
-MCS_FN mcs_sample1 mcs_logistic_sample(float mean, float s, float u);
-MCS_FN float mcs_logistic_pdf(float mean, float s, float x);
-MCS_FN float mcs_logistic_invert(float mean, float s, float x);
-MCS_FN mcs_sample1 mcs_power_sample(float n, float u);
-MCS_FN float mcs_power_pdf(float n, float x);
-MCS_FN float mcs_power_invert(float n, float x);
-MCS_FN mcs_sample1 mcs_evenpower_sample(float n, float u);
-MCS_FN float mcs_evenpower_pdf(float n, float x);
-MCS_FN float mcs_evenpower_invert(float n, float x);
+
+/* ---- logistic: a bell with heavier tails ----
+ * density    e^-z / (scale (1 + e^-z)^2) with z = (x - mean)/scale
+ * mean       in [-1e30, 1e30]
+ * scale      in [1e-18, 1e18]; the standard deviation is pi/sqrt(3) of it
+ * cost       1 logarithm, 2 divisions
+ * tail       No sample is further than 17.4 scale from the mean. u below 2^-25 counts as 2^-25, as above.
+ * functions  mcs_logistic_sample, mcs_logistic_pdf, mcs_logistic_invert */
+MCS_FN mcs_sample1 mcs_logistic_sample(float mean, float scale, float u);
+MCS_FN float mcs_logistic_pdf(float mean, float scale, float x);
+MCS_FN float mcs_logistic_invert(float mean, float scale, float x);
+
+/* ---- power: a power of x ----
+ * density    (e + 1) x^e on [0,1]
+ * e          the exponent; in [0, 1e9]
+ * cost       1 power, 1 division
+ * functions  mcs_power_sample, mcs_power_pdf, mcs_power_invert */
+MCS_FN mcs_sample1 mcs_power_sample(float e, float u);
+MCS_FN float mcs_power_pdf(float e, float x);
+MCS_FN float mcs_power_invert(float e, float x);
+
+/* ---- evenpower: the same to both sides ----
+ * density    (e + 1)/2 |x|^e on [-1,1]; slide 13 of the lecture for e = 2
+ * e          the exponent; in [0, 1e9]
+ * cost       1 power, 1 division
+ * functions  mcs_evenpower_sample, mcs_evenpower_pdf, mcs_evenpower_invert */
+MCS_FN mcs_sample1 mcs_evenpower_sample(float e, float u);
+MCS_FN float mcs_evenpower_pdf(float e, float x);
+MCS_FN float mcs_evenpower_invert(float e, float x);
+
+/* ---- arrays: the parameters of one density, n numbers u ----
+ * Each is X_sample for n numbers: mcs_linear_sample_n, mcs_tent_sample_n, mcs_exponential_sample_n,
+ * mcs_truncexp_sample_n, mcs_normal_sample_n, mcs_logistic_sample_n, mcs_power_sample_n, mcs_evenpower_sample_n. */
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_tent_sample_n(float r, size_t n, const float *u, float *x, float *pdf);
@@ -320,83 +517,150 @@ MCS_API void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x,
 #endif
 #endif
 
-/* ==== [disk] uniform on a disk of radius R =====================================================================================
- * domain (u1, u2) in [0,1)^2; codomain x^2 + y^2 <= R^2; density 1/(pi R^2) per area; R in [1e-18, 1e18], otherwise pdf 0.
- *   disk        polar: r = R sqrt(u1), phi = 2 pi u2 (slide 14). 1 sqrt, 1 sincos. Seam at phi = 0, all of u1 = 0 is the centre.
- *   concentric  squares onto circles: keeps neighbours together, so stratified points stay better spread. 1 div, 1 sincos.
- *               Source: Shirley and Chiu 1997, "A low distortion map between disk and square".
- * Accuracy: coordinates within 2^-23 R, pdf 0.1 E. Both are continuous but for the polar seam. `_invert`: 1 atan2. */
-MCS_FN mcs_sample2 mcs_disk_sample(float R, float u1, float u2);
-MCS_FN float mcs_disk_pdf(float R, float x, float y);
-MCS_FN mcs_vec2 mcs_disk_invert(float R, float x, float y);
-MCS_FN mcs_sample2 mcs_concentric_sample(float R, float u1, float u2);
-MCS_FN float mcs_concentric_pdf(float R, float x, float y);
-MCS_FN mcs_vec2 mcs_concentric_invert(float R, float x, float y);
+/* ==== [disk] points on a disk =====================================================================================
+ * Two maps from the unit square to the disk around the origin. Both are uniform.
+ *
+ *   radius    in [1e-18, 1e18], otherwise pdf 0
+ *   x, y      a point; the inverse is (0, 0) for points further than two radii out
+ *
+ * density   1/(pi radius^2) per area, 0 outside the disk
+ * accuracy  coordinates within 2^-23 of the radius, pdf within 0.1 E; 1 E is a relative error of 1e-6 here.
+ * source    Shirley and Chiu 1997, "A low distortion map between disk and square" (concentric); slide 14 (polar) */
+
+/* ---- concentric: squares become circles. Use this one. ----
+ * It keeps neighbours together, so that stratified points stay well spread. It is continuous.
+ * cost       1 division, 1 sincos; the inverse 1 arctangent
+ * functions  mcs_concentric_sample, mcs_concentric_pdf, mcs_concentric_invert, mcs_concentric_sample_n for arrays */
+MCS_FN mcs_sample2 mcs_concentric_sample(float radius, float u1, float u2);
+MCS_FN float mcs_concentric_pdf(float radius, float x, float y);
+MCS_FN mcs_vec2 mcs_concentric_invert(float radius, float x, float y);
 #ifndef MCS_NO_BATCH
-MCS_API void mcs_disk_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf);
-MCS_API void mcs_concentric_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y,
+MCS_API void mcs_concentric_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,
                                      float *pdf);
 #endif
 
-/* ==== [sphere] [hemisphere] [cosine] [cone] directions about +z ================================================================
- * domain (u1, u2) in [0,1)^2; azimuth 2 pi u2; unit w, density per solid angle. 1 sqrt, 1 sincos each; continuous but for the seam
- * at azimuth 0. x and y keep their relative accuracy at the poles (down to u1, of a cone k u1, of 2^-126); every coordinate is
- * within 2^-23 of the exact map, unit length within 4 x 2^-24, pdf within 0.2 E.
- *   sphere      z = 1 - 2 u1               1/(4 pi)
- *   hemisphere  z = 1 - u1 > 0             1/(2 pi)
- *   cosine      z = sqrt(1 - u1) > 0       z/pi: the disk projected up (Malley 1988). For matte surfaces prefer it to hemisphere.
- *   cone(k)     z = 1 - k u1               1/(2 pi k), k = 1 - cos(theta_max) in [1e-30, 2]: by 1 - cos, because cos itself cannot
- *               hold a narrow cone (mcs_cone_from_sin2 gives k from sin^2(theta_max), theta_max up to 90 degrees)
- * pdf 0 below the hemisphere, outside the cone and for bad input. */
+/* ---- disk: polar, at the distance radius sqrt(u1) and the angle 2 pi u2 ----
+ * All of u1 = 0 is the centre, and the map jumps where the angle is 0.
+ * cost       1 square root, 1 sincos; the inverse 1 arctangent
+ * functions  mcs_disk_sample, mcs_disk_pdf, mcs_disk_invert, mcs_disk_sample_n for arrays */
+MCS_FN mcs_sample2 mcs_disk_sample(float radius, float u1, float u2);
+MCS_FN float mcs_disk_pdf(float radius, float x, float y);
+MCS_FN mcs_vec2 mcs_disk_invert(float radius, float x, float y);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_disk_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,
+                               float *pdf);
+#endif
+
+/* ==== [sphere] directions about +z: sphere, hemisphere, cosine, cone ==============================================
+ * Four maps from the unit square to directions. u2 is the azimuth, 2 pi u2 from +x to +y, in all of them. u1 = 0 is +z.
+ * The maps are continuous but for the seam at azimuth 0.
+ *
+ *   w         a direction
+ *
+ * density   per solid angle; 0 below the horizon (hemisphere, cosine), outside the cone, and for bad input
+ * accuracy  every coordinate within 2^-23 of the exact map, unit length within 4 x 2^-24, pdf within 0.2 E. 1 E is a
+ *           relative error of 1e-6 (1 + |ln(pdf/peak)|). x and y keep their relative accuracy at the poles, down to a
+ *           u1 of 2^-126 (k u1 of a cone).
+ * cost      1 square root and 1 sincos; inverses take 1 arctangent
+ * source    Malley 1988 (cosine) */
+
+/* ---- sphere: all directions alike ----
+ * z          1 - 2 u1
+ * density    1/(4 pi)
+ * functions  mcs_sphere_sample, mcs_sphere_pdf, mcs_sphere_invert, mcs_sphere_sample_n for arrays */
 MCS_FN mcs_dir mcs_sphere_sample(float u1, float u2);
 MCS_FN float mcs_sphere_pdf(mcs_vec3 w);
 MCS_FN mcs_vec2 mcs_sphere_invert(mcs_vec3 w);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf);
+#endif
+
+/* ---- hemisphere: all directions above the surface alike ----
+ * z          1 - u1, which is above 0
+ * density    1/(2 pi)
+ * functions  mcs_hemisphere_sample, mcs_hemisphere_pdf, mcs_hemisphere_invert, mcs_hemisphere_sample_n for arrays */
 MCS_FN mcs_dir mcs_hemisphere_sample(float u1, float u2);
 MCS_FN float mcs_hemisphere_pdf(mcs_vec3 w);
 MCS_FN mcs_vec2 mcs_hemisphere_invert(mcs_vec3 w);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                     float *pdf);
+#endif
+
+/* ---- cosine: in proportion to z. Prefer it to hemisphere for matte surfaces. ----
+ * z          sqrt(1 - u1), which is above 0: the polar disk, projected up
+ * density    z/pi
+ * functions  mcs_cosine_sample, mcs_cosine_pdf, mcs_cosine_invert, mcs_cosine_sample_n for arrays */
 MCS_FN mcs_dir mcs_cosine_sample(float u1, float u2);
 MCS_FN float mcs_cosine_pdf(mcs_vec3 w);
 MCS_FN mcs_vec2 mcs_cosine_invert(mcs_vec3 w);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf);
+#endif
+
+/* ---- cone: all directions within an angle theta_max of +z ----
+ * z          1 - k u1
+ * k          1 - cos(theta_max), in [1e-30, 2]. The cosine itself could not hold a narrow cone, as it rounds to 1.
+ * density    1/(2 pi k)
+ * functions  mcs_cone_sample, mcs_cone_pdf, mcs_cone_invert, mcs_cone_sample_n for arrays */
 MCS_FN mcs_dir mcs_cone_sample(float k, float u1, float u2);
 MCS_FN float mcs_cone_pdf(float k, mcs_vec3 w);
 MCS_FN mcs_vec2 mcs_cone_invert(float k, mcs_vec3 w);
-MCS_FN float mcs_cone_from_sin2(float sin2);
 #ifndef MCS_NO_BATCH
-MCS_API void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf);
-MCS_API void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                     float *pdf);
-MCS_API void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf);
 MCS_API void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
                                float *pdf);
 #endif
 
-/* ==== [frame] an orthonormal frame from a normal ===============================================================================
- * domain unit n; s, t, n right-handed; a bad n gives the axes, one that is not unit a frame that is skewed. Orthonormal to 4 ulp. 1
- * div, no branch; seam at n.z = -0.
- * Source: Duff et al. 2017, "Building an orthonormal basis, revisited", listing 3. */
+/* The k of a cone, from sin^2(theta_max), for theta_max up to 90 degrees. A sphere of radius r at the distance d is
+ * seen within mcs_cone_from_sin2(r r / (d d)). sin2 is taken within [0, 1], NaN as 0. */
+MCS_FN float mcs_cone_from_sin2(float sin2);
+
+/* ==== [frame] local and world coordinates =========================================================================
+ * A frame around a surface normal. In local coordinates the normal is +z, as all samplers of this header expect.
+ *
+ * accuracy  orthonormal within 4 ulp for a unit normal
+ * cost      1 division, no branch
+ * source    Duff et al. 2017, "Building an orthonormal basis, revisited", listing 3 */
+
+/* Three unit vectors in world coordinates, orthogonal and right-handed. */
 typedef struct {
-    mcs_vec3 s, t, n;
+    mcs_vec3 s; /* the local x axis */
+    mcs_vec3 t; /* the local y axis */
+    mcs_vec3 n; /* the local z axis, the normal */
 } mcs_frame;
+
+/* The frame of the unit normal n. s and t turn smoothly with n, except where n.z changes its sign. A bad n gives the
+ * axes of the world; an n that is not of unit length gives a frame that is skewed. */
 MCS_FN mcs_frame mcs_frame_make(mcs_vec3 n);
+/* v in world coordinates, for v in local ones. Components of v beyond 1e37 and NaN count as 0. */
 MCS_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v);
+/* v in local coordinates, for v in world ones. Components of v beyond 1e37 and NaN count as 0. */
 MCS_FN mcs_vec3 mcs_to_local(const mcs_frame *f, mcs_vec3 v);
 
-/* ==== [microfacet] half-vectors and reflection =================================================================================
- * mcs_reflect(wo, h)        2 (h.wo) h - wo
- * mcs_reflect_pdf(p_h, c)   density of the reflected direction, p_h / (4 wo.h), the Jacobian of the reflection; 0 unless c > 0
- * mcs_half(wo, wi)          the unit half-vector; +z when wi = -wo
- * mcs_cos_d(wo, wi)         wo.h = |wo + wi| / 2, Fresnel's cosine
- * mcs_schlick(f0, c)        Schlick 1994: f0 + (1 - f0) (1 - c)^5, c and f0 clamped into [0,1]
- * Source: Torrance and Sparrow 1967; the Jacobian as in Walter et al. 2007, equation 14 (slide 21).
- * Densities of given directions below use H = wo + wi unnormalised: the sum is exact where it cancels (Sterbenz), and ratios of
- * its components need no normalisation. The accuracies below hold where the cosines of wo, wi and h to the normal, and Phong's to
- * R, are 1e-15 or more. Nearer the horizon squares of cosines underflow; results are finite and not negative there, no more. */
+/* ==== [microfacet] half-vectors and reflection ====================================================================
+ * What is common to lobes around a half-vector, for BRDFs of your own. The half-vector samplers of [ward], [beckmann],
+ * [ggx] and [ashikhmin] give an h with its density; mcs_reflect and mcs_reflect_pdf turn both into those of wi.
+ *
+ *   cos_d     the cosine between h and wo, or h and wi, which is Fresnel's cosine
+ *
+ * accuracy  What the blocks of the lobes state holds where the cosines of wo, wi and h to the normal, and Phong's to
+ *           the mirror direction, are 1e-15 or more. Nearer to the horizon squares of cosines underflow; results are
+ *           finite and not negative there, no more.
+ * source    Torrance and Sparrow 1967; Walter et al. 2007, equation 14, slide 21 (the density); Schlick 1994 */
 #ifndef MCS_NO_LOBES
+
+/* wo mirrored at h: 2 (wo.h) h - wo. */
 MCS_FN mcs_vec3 mcs_reflect(mcs_vec3 wo, mcs_vec3 h);
+/* The density of the mirrored direction, pdf_h / (4 cos_d), for the density pdf_h of h. 0 unless cos_d > 0. */
 MCS_FN float mcs_reflect_pdf(float pdf_h, float cos_d);
+/* The unit half-vector of wo and wi; +z where wi = -wo. */
 MCS_FN mcs_vec3 mcs_half(mcs_vec3 wo, mcs_vec3 wi);
+/* cos_d of wo and wi: |wo + wi| / 2, which keeps its accuracy where the angle is large. */
 MCS_FN float mcs_cos_d(mcs_vec3 wo, mcs_vec3 wi);
+/* Fresnel's factor as approximated by Schlick: f0 + (1 - f0) (1 - cos_d)^5. f0 is the reflectance at normal incidence.
+ * Both are taken within [0,1]. */
 MCS_FN float mcs_schlick(float f0, float cos_d);
+
 #endif
 
 /* ==== [phong] the cosine-power lobe ============================================================================================
@@ -618,15 +882,26 @@ MCS_API void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n,
 #endif
 #endif
 
-/* ==== [mis] multiple importance sampling =======================================================================================
- * mcs_mis_balance(pf, pg)   pf/(pf+pg)                  Veach and Guibas 1995, "Optimally combining sampling techniques"
- * mcs_mis_power(pf, pg)     pf^2/(pf^2+pg^2)            the power heuristic, beta = 2
- * mcs_mix_pdf(c, pf, pg)    c pf + (1-c) pg             the density of one-sample MIS: choose f with probability c
- * Weights of a sample drawn from f, in [0,1]; multiply the densities by the sample counts when those differ. From g/f, so that
- * 1e30, 1e-30 and infinity are fine; 0 where pf is 0 or one of them is negative or NaN; the two weights of a sample add up to 1. A
- * mixture takes bad densities for 0 and the nearest c in [0,1], 0 for NaN. 1-2 div. */
+/* ==== [mis] multiple importance sampling ==========================================================================
+ * Combines two samplers f and g of one integral, for example of the map and of the lobe. A sample drawn from f adds its
+ * weight times value/pf to the estimate, and a sample drawn from g likewise, where
+ *
+ *   pf, pg    are the densities of the same point under f and under g. Multiply them by the sample counts where those
+ *             differ.
+ *
+ * The weights are in [0,1] and add up to 1. They are computed from pg/pf, so that 1e30, 1e-30 and infinity are fine.
+ *
+ * cost      1 or 2 divisions
+ * source    Veach and Guibas 1995, "Optimally combining sampling techniques" */
+
+/* The balance heuristic, pf/(pf + pg): the weight of a sample drawn from f. 0 where pf is 0, and where a density is
+ * negative or NaN. */
 MCS_FN float mcs_mis_balance(float pf, float pg);
+/* The power heuristic with beta = 2, pf^2/(pf^2 + pg^2), with the same edges. It is the better one where f or g
+ * alone is nearly right. */
 MCS_FN float mcs_mis_power(float pf, float pg);
+/* The density c pf + (1-c) pg of a sampler that takes f with probability c and g otherwise. A density that is negative
+ * or NaN counts as 0. c is taken within [0,1]; the result is 0 where it is NaN. */
 MCS_FN float mcs_mix_pdf(float c, float pf, float pg);
 
 /* ==== [tables] densities given as numbers ======================================================================================
