@@ -1448,12 +1448,21 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
 
 #ifdef MCSI_W
 
-/* ==== the body: one text for every width ======================================================================================
- * F, I, U stand for the float, int32 and uint32 lanes of the pass. Masks are lanes of I: 0 or 1 in the scalar pass, 0 or -1 in the
- * others, so `&` and `|` join them and nothing else may be done with them. */
-
-/* MCSI_FN before public functions of every width, MCSI_SAMPLE before those that MCSI_HOT is meant for, MCSI_CORE before private
- * ones. The passes that are picked at run time make no public functions. */
+/* ==== the body: one text for every width ==========================================================================
+ * From here to "#endif" of MCSI_W the text is compiled once per width. It is written in scalar names. In the passes for
+ * 4, 8 and 16 lanes the table near the end of the file makes each of these names that of the width:
+ *
+ *   mcs_f, mcs_i, mcs_u    lanes of float, int32_t, uint32_t
+ *   mcsi_d, mcsi_q         as many lanes of double; as many bytes of uint64_t as mcs_u has
+ *   masks                  mcs_i, 0 or 1 in the scalar pass, 0 or -1 in each lane of the others. They are joined by &
+ *   and |,
+ *                          chosen by with mcsi_sel, and used for nothing else.
+ *   float, uint32_t        stay scalar: one number for all lanes
+ *
+ * MCSI_CORE stands before private functions. They must be inlined, because compilers would return their structs through
+ * memory. MCSI_SAMPLE stands before public functions that draw and must be inlined for the same reason, MCSI_FN before
+ * the other public functions. Passes that are picked at run time have no public functions; all of theirs are
+ * private. */
 #define MCSI_CORE MCSI_INLINE
 #if defined(MCSI_PICKED)
 #define MCSI_FN MCSI_INLINE
@@ -1465,13 +1474,15 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
 #define MCSI_FN MCSI_HOT
 #define MCSI_SAMPLE MCSI_HOT
 #endif
+
+/* Tells mistakes of the caller; in lanes nobody could say which lane it was. */
 #if MCSI_W == 1
 #define MCSI_REQUIRE(ok) MCS_ASSERT(ok)
 #else
 #define MCSI_REQUIRE(ok) ((void)0)
 #endif
 
-/* Loops of array functions exist in the passes that those choose from: MCSI_LOOPS. */
+/* MCSI_LOOPS is defined in the passes from whose loops array functions choose; MCSI_LOOP stands before those loops. */
 #if MCSI_W == MCSI_BASE_W && !defined(MCSI_PICKED)
 #define MCSI_LOOPS
 #endif
@@ -1481,10 +1492,19 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
 #define MCSI_LOOP __attribute__((unused)) MCSI_PRIVATE
 #endif
 
-/* ---- lanes: what C has no operator for --------------------------------------------------------------------------------------- */
-
-/* Public: x in all lanes; lanes from and to an array of any alignment. */
+/* ==== [lanes] what C has no operator for ==========================================================================
+ *
+ *   mcsi_bits, mcsi_from_bits     a float as the integer of the same bits, and back
+ *   mcsi_trunc, mcsi_to_float     float to integer, towards 0, and back
+ *   mcsi_sel(mask, a, b)          a where the mask is set, b elsewhere
+ *   mcsi_max(a, b), mcsi_min      the second where one is NaN, as the instructions of x86 have it
+ *   MCSI_LANE(x, k)               lane k of x, to be read and written
+ *   MCSI_WIDEN, MCSI_NARROW       float to double and back. These are macros, as no register holds so many doubles and
+ *                                 compilers would pass them through memory.
+ *   MCSI_INT_WIDEN                integers below 2^24 to double. Straight to double, gcc 12 fails at -O0.
+ *   MCSI_TRUNC_D, MCSI_MAX_D      double to integer, towards 0; the larger of a double and a constant */
 #if MCSI_W == 1
+
 MCSI_SAMPLE float mcs_set(float x) { return x; }
 MCSI_SAMPLE float mcs_load(const float *p) { return *p; }
 MCSI_SAMPLE void mcs_store(float *p, float x) { *p = x; }
@@ -1511,12 +1531,15 @@ MCSI_CORE float mcsi_sqrt(float x) { return mcsi_sqrt_f(x); }
 MCSI_CORE float mcsi_sel(int32_t m, float a, float b) { return m ? a : b; }
 MCSI_CORE float mcsi_max(float a, float b) { return a > b ? a : b; }
 MCSI_CORE float mcsi_min(float a, float b) { return a < b ? a : b; }
+
 #else
+
 MCSI_SAMPLE mcs_f mcs_set(float x) {
     const mcs_f zero = {0.0f};
     return x - zero;
 }
-/* Through a type that may lie anywhere: gcc 12 copies by memcpy in pieces of 16 bytes, and the vector then waits for them. */
+/* A vector that may lie anywhere in memory. gcc 12 copies by memcpy in pieces of 16 bytes, for which a vector then
+ * waits. */
 typedef float mcsi_anywhere __attribute__((vector_size(4 * MCSI_W), aligned(4), may_alias));
 MCSI_SAMPLE mcs_f mcs_load(const float *p) { return *(const mcsi_anywhere *)(const void *)p; }
 MCSI_SAMPLE void mcs_store(float *p, mcs_f v) { *(mcsi_anywhere *)(void *)p = v; }
@@ -1526,14 +1549,14 @@ MCSI_CORE mcs_f mcsi_from_bits(mcs_i i) { return (mcs_f)i; }
 MCSI_CORE mcs_i mcsi_trunc(mcs_f x) { return __builtin_convertvector(x, mcs_i); }
 MCSI_CORE mcs_f mcsi_to_float(mcs_i i) { return __builtin_convertvector(i, mcs_f); }
 #define MCSI_LANE(x, k) ((x)[k])
-#define MCSI_WIDEN(x) \
-    __builtin_convertvector(x, mcsi_d) /* to double and back; macros, as no unit passes so wide a vector */
+#define MCSI_WIDEN(x) __builtin_convertvector(x, mcsi_d)
 #define MCSI_NARROW(x) __builtin_convertvector(x, mcs_f)
-#define MCSI_INT_WIDEN(i) MCSI_WIDEN(mcsi_to_float(i)) /* |i| < 2^24; straight to double gcc 12 fails at -O0 */
+#define MCSI_INT_WIDEN(i) MCSI_WIDEN(mcsi_to_float(i))
 #define MCSI_TRUNC_D(x) mcsi_trunc(MCSI_NARROW(x))
 #define MCSI_MAX_D(x, y) MCSI_WIDEN(mcsi_max(MCSI_NARROW(x), mcs_set(y)))
 MCSI_CORE mcs_f mcsi_sel(mcs_i m, mcs_f a, mcs_f b) { return (mcs_f)(((mcs_i)a & m) | ((mcs_i)b & ~m)); }
-/* The second of both where one is NaN, as the instructions have it; clang makes those of the plain text, gcc takes their names. */
+
+/* clang makes the instructions for the larger and the smaller of the plain text; gcc has to be told their names. */
 #if defined(MCSI_X86) && !defined(__clang__) && MCSI_W == 4
 MCSI_CORE mcs_f mcsi_max(mcs_f a, mcs_f b) { return __builtin_ia32_maxps(a, b); }
 MCSI_CORE mcs_f mcsi_min(mcs_f a, mcs_f b) { return __builtin_ia32_minps(a, b); }
@@ -1547,6 +1570,7 @@ MCSI_CORE mcs_f mcsi_min(mcs_f a, mcs_f b) { return __builtin_ia32_minps512_mask
 MCSI_CORE mcs_f mcsi_max(mcs_f a, mcs_f b) { return mcsi_sel(a > b, a, b); }
 MCSI_CORE mcs_f mcsi_min(mcs_f a, mcs_f b) { return mcsi_sel(a < b, a, b); }
 #endif
+
 MCSI_CORE mcs_f mcsi_sqrt(mcs_f x) {
 #if defined(MCSI_ELEMENTWISE_SQRT)
     return __builtin_elementwise_sqrt(x);
@@ -1559,24 +1583,28 @@ MCSI_CORE mcs_f mcsi_sqrt(mcs_f x) {
 #elif defined(MCSI_AVX512)
     return __builtin_ia32_sqrtps512_mask(x, x, -1, 4);
 #elif defined(MCSI_X86)
-    mcs4_f part[MCSI_W / 4];
-    int k;
-    MCSI_COPY(part, &x, sizeof x);
-    for (k = 0; k < MCSI_W / 4; k++) part[k] = __builtin_ia32_sqrtps(part[k]);
-    MCSI_COPY(&x, part, sizeof x);
+    mcs4_f quarter[MCSI_W / 4]; /* four lanes each */
+    MCSI_COPY(quarter, &x, sizeof x);
+    for (int k = 0; k < MCSI_W / 4; k++) quarter[k] = __builtin_ia32_sqrtps(quarter[k]);
+    MCSI_COPY(&x, quarter, sizeof x);
     return x;
 #else
-    int k;
-    for (k = 0; k < MCSI_W; k++) x[k] = mcsi_sqrt_f(x[k]);
+    for (int k = 0; k < MCSI_W; k++) x[k] = mcsi_sqrt_f(x[k]);
     return x;
 #endif
 }
+
 #endif
 
-/* Bitwise choice, m = 0 or -1 (all bits): for choices that a branch predictor could not learn. */
+/* The mask that is set in all lanes. */
+MCSI_CORE mcs_i mcsi_always(void) { return mcs_set(0.0f) == mcs_set(0.0f); }
+
+/* a where all bits of m are set, b where none is: no mask, but bits in the scalar pass, too. For choices that a branch
+ * predictor could not learn. */
 MCSI_CORE mcs_f mcsi_blend(mcs_i m, mcs_f a, mcs_f b) {
     return mcsi_from_bits((mcsi_bits(a) & m) | (mcsi_bits(b) & ~m));
 }
+
 #if MCSI_W == 1 && defined(MCSI_GNU)
 MCSI_CORE float mcsi_abs(float x) { return __builtin_fabsf(x); }
 MCSI_CORE float mcsi_with_sign(float magnitude, float sign) { return __builtin_copysignf(magnitude, sign); }
@@ -1586,42 +1614,9 @@ MCSI_CORE mcs_f mcsi_with_sign(mcs_f magnitude, mcs_f sign) {
     return mcsi_from_bits((mcsi_bits(magnitude) & 0x7fffffff) | (mcsi_bits(sign) & (-0x7fffffff - 1)));
 }
 #endif
-/* A random number made safe: its value clamped into [0, 1 - 2^-24], NaN to 0; *ok keeps only lanes that were in [0,1). */
-MCSI_CORE mcs_f mcsi_sane_u(mcs_f u, mcs_i *ok) {
-#if MCSI_W == 1
-    if (u > 0.0f && u < 1.0f) return u;
-#endif
-    MCSI_REQUIRE(u >= 0.0f && u < 1.0f);
-    const mcs_f v = mcsi_min(mcsi_max(u, mcs_set(0.0f)), mcs_set(0.99999994f));
-    *ok = *ok & (v == u);
-    return v;
-}
-/* A density or weight made safe: x where ok and x > 0 (so not NaN), at most FLT_MAX, else 0. */
-MCSI_CORE mcs_f mcsi_sane_result(mcs_i ok, mcs_f x) {
-#if MCSI_W == 1
-    return ok && x > 0.0f ? mcsi_min(x, FLT_MAX) : 0.0f;
-#else
-    return mcsi_sel(ok & (x > 0.0f), mcsi_min(x, mcs_set(FLT_MAX)), mcs_set(0.0f));
-#endif
-}
-/* A parameter made safe: x within [lo, hi] where x > 0 or x >= 0 holds as `ok` says, else `lo`. */
-MCSI_CORE mcs_f mcsi_sane_parameter(mcs_i ok, mcs_f x, float lo, float hi) {
-    return mcsi_sel(ok, mcsi_min(mcsi_max(x, mcs_set(lo)), mcs_set(hi)), mcs_set(lo));
-}
-/* x / y, x >= 0 and y > 0, but FLT_MAX where it would overflow. */
-MCSI_CORE mcs_f mcsi_quotient(mcs_f x, mcs_f y) {
-#if MCSI_W == 1
-    return y >= 1.0f || x < y * 3.40282266e38f ? x / y : FLT_MAX;
-#else
-    const mcs_i fits = (y >= 1.0f) | (x < mcsi_min(y, mcs_set(1.0f)) * 3.40282266e38f);
-    return mcsi_sel(fits, x, mcs_set(FLT_MAX)) / mcsi_sel(fits, y, mcs_set(1.0f));
-#endif
-}
-/* Lengths, rates and radii whose squares and inverses are floats. */
-MCSI_CORE mcs_i mcsi_scale_ok(mcs_f scale) { return (scale >= 1e-18f) & (scale <= 1e18f); }
-MCSI_CORE mcs_i mcsi_always(void) { return mcs_set(0.0f) == mcs_set(0.0f); }
 
-/* x as a float in memory holds it: where expressions keep more digits (x87), compilers leave them to variables as well. */
+/* x as a float in memory holds it. Where expressions keep more digits (x87), compilers leave them to variables as
+ * well. */
 MCSI_CORE mcs_f mcsi_stored(mcs_f x) {
 #if MCSI_FLT_EVAL == 2
     volatile float memory = x;
@@ -1630,13 +1625,52 @@ MCSI_CORE mcs_f mcsi_stored(mcs_f x) {
     return x;
 #endif
 }
-/* ---- vector maths: own polynomials, the same in every width ------------------------------------------------------------------
- * Minimax fits with float coefficients, summed in pairs (Estrin), as a scalar caller waits for the longest chain of operations.
- * Errors in ulp are the largest found in dense sweeps of the whole range (tests/test_math.c). */
 
-/* clang-format off */
-/* x to the nearest multiple of step, ties to even, and *k, which multiple; |x| < 2^22 step. `big` is 1.5 * 2^23 step: the sum has
- * room for nothing below step. Where compilers may take the difference for x itself it goes through *k. */
+/* x / y for x >= 0 and y > 0, but FLT_MAX where that would overflow. */
+MCSI_CORE mcs_f mcsi_quotient(mcs_f x, mcs_f y) {
+#if MCSI_W == 1
+    return y >= 1.0f || x < y * 3.40282266e38f ? x / y : FLT_MAX;
+#else
+    const mcs_i fits = (y >= 1.0f) | (x < mcsi_min(y, mcs_set(1.0f)) * 3.40282266e38f);
+    return mcsi_sel(fits, x, mcs_set(FLT_MAX)) / mcsi_sel(fits, y, mcs_set(1.0f));
+#endif
+}
+
+/* Is a lane of the mask set? For detours that few samples need. Compilers are told so, because the detours would cost
+ * registers. */
+MCSI_CORE int mcsi_rarely(mcs_i m) {
+#if MCSI_W == 1 && defined(MCSI_GNU)
+    return (int)__builtin_expect(m, 0);
+#elif MCSI_W == 1
+    return m;
+#elif defined(MCSI_REDUCE_OR)
+    return (int)__builtin_expect(__builtin_reduce_or(m) != 0, 0);
+#elif defined(MCSI_X86) && MCSI_W == 4
+    return (int)__builtin_expect(__builtin_ia32_movmskps((mcs_f)m), 0);
+#elif defined(MCSI_AVX)
+    return (int)__builtin_expect(__builtin_ia32_movmskps256((mcs_f)m), 0);
+#elif defined(MCSI_AVX512) && !defined(__clang__)
+    return (int)__builtin_expect(__builtin_ia32_ptestmd512(m, m, 0xffff), 0);
+#else
+    uint64_t pair[MCSI_W / 2]; /* two lanes each */
+    uint64_t any = 0;
+    MCSI_COPY(pair, &m, sizeof m);
+    for (int k = 0; k < MCSI_W / 2; k++) any |= pair[k];
+    return (int)__builtin_expect(any != 0, 0);
+#endif
+}
+
+/* ==== [maths] elementary functions, the same in every width =======================================================
+ * Polynomials are minimax fits with float coefficients. They are summed in pairs (Estrin's scheme), because a scalar
+ * caller waits for the longest chain of operations. Each stays one expression: clang contracts a*b + c within
+ * expressions only, so that more statements would change its bits. Errors in ulp are the largest that dense sweeps of
+ * the whole range found (tests/test_math.c). */
+
+/* ---- rounding to integers ---- */
+
+/* x rounded to the nearest multiple of step, ties to even; *k becomes the number of the multiple. |x| < 2^22 step.
+ * `big` must be 1.5 2^23 step: the last bit of floats of that size counts step, so that the sum rounds x as is wanted.
+ * Where compilers may take (x + big) - big for x, the multiple is computed from *k. */
 MCSI_CORE mcs_f mcsi_to_grid(mcs_f x, float step, float big, mcs_i *k) {
     const mcs_f sum = x + big;
     *k = mcsi_bits(sum) - mcsi_bits(mcs_set(big));
@@ -1648,83 +1682,103 @@ MCSI_CORE mcs_f mcsi_to_grid(mcs_f x, float step, float big, mcs_i *k) {
 #endif
 }
 
-/* The same for doubles of either sign, and for those in [-151, 0] where the difference might be taken for x. */
+/* A double rounded to the nearest integer. Where compilers may take the difference for x, it must be below 0, and what
+ * is below -151 becomes -151. */
 #if defined(MCSI_SUMS_MAY_MOVE) || MCSI_FLT_EVAL == 2
 #define MCSI_ROUND_D(x) MCSI_INT_WIDEN(MCSI_TRUNC_D(MCSI_MAX_D(x, -151.0) - 0.5))
 #else
 #define MCSI_ROUND_D(x) (((x) + 6755399441055744.0) - 6755399441055744.0)
 #endif
-/* (sin, cos)(2 pi t), t in [-1/8, 1]. The reduction to an eighth of a turn is exact. 1.4 ulp. *behind is set within an eighth of a
- * turn from half a turn, where *one_plus is 1 + cos without its cancellation. */
-MCSI_CORE void mcsi_sincos_behind(mcs_f t, mcs_f *sine, mcs_f *cosine, mcs_i *behind, mcs_f *one_plus) {
+
+/* ---- angles, in turns ---- */
+
+/* sine and cosine become those of 2 pi t, t in [-1/8, 1]; 1.4 ulp. *opposite is set where t is within an eighth of a
+ * turn of half a turn. There, *one_plus is 1 + cos(2 pi t), computed without cancellation.
+ *
+ * t = k/4 + r with |r| <= 1/8, which is exact. For odd k sine and cosine change places. The sine changes its sign for
+ * the k of 2 and 3, the cosine for those of 1 and 2. Where k = 2, the cosine is -cos(2 pi r), and 1 plus it is the
+ * negative of cos(2 pi r) - 1. */
+MCSI_CORE void mcsi_sincos_behind(mcs_f t, mcs_f *sine, mcs_f *cosine, mcs_i *opposite, mcs_f *one_plus) {
     mcs_i k;
     const mcs_f r = t - mcsi_to_grid(t, 0.25f, 3145728.0f, &k);
     const mcs_f z = r * r;
     const mcs_f zz = z * z;
     const mcs_f s = r * (6.28318548f + ((-1.95191802e-07f + z * -41.3416634f) + zz * (81.5926895f + z * -75.4075546f)));
-    const mcs_f less = z * ((-19.7392082f + z * 64.9391479f) + zz * (-85.4245148f + z * 58.6202126f));
-    const mcs_f c = 1.0f + less;
+    const mcs_f c_minus_1 = z * ((-19.7392082f + z * 64.9391479f) + zz * (-85.4245148f + z * 58.6202126f));
+    const mcs_f c = 1.0f + c_minus_1;
     const mcs_i swap = -(k & 1);
     *sine = mcsi_from_bits(mcsi_bits(mcsi_blend(swap, c, s)) ^ (mcs_i)((mcs_u)(k & 2) << 30));
     *cosine = mcsi_from_bits(mcsi_bits(mcsi_blend(swap, s, c)) ^ (mcs_i)((mcs_u)((k + 1) & 2) << 30));
-    *behind = k == 2;
-    *one_plus = -less;
+    *opposite = k == 2;
+    *one_plus = -c_minus_1;
 }
 MCSI_CORE void mcsi_sincos_turns(mcs_f t, mcs_f *sine, mcs_f *cosine) {
-    mcs_i behind;
+    mcs_i opposite;
     mcs_f one_plus;
-    mcsi_sincos_behind(t, sine, cosine, &behind, &one_plus);
+    mcsi_sincos_behind(t, sine, cosine, &opposite, &one_plus);
 }
 
-/* atan2(y, x) in turns, [0, 1 - 2^-24]; (0, 0) gives 0. Absolute error below 2^-23 turns, relative 1.5e-7 in the first octant. */
+/* The angle of (x, y) in turns, in [0, 1 - 2^-24]; 0 for (0, 0). Its absolute error is below 2^-23 turns, its relative
+ * one 1.5e-7 in the first octant. The polynomial is the arctangent there; then the angle is mirrored at the diagonal,
+ * at the y axis and at the x axis where need be. */
 MCSI_CORE mcs_f mcsi_atan2_turns(mcs_f y, mcs_f x) {
-    const mcs_f ax = mcsi_abs(x);
-    const mcs_f ay = mcsi_abs(y);
-    const mcs_f big = mcsi_max(ax, ay);
-    const mcs_f a = mcsi_min(ax, ay) / mcsi_max(big, mcs_set(FLT_MIN));
+    const mcs_f abs_x = mcsi_abs(x);
+    const mcs_f abs_y = mcsi_abs(y);
+    const mcs_f longer = mcsi_max(abs_x, abs_y);
+    const mcs_f a = mcsi_min(abs_x, abs_y) / mcsi_max(longer, mcs_set(FLT_MIN));
     const mcs_f z = a * a;
+    /* clang-format off */
     mcs_f t = a * (0.159154937f + z * (-0.0530508421f + z * (0.0318125151f + z * (-0.0225589965f + z * (0.016769575f +
-               z * (-0.0116160437f + z * (0.00643095793f + z * (-0.00234468561f + z * 0.000402584235f))))))));
-    t = mcsi_sel(ay > ax, 0.25f - t, t);
+              z * (-0.0116160437f + z * (0.00643095793f + z * (-0.00234468561f + z * 0.000402584235f))))))));
+    /* clang-format on */
+    t = mcsi_sel(abs_y > abs_x, 0.25f - t, t);
     t = mcsi_sel(x < 0.0f, 0.5f - t, t);
     t = mcsi_sel(y < 0.0f, 1.0f - t, t);
     return mcsi_min(t, mcs_set(0.99999994f));
 }
 
-/* The exponent of a positive normal float's bits, for a significand in [sqrt(1/2), sqrt(2)), in its place: 2^23 of it. */
-MCSI_CORE mcs_i mcsi_exponent(mcs_i i) { return (i - 0x3f3504f3) & (-0x7fffffff - 1 + 0x7f800000); }
-/* ln(1 + f) + k ln(2), f in [sqrt(1/2) - 1, sqrt(2) - 1], k in its place. */
-MCSI_CORE mcs_f mcsi_log_series(mcs_f f, mcs_i k) {
-    const mcs_f e = mcsi_to_float(k);
+/* ---- logarithms ----
+ * x = 2^k (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)), and ln(x) = k ln 2 + f - f^2/2 + f^3 p(f). ln 2 is the sum of two
+ * floats. The first has so few bits that its product with k is exact. k stays in the bits where a float has its
+ * exponent; as an integer that is 2^23 k, so that ln 2 is divided by 2^23. */
+
+/* 2^23 k for the bits of a positive normal float. 0x3f3504f3 are the bits of sqrt(1/2). */
+MCSI_CORE mcs_i mcsi_exponent_bits(mcs_i i) { return (i - 0x3f3504f3) & (-0x7fffffff - 1 + 0x7f800000); }
+/* The sum above, for f and 2^23 k. */
+MCSI_CORE mcs_f mcsi_log_series(mcs_f f, mcs_i k_bits) {
+    const mcs_f e = mcsi_to_float(k_bits);
     const mcs_f ff = f * f;
     const mcs_f p = ((0.333333313f + f * -0.250008196f) + ff * (0.200012416f + f * -0.166234091f)) +
-               ff * ff * ((0.142015815f + f * -0.131596133f) + ff * (0.127621993f + f * -0.0763639957f));
+                    ff * ff * ((0.142015815f + f * -0.131596133f) + ff * (0.127621993f + f * -0.0763639957f));
     return e * (0.693145752f / 8388608) + (f + (f * ff * p + (e * (1.42860677e-06f / 8388608) - 0.5f * ff)));
 }
-/* ln(x), normal x > 0. 1 ulp. */
+/* ln(x), normal x > 0; 1 ulp. */
 MCSI_CORE mcs_f mcsi_log(mcs_f x) {
     const mcs_i i = mcsi_bits(x);
-    const mcs_i k = mcsi_exponent(i);
-    return mcsi_log_series(mcsi_from_bits(i - k) - 1.0f, k);
+    const mcs_i k_bits = mcsi_exponent_bits(i);
+    return mcsi_log_series(mcsi_from_bits(i - k_bits) - 1.0f, k_bits);
 }
-/* ln(w + c) for w in [FLT_MIN, 1e38] and a correction |c| <= ulp(w). 1.5 ulp. */
+/* ln(w + c), w in [FLT_MIN, 1e38], for a correction c of at most an ulp of w; 1.5 ulp. c / 2^k goes to f. */
 MCSI_CORE mcs_f mcsi_log_of_sum(mcs_f w, mcs_f c) {
     const mcs_i i = mcsi_bits(w);
-    const mcs_i k = mcsi_exponent(i);
-    return mcsi_log_series((mcsi_from_bits(i - k) - 1.0f) + c * mcsi_from_bits(0x3f800000 - k), k);
+    const mcs_i k_bits = mcsi_exponent_bits(i);
+    return mcsi_log_series((mcsi_from_bits(i - k_bits) - 1.0f) + c * mcsi_from_bits(0x3f800000 - k_bits), k_bits);
 }
-/* ln(1 + x), x in (-1, 1e38]. */
+/* ln(1 + x), x in (-1, 1e38]. What the rounding of 1 + x loses is the correction. */
 MCSI_CORE mcs_f mcsi_log1p(mcs_f x) {
     const mcs_f w = mcsi_stored(1.0f + x);
     return mcsi_log_of_sum(w, x - (w - 1.0f));
 }
-/* ln(1 - u), u in [0,1). */
+/* ln(1 - u), u in [0,1), in the same way. */
 MCSI_CORE mcs_f mcsi_log1m(mcs_f u) {
     const mcs_f w = mcsi_stored(1.0f - u);
     return mcsi_log_of_sum(w, (1.0f - w) - u);
 }
 
-/* The reduction of both exponentials, x in [-104, 0]: returns e^r - 1 for r = x - k ln 2, |r| <= ln(2)/2. */
+/* ---- exponentials ----
+ * x = k ln 2 + r with |r| <= ln(2)/2, ln 2 in two floats as above, and e^x = 2^k (1 + (e^r - 1)). */
+
+/* e^r - 1; *k becomes k. x in [-104, 0]. */
 MCSI_CORE mcs_f mcsi_exp_reduced(mcs_f x, mcs_i *k) {
     const mcs_f e = mcsi_to_grid(x * 1.44269504f, 1.0f, 12582912.0f, k);
     const mcs_f r = (x - e * 0.693145752f) - e * 1.42860677e-06f;
@@ -1732,20 +1786,21 @@ MCSI_CORE mcs_f mcsi_exp_reduced(mcs_f x, mcs_i *k) {
     return r + rr * ((0.5f + r * 0.166666657f) +
                      rr * ((0.0416664928f + r * 0.00833354425f) + rr * (0.00139323424f + r * 0.00019763397f)));
 }
-/* x 2^k, x in [1/2, 2], k in [-190, 63], rounded once where the result is subnormal; 0 where not some, all bits of it. */
+/* x 2^k, x in [1/2, 2], k in [-190, 63]. A subnormal result is rounded once: k + 64 is a normal exponent, and 2^-64
+ * follows. All bits of `some` are set, or none for the result 0. */
 MCSI_CORE mcs_f mcsi_times_2_to(mcs_f x, mcs_i k, mcs_i some) {
 #if MCSI_W == 1
     if (k > -125) return x * mcsi_from_bits(((k + 127) << 23) & some);
 #endif
     return x * mcsi_from_bits(((k + 191) << 23) & some) * 5.42101086e-20f;
 }
-/* e^min(x, 0), subnormal results included; NaN gives 0. 1 ulp. */
+/* e^min(x, 0), subnormal results included; 0 for NaN; 1 ulp. */
 MCSI_CORE mcs_f mcsi_exp_neg(mcs_f x) {
     mcs_i k;
     const mcs_f q = mcsi_exp_reduced(mcsi_min(mcsi_max(x, mcs_set(-104.0f)), mcs_set(0.0f)), &k);
     return mcsi_stored(mcsi_times_2_to(1.0f + q, k, k | -1));
 }
-/* e^x and e^x - 1, x in [-80, 0]. 1 ulp. */
+/* e^x, x in [-80, 0]; *minus_one becomes e^x - 1; 1 ulp each. */
 MCSI_CORE mcs_f mcsi_exp_both(mcs_f x, mcs_f *minus_one) {
     mcs_i k;
     const mcs_f q = mcsi_exp_reduced(x, &k);
@@ -1754,102 +1809,142 @@ MCSI_CORE mcs_f mcsi_exp_both(mcs_f x, mcs_f *minus_one) {
     return (1.0f + q) * scale;
 }
 
-/* x^n, or x^(1/n) where root is set; x in [0,1], n in [0, 1e9 + 1] given as n - plus, plus 0 or 1. By binary logarithm, a series in
- * (m - 1)/(m + 1), and 2^r = cosh + sinh. In double, so that the product of exponent and logarithm loses nothing. 1 ulp. *over, for
- * roots, is x over the result, by 2^-r = cosh - sinh, relatively accurate where both are subnormal too. */
-MCSI_CORE mcs_f mcsi_pow_unit(mcs_f x, mcs_f n, double plus, int root, mcs_f *over) {
+/* ---- powers ---- */
+
+/* x^e, or x^(1/e) where `root` is set, for x in [0,1] and e = n + plus in [0, 1e9 + 1], plus 0 or 1; 1 ulp. For roots,
+ * *quotient becomes x over the result, with its relative accuracy even where both are subnormal.
+ *
+ * x = 2^k m, where x 2^24 is a normal float in any case. log2(m) is a series in s = (m - 1)/(m + 1). All is in double,
+ * so that the product of exponent and logarithm loses nothing. With the integer and the fractional part of that
+ * product, the result is 2^j 2^r. 2^r is the sum of its even and its odd part (cosh and sinh), and their difference is
+ * 2^-r. */
+MCSI_CORE mcs_f mcsi_pow_unit(mcs_f x, mcs_f n, double plus, int root, mcs_f *quotient) {
     const mcs_i i = mcsi_bits(x * 16777216.0f);
-    const mcs_i exponent = mcsi_exponent(i);
-    const mcs_i some = -i >> 31;
-    const mcs_f head = mcsi_from_bits(i - exponent);
-    const mcsi_d m = MCSI_WIDEN(head);
+    const mcs_i k_bits = mcsi_exponent_bits(i);
+    const mcs_i some = -i >> 31; /* all bits, or none where x is 0 */
+    const mcs_f significand = mcsi_from_bits(i - k_bits);
+    const mcs_i k = (k_bits >> 23) - 24;
+    const mcsi_d m = MCSI_WIDEN(significand);
     const mcsi_d e = MCSI_WIDEN(n) + plus;
     const mcsi_d s = (m - 1.0) / (m + 1.0);
-    mcsi_d z = s * s;
-    const mcs_i k = (exponent >> 23) - 24;
-    mcsi_d y = (MCSI_INT_WIDEN(k) + s * 2.885390081790086) +
-        s * z * ((0.9617966733414772 + z * 0.577083585037472) + z * z * (0.4116727148603131 + z * 0.3407301768542072));
-    y = root ? y * (1.0 / e) : y * e;
+    const mcsi_d ss = s * s;
+    const mcsi_d log2_x =
+        (MCSI_INT_WIDEN(k) + s * 2.885390081790086) +
+        s * ss *
+            ((0.9617966733414772 + ss * 0.577083585037472) + ss * ss * (0.4116727148603131 + ss * 0.3407301768542072));
+    const mcsi_d y = root ? log2_x * (1.0 / e) : log2_x * e;
     const mcsi_d whole = MCSI_ROUND_D(y);
     const mcs_i j = MCSI_TRUNC_D(root ? whole : MCSI_MAX_D(whole, -151.0));
     const mcsi_d r = y - whole;
-    z = r * r;
-    const mcsi_d even = (1.0 + z * 0.24022651084099645) + z * z * (0.009618030784745157 + z * 0.0001546973134150267);
-    const mcsi_d odd = r * ((0.6931471805350843 + z * 0.05550410975949026) + z * z * (0.001333342276368949 + z * 1.531643601070646e-05));
-    mcs_f q = mcsi_times_2_to(MCSI_NARROW(even + odd), j, some);
-    if (root) *over = mcsi_times_2_to(head * MCSI_NARROW(even - odd), k - j, some);
-    if (!root) q = mcsi_sel(MCSI_NARROW(y) > -151.0f, q, mcs_set(0.0f));
-    return plus > 0.0 ? q : mcsi_sel(n > 0.0f, q, mcs_set(1.0f));
+    const mcsi_d rr = r * r;
+    const mcsi_d even =
+        (1.0 + rr * 0.24022651084099645) + rr * rr * (0.009618030784745157 + rr * 0.0001546973134150267);
+    const mcsi_d odd = r * ((0.6931471805350843 + rr * 0.05550410975949026) +
+                            rr * rr * (0.001333342276368949 + rr * 1.531643601070646e-05));
+    mcs_f power = mcsi_times_2_to(MCSI_NARROW(even + odd), j, some);
+    if (root) *quotient = mcsi_times_2_to(significand * MCSI_NARROW(even - odd), k - j, some);
+    else power = mcsi_sel(MCSI_NARROW(y) > -151.0f, power, mcs_set(0.0f));
+    return plus > 0.0 ? power : mcsi_sel(n > 0.0f, power, mcs_set(1.0f)); /* 0^0 is 1 */
 }
 
-/* Phi(-y) = erfc(y / sqrt 2) / 2, y >= 0: the lower tail of the normal distribution. 8 ulp. The square is split so that e^(-y^2/2)
- * keeps its relative accuracy in the far tail. */
+/* ---- the normal distribution ---- */
+
+/* Phi(-y), y >= 0, the lower tail: erfc(y / sqrt(2)) / 2; 8 ulp. It is e^(-y^2/2) g(y), with g a polynomial in
+ * v = 1/(1 + 0.35 y). The square of y's upper 12 bits is exact; what the sum of that and of the remainder loses is
+ * `lost`, and e^(sum + lost) = e^sum (1 + lost). So the exponential keeps its relative accuracy in the far tail. */
 MCSI_CORE mcs_f mcsi_normal_tail(mcs_f y) {
     const mcs_f c = mcsi_min(y, mcs_set(14.5f));
     const mcs_f v = 1.0f / (1.0f + 0.35f * c);
-    const mcs_f head = mcsi_from_bits(mcsi_bits(c) & ~0xfff);
-    const mcs_f hi = -0.5f * head * head;
-    const mcs_f lo = -0.5f * (c - head) * (c + head);
-    const mcs_f sum = hi + lo;
-    const mcs_f rest = (hi - sum) + lo;
+    const mcs_f upper = mcsi_from_bits(mcsi_bits(c) & ~0xfff);
+    const mcs_f exact = -0.5f * upper * upper;
+    const mcs_f remainder = -0.5f * (c - upper) * (c + upper);
+    const mcs_f sum = exact + remainder;
+    const mcs_f lost = (exact - sum) + remainder;
+    /* clang-format off */
     const mcs_f g = -1.45437423e-06f + v * (0.139653593f + v * (0.139561504f + v * (0.12138617f + v * (0.100589871f +
-               v * (-0.0131919663f + v * (0.146392867f + v * (-0.245529339f + v * (0.139402911f + v * -0.0282641724f))))))));
-    return mcsi_exp_neg(sum) * (g + g * rest);
+              v * (-0.0131919663f + v * (0.146392867f + v * (-0.245529339f + v * (0.139402911f + v * -0.0282641724f))))))));
+    /* clang-format on */
+    return mcsi_exp_neg(sum) * (g + g * lost);
 }
-/* The quantile of the normal distribution, p in [2^-126, 1). 6 ulp. */
+/* The x with Phi(x) = p, p in [2^-126, 1); 6 ulp. Within 3/8 of the median it is an odd polynomial in q = p - 1/2.
+ * Outside it is t minus a polynomial in 1/(1 + 0.3 t), where t = sqrt(-2 ln(p)) for the nearer tail. Polynomials are in
+ * two halves. */
 MCSI_CORE mcs_f mcsi_normal_quantile(mcs_f p) {
     const mcs_f q = p - 0.5f;
     const mcs_f z = q * q;
     const mcs_f zz = z * z;
-    mcs_f high = (-5471.3335f + z * 53841.8203f) + zz * (-247008.5f + z * 567190.25f);
-    mcs_f low = (5.76870966f + z * 16.0235748f) + zz * (30.976078f + z * 553.157715f);
-    const mcs_f centre = q * (2.50662827f + (z * 2.62494898f + zz * (low + zz * zz * high)));
+    const mcs_f centre_4_7 = (-5471.3335f + z * 53841.8203f) + zz * (-247008.5f + z * 567190.25f);
+    const mcs_f centre_0_3 = (5.76870966f + z * 16.0235748f) + zz * (30.976078f + z * 553.157715f);
+    const mcs_f centre = q * (2.50662827f + (z * 2.62494898f + zz * (centre_0_3 + zz * zz * centre_4_7)));
 #if MCSI_W == 1
     if (z <= 0.140625f) return centre;
 #endif
     const mcs_f t = mcsi_sqrt(-2.0f * mcsi_log(mcsi_min(mcsi_min(p, 1.0f - p), mcs_set(0.125f))));
     const mcs_f v = 1.0f / (1.0f + 0.3f * t);
     const mcs_f vv = v * v;
-    high = (-3.61969185f + v * -1.00470293f) + vv * (9.96816254f + v * -12.2509031f + vv * 5.70157146f);
-    low = (0.0152368257f + v * 1.39166832f) + vv * (-1.32426488f + v * 3.72064948f);
-    const mcs_f x = t - (low + vv * vv * high);
+    const mcs_f tail_4_8 = (-3.61969185f + v * -1.00470293f) + vv * (9.96816254f + v * -12.2509031f + vv * 5.70157146f);
+    const mcs_f tail_0_3 = (0.0152368257f + v * 1.39166832f) + vv * (-1.32426488f + v * 3.72064948f);
+    const mcs_f x = t - (tail_0_3 + vv * vv * tail_4_8);
     return mcsi_sel(z <= 0.140625f, centre, mcsi_with_sign(x, q));
 }
 
-/* clang-format on */
-/* ---- points ------------------------------------------------------------------------------------------------------------------ */
+#if MCSI_W == 1
+/* ---- double precision, for lanes that are computed again one by one: all widths share it ---- */
 
+/* sine and cosine become those of 2 pi t, t in [0,1]; 1e-12. Taylor's series, innermost brackets first. */
+MCS_FN void mcsi_sincos_d(double t, double *sine, double *cosine) {
+    const int k = (int)(4.0 * t + 0.5);
+    const double x = 6.283185307179586 * (t - 0.25 * k);
+    const double z = x * x;
+    const double s_6 =
+        1.0 - z * (1.0 / 42) * (1.0 - z * (1.0 / 72) * (1.0 - z * (1.0 / 110) * (1.0 - z * (1.0 / 156))));
+    const double c_4 = 1.0 - z * (1.0 / 30) * (1.0 - z * (1.0 / 56) * (1.0 - z * (1.0 / 90) * (1.0 - z * (1.0 / 132))));
+    const double s = x * (1.0 - z * (1.0 / 6) * (1.0 - z * (1.0 / 20) * s_6));
+    const double c = 1.0 - z * (1.0 / 2) * (1.0 - z * (1.0 / 12) * c_4);
+    *sine = k & 1 ? c : s;
+    *cosine = k & 1 ? s : c;
+    if (k & 2) *sine = -*sine;
+    if ((k + 1) & 2) *cosine = -*cosine;
+}
+/* a cos(2 pi t) + b sin(2 pi t), accurate where it cancels. */
+MCS_FN float mcsi_project(double a, double b, float t) {
+    double s, c;
+    mcsi_sincos_d((double)t, &s, &c);
+    return (float)(a * c + b * s);
+}
+#endif
+
+#define MCSI_1_PI 0.318309873f
+#define MCSI_1_2PI 0.159154937f
+#define MCSI_1_4PI 0.0795774683f
+
+/* ==== [vectors] points and directions ============================================================================= */
+
+/* In lanes, the structs of part I. */
 #if MCSI_W > 1
 typedef struct {
     mcs_f x, y;
 } mcs_vec2;
-#endif
-#if MCSI_W > 1
 typedef struct {
     mcs_f x, y, z;
 } mcs_vec3;
-#endif
-#if MCSI_W > 1
 typedef struct {
     mcs_f x, pdf;
 } mcs_sample1;
-#endif
-#if MCSI_W > 1
 typedef struct {
     mcs_f x, y, pdf;
 } mcs_sample2;
-#endif
-#if MCSI_W > 1
 typedef struct {
     mcs_vec3 w;
     mcs_f pdf;
 } mcs_dir;
-#endif
-#if MCSI_W > 1
 typedef struct {
     mcs_vec3 wi;
     mcs_f pdf, weight;
 } mcs_brdf;
+typedef struct {
+    mcs_vec3 s, t, n;
+} mcs_frame;
 #endif
 
 MCSI_CORE mcs_vec2 mcsi_vec2(mcs_f x, mcs_f y) {
@@ -1866,17 +1961,48 @@ MCSI_CORE mcs_vec3 mcsi_vec3(mcs_f x, mcs_f y, mcs_f z) {
     return v;
 }
 MCSI_CORE mcs_f mcsi_dot(mcs_vec3 a, mcs_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-/* The same in double, for where it cancels. */
+/* The dot product in double, for where it cancels. */
 MCSI_CORE mcs_f mcsi_exact_dot(mcs_vec3 a, mcs_vec3 b) {
     return MCSI_NARROW(MCSI_WIDEN(a.x) * MCSI_WIDEN(b.x) + MCSI_WIDEN(a.y) * MCSI_WIDEN(b.y) +
                        MCSI_WIDEN(a.z) * MCSI_WIDEN(b.z));
 }
-/* What MCS_ASSERT takes for a unit vector. A careful caller normalises in float, which leaves |w|^2 within 2^-21 of 1, and turns
- * the vector by float frames. A frame is orthonormal to 4 ulp (12 x 2^-24 in |w|^2) and the sums of three products round (6 x
- * 2^-24): each moves |w|^2 by less than 2^-19, 100 of them by 2e-4. A reciprocal root of 12 bits, as processors have it, leaves
- * 2^-10.4. All of these pass. */
+
+/* ==== [sane] bad input made harmless ==============================================================================
+ * Each function returns something good to go on with, and takes lanes that were bad out of the mask *ok. Results are 0
+ * where the mask is not set. In the scalar pass mcsi_sane_u branches: where it stands among other lines can make a
+ * sampler 16 % slower or faster. */
+
+/* u clamped into [0, 1 - 2^-24], NaN to 0. Good is [0,1). */
+MCSI_CORE mcs_f mcsi_sane_u(mcs_f u, mcs_i *ok) {
+#if MCSI_W == 1
+    if (u > 0.0f && u < 1.0f) return u;
+#endif
+    MCSI_REQUIRE(u >= 0.0f && u < 1.0f);
+    const mcs_f v = mcsi_min(mcsi_max(u, mcs_set(0.0f)), mcs_set(0.99999994f));
+    *ok = *ok & (v == u);
+    return v;
+}
+/* A density or a weight: x where ok is set and x > 0, which NaN is not; at most FLT_MAX; 0 elsewhere. */
+MCSI_CORE mcs_f mcsi_sane_result(mcs_i ok, mcs_f x) {
+#if MCSI_W == 1
+    return ok && x > 0.0f ? mcsi_min(x, FLT_MAX) : 0.0f;
+#else
+    return mcsi_sel(ok & (x > 0.0f), mcsi_min(x, mcs_set(FLT_MAX)), mcs_set(0.0f));
+#endif
+}
+/* x clamped into [lo, hi]; lo where ok is not set. */
+MCSI_CORE mcs_f mcsi_sane_parameter(mcs_i ok, mcs_f x, float lo, float hi) {
+    return mcsi_sel(ok, mcsi_min(mcsi_max(x, mcs_set(lo)), mcs_set(hi)), mcs_set(lo));
+}
+/* A length, rate or radius whose square and inverse are floats. */
+MCSI_CORE mcs_i mcsi_scale_ok(mcs_f scale) { return (scale >= 1e-18f) & (scale <= 1e18f); }
+
+/* What MCS_ASSERT takes for the squared length of a unit vector. A careful caller normalises in float, which leaves it
+ * within 2^-21 of 1, and turns the vector by float frames. A frame is orthonormal within 4 ulp (12 x 2^-24 in the
+ * square) and the sums of three products round (6 x 2^-24). Each turn so moves it by less than 2^-19, and 100 turns by
+ * 2e-4. A reciprocal root of 12 bits, as processors have it, leaves 2^-10.4. All of these pass. */
 #define MCSI_IS_UNIT(length2) ((length2) >= 0.999f && (length2) <= 1.001f)
-/* A direction made safe: bad ones (not about unit length, NaN) become +z and leave *ok. */
+/* A direction of any length in (1/2, 2), and +z in place of a bad one. */
 MCSI_CORE mcs_vec3 mcsi_sane_direction(mcs_vec3 w, mcs_i *ok) {
     const mcs_f length2 = mcsi_dot(w, w);
     const mcs_i good = (length2 > 0.25f) & (length2 < 4.0f);
@@ -1885,7 +2011,7 @@ MCSI_CORE mcs_vec3 mcsi_sane_direction(mcs_vec3 w, mcs_i *ok) {
     return mcsi_vec3(mcsi_sel(good, w.x, mcs_set(0.0f)), mcsi_sel(good, w.y, mcs_set(0.0f)),
                      mcsi_sel(good, w.z, mcs_set(1.0f)));
 }
-/* The same for a direction that must lie above the surface. */
+/* The same, but a direction below the surface is bad, too. */
 MCSI_CORE mcs_vec3 mcsi_sane_upper(mcs_vec3 w, mcs_i *ok) {
     const mcs_f length2 = mcsi_dot(w, w);
     const mcs_i good = (length2 > 0.25f) & (length2 < 4.0f) & (w.z > 0.0f);
@@ -1894,23 +2020,39 @@ MCSI_CORE mcs_vec3 mcsi_sane_upper(mcs_vec3 w, mcs_i *ok) {
     return mcsi_vec3(mcsi_sel(good, w.x, mcs_set(0.0f)), mcsi_sel(good, w.y, mcs_set(0.0f)),
                      mcsi_sel(good, w.z, mcs_set(1.0f)));
 }
-/* All lanes alike: how the array forms spread the scalars of a call, and a direction of it. */
+
+/* What an inverse of two dimensions returns: (u1, u2) clamped into [0, 1 - 2^-24], (0, 0) where ok is not set. */
+MCSI_CORE mcs_vec2 mcsi_uv(mcs_i ok, mcs_f u1, mcs_f u2) {
+    const mcs_f largest = mcs_set(0.99999994f);
+    const mcs_f zero = mcs_set(0.0f);
+    return mcsi_vec2(mcsi_sel(ok, mcsi_min(mcsi_max(u1, zero), largest), zero),
+                     mcsi_sel(ok, mcsi_min(mcsi_max(u2, zero), largest), zero));
+}
+
+/* ==== [loops] what the loops of array functions consist of ======================================================== */
+
+/* A scalar argument of the call in all lanes. */
 MCSI_CORE mcs_vec3 mcsi_spread(mcsi_scalar_vec3 v) { return mcsi_vec3(mcs_set(v.x), mcs_set(v.y), mcs_set(v.z)); }
+/* The same for a direction, whose length is looked at here, once for the call. */
 MCSI_CORE mcs_vec3 mcsi_spread_direction(mcsi_scalar_vec3 w) {
     MCS_ASSERT(MCSI_IS_UNIT(w.x * w.x + w.y * w.y + w.z * w.z));
     return mcsi_spread(w);
 }
 
 #ifdef MCSI_LOOPS
-/* What the loops of array functions consist of. MCSI_EACH is two loops, so that the inner one has a plain head: gcc then takes
- * divisions and roots that are constant out of it. */
+/* Runs the statement behind it for all vectors of the batch b, and once more for a copy of what does not fill one. It
+ * is two loops, so that the inner one has a plain head: gcc then takes divisions and roots that are constant out of
+ * it. */
 #define MCSI_EACH(b)                                                       \
     for ((b).more = 1; (b).more; (b).more = mcsi_batch_rest(&(b), MCSI_W)) \
         for (; (b).i + MCSI_W <= (b).n; (b).i += MCSI_W)
+
+/* The lanes of input array k, and lanes to output array k, which may be NULL. */
 MCSI_CORE mcs_f mcsi_in(const mcsi_batch *b, int k) { return mcs_load(b->in[k] + b->i); }
 MCSI_CORE void mcsi_out(const mcsi_batch *b, int k, mcs_f v) {
     if (b->out[k]) mcs_store(b->out[k] + b->i, v);
 }
+/* The members of a sample to output arrays, in their order. */
 MCSI_CORE void mcsi_out_sample1(const mcsi_batch *b, mcs_sample1 s) {
     mcsi_out(b, 0, s.x);
     mcsi_out(b, 1, s.pdf);
@@ -1935,23 +2077,27 @@ MCSI_CORE void mcsi_out_brdf(const mcsi_batch *b, mcs_brdf s) {
 }
 #endif
 
-#define MCSI_PI 3.14159274f
-#define MCSI_1_PI 0.318309873f
-#define MCSI_1_2PI 0.159154937f
-#define MCSI_1_4PI 0.0795774683f
+/* ================================================================================================================== */
+/* PART III: SAMPLERS                                                                                                 */
+/* ================================================================================================================== */
 
-/* ==== [rng] bodies */
+/* ==== [rng] bodies ================================================================================================ */
 
 MCSI_FN mcs_f mcs_u01(mcs_u bits) { return mcsi_to_float((mcs_i)(bits >> 8)) * 5.9604644775390625e-08f; }
 MCSI_FN mcs_f mcs_u01_open(mcs_u bits) { return (mcsi_to_float((mcs_i)(bits >> 9)) + 0.5f) * 1.1920928955078125e-07f; }
 
 #if MCSI_W == 1
+/* ---- PCG32 ----
+ * A linear congruential generator modulo 2^64. Its output is made of the upper bits, which are random, rotated by the
+ * uppermost five, which are the most random. */
+
+#define MCSI_PCG32_MULTIPLIER 6364136223846793005u
 MCS_FN uint32_t mcs_pcg32_next(mcs_pcg32 *r) {
     const uint64_t s = r->state;
     const uint32_t x = (uint32_t)(((s >> 18) ^ s) >> 27);
-    const uint32_t rot = (uint32_t)(s >> 59);
-    r->state = s * 6364136223846793005u + r->inc;
-    return (x >> rot) | (x << ((32u - rot) & 31u));
+    const uint32_t turn = (uint32_t)(s >> 59);
+    r->state = s * MCSI_PCG32_MULTIPLIER + r->inc;
+    return (x >> turn) | (x << ((32u - turn) & 31u));
 }
 MCS_FN mcs_pcg32 mcs_pcg32_make(uint64_t seed, uint64_t stream) {
     mcs_pcg32 r;
@@ -1963,9 +2109,10 @@ MCS_FN mcs_pcg32 mcs_pcg32_make(uint64_t seed, uint64_t stream) {
     return r;
 }
 MCS_FN float mcs_pcg32_float(mcs_pcg32 *r) { return mcs_u01(mcs_pcg32_next(r)); }
-/* Brown 1994, "Random number generation with arbitrary strides". */
+/* A step is s -> mul s + add, and so is any number of steps. Two of them are s -> mul^2 s + (mul + 1) add. The steps of
+ * the powers of two in delta are joined (Brown 1994, "Random number generation with arbitrary strides"). */
 MCS_FN void mcs_pcg32_advance(mcs_pcg32 *r, uint64_t delta) {
-    uint64_t mul = 6364136223846793005u;
+    uint64_t mul = MCSI_PCG32_MULTIPLIER;
     uint64_t add = r->inc;
     uint64_t all_mul = 1;
     uint64_t all_add = 0;
@@ -1987,17 +2134,21 @@ MCS_API void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
 }
 #endif
 
+/* ---- Philox ---- */
+
+/* *hi and *lo become the halves of the 64-bit product a k. Lanes of 32 bits are taken in two vectors of 64 bits, which
+ * hold the even and the odd ones. MCSI_MUL_HALVES is the product of the lower halves of such lanes; gcc does not see
+ * that their upper halves are 0 and is told the instruction. (Passes with loops have AVX2 where they have AVX.) */
 #if MCSI_W == 1
 MCSI_CORE void mcsi_mul_wide(uint32_t a, uint32_t k, uint32_t *hi, uint32_t *lo) {
-    const uint64_t p = (uint64_t)a * k;
-    *hi = (uint32_t)(p >> 32);
-    *lo = (uint32_t)p;
+    const uint64_t product = (uint64_t)a * k;
+    *hi = (uint32_t)(product >> 32);
+    *lo = (uint32_t)product;
 }
 #else
-/* 64-bit products of the lower halves of 64-bit lanes; gcc does not see that the upper halves are 0. */
 #if defined(MCSI_X86) && !defined(__clang__) && MCSI_W == 4
 #define MCSI_MUL_HALVES(a, b) ((mcsi_q)__builtin_ia32_pmuludq128((mcs_i)(a), (mcs_i)(b)))
-#elif defined(MCSI_AVX) && defined(MCSI_LOOPS) && !defined(__clang__) /* the passes with loops have AVX2 */
+#elif defined(MCSI_AVX) && defined(MCSI_LOOPS) && !defined(__clang__)
 #define MCSI_MUL_HALVES(a, b) ((mcsi_q)__builtin_ia32_pmuludq256((mcs_i)(a), (mcs_i)(b)))
 #elif defined(MCSI_AVX512) && !defined(__clang__)
 typedef long long mcsi_any __attribute__((vector_size(64)));
@@ -2009,18 +2160,19 @@ MCSI_CORE void mcsi_mul_wide(mcs_u a, uint32_t k, mcs_u *hi, mcs_u *lo) {
     const mcsi_q all = (mcsi_q)a;
     const mcsi_q zero = {0};
     const mcsi_q factor = zero + k;
-    const mcsi_q p = MCSI_MUL_HALVES(all, factor);
-    const mcsi_q q = MCSI_MUL_HALVES(all >> 32, factor);
-    *hi = (mcs_u)((p >> 32) | (q & ~(uint64_t)0xffffffffu));
-    *lo = (mcs_u)((p & 0xffffffffu) | (q << 32));
+    const mcsi_q even = MCSI_MUL_HALVES(all, factor);
+    const mcsi_q odd = MCSI_MUL_HALVES(all >> 32, factor);
+    *hi = (mcs_u)((even >> 32) | (odd & ~(uint64_t)0xffffffffu));
+    *lo = (mcs_u)((even & 0xffffffffu) | (odd << 32));
 }
 #undef MCSI_MUL_HALVES
 #endif
+
 /* The ten rounds on a block of four words. */
 MCSI_CORE void mcsi_philox_rounds(uint64_t key, mcs_u v[4]) {
     uint32_t k0 = (uint32_t)key;
     uint32_t k1 = (uint32_t)(key >> 32);
-    for (int round = 0; round < 10; round++, k0 += 0x9e3779b9u, k1 += 0xbb67ae85u) {
+    for (int round = 0; round < 10; round++) {
         mcs_u hi0, lo0;
         mcsi_mul_wide(v[0], 0xd2511f53u, &hi0, &lo0);
         mcs_u hi2, lo2;
@@ -2029,35 +2181,40 @@ MCSI_CORE void mcsi_philox_rounds(uint64_t key, mcs_u v[4]) {
         v[1] = lo2;
         v[2] = hi0 ^ v[3] ^ k1;
         v[3] = lo0;
+        k0 += 0x9e3779b9u;
+        k1 += 0xbb67ae85u;
     }
 }
+
 #if MCSI_W == 1
 MCS_FN mcs_philox4 mcs_philox(uint64_t key, uint64_t counter_lo, uint64_t counter_hi) {
-    mcs_philox4 c;
-    c.v[0] = (uint32_t)counter_lo;
-    c.v[1] = (uint32_t)(counter_lo >> 32);
-    c.v[2] = (uint32_t)counter_hi;
-    c.v[3] = (uint32_t)(counter_hi >> 32);
-    mcsi_philox_rounds(key, c.v);
-    return c;
+    mcs_philox4 words;
+    words.v[0] = (uint32_t)counter_lo;
+    words.v[1] = (uint32_t)(counter_lo >> 32);
+    words.v[2] = (uint32_t)counter_hi;
+    words.v[3] = (uint32_t)(counter_hi >> 32);
+    mcsi_philox_rounds(key, words.v);
+    return words;
 }
 MCS_FN mcs_pcg32 mcs_pcg32_for(uint64_t seed, uint64_t pixel, uint64_t sample) {
-    const mcs_philox4 c = mcs_philox(seed, pixel, sample);
+    const mcs_philox4 words = mcs_philox(seed, pixel, sample);
     mcs_pcg32 r;
-    r.state = (uint64_t)c.v[0] << 32 | c.v[1];
-    r.inc = ((uint64_t)c.v[2] << 32 | c.v[3]) | 1u;
+    r.state = (uint64_t)words.v[0] << 32 | words.v[1];
+    r.inc = ((uint64_t)words.v[2] << 32 | words.v[3]) | 1u;
     return r;
 }
 #endif
+
 #ifdef MCSI_LOOPS
-/* A lane is a block: 4 W numbers, turned from lanes of words into blocks of words on the way to the array. */
+/* A lane is a block. The 4 W numbers come as lanes of words and are written as blocks of words. */
 MCSI_CORE void mcsi_philox_blocks(uint64_t key, uint64_t counter, float *out) {
     mcs_u v[4];
     for (int lane = 0; lane < MCSI_W; lane++) {
         MCSI_LANE(v[0], lane) = (uint32_t)(counter + (unsigned)lane);
         MCSI_LANE(v[1], lane) = (uint32_t)((counter + (unsigned)lane) >> 32);
     }
-    v[3] = v[2] = v[0] & 0u;
+    v[2] = v[0] & 0u;
+    v[3] = v[2];
     mcsi_philox_rounds(key, v);
     float words[4][MCSI_W];
     for (int k = 0; k < 4; k++) mcs_store(words[k], mcs_u01(v[k]));
@@ -2070,18 +2227,22 @@ MCSI_CORE void mcsi_philox_blocks(uint64_t key, uint64_t counter, float *out) {
 }
 MCSI_LOOP void mcsi_philox_fill_loop(uint64_t key, uint64_t counter, size_t n, float *out) {
     if (!out) return;
-    for (; n >= 4 * MCSI_W; n -= 4 * MCSI_W, out += 4 * MCSI_W, counter += MCSI_W)
+    for (; n >= 4 * MCSI_W; n -= 4 * MCSI_W) {
         mcsi_philox_blocks(key, counter, out);
+        out += 4 * MCSI_W;
+        counter += MCSI_W;
+    }
     if (n) {
-        float rest[4 * MCSI_W];
-        mcsi_philox_blocks(key, counter, rest);
-        MCSI_COPY(out, rest, n * sizeof(float));
+        float last[4 * MCSI_W];
+        mcsi_philox_blocks(key, counter, last);
+        MCSI_COPY(out, last, n * sizeof(float));
     }
 }
 #endif
 
-/* ==== [points] bodies */
+/* ==== [points] bodies ============================================================================================= */
 
+/* A bijection of 32 bits that changes half of them on average for each bit that changes. */
 MCSI_CORE mcs_u mcsi_mix(mcs_u x) {
     x = (x ^ (x >> 17)) * 0xed5ad4bbu;
     x = (x ^ (x >> 11)) * 0xac4c1b51u;
@@ -2089,9 +2250,17 @@ MCSI_CORE mcs_u mcsi_mix(mcs_u x) {
     return x ^ (x >> 14);
 }
 MCSI_FN mcs_u mcs_hash(mcs_u a, mcs_u b) { return mcsi_mix(a ^ mcsi_mix(b + 0x9e3779b9u)); }
+/* The hash of what is scalar in every pass. */
 #if MCSI_W == 1
 MCS_FN uint32_t mcsi_scalar_hash(uint32_t a, uint32_t b) { return mcs_hash(a, b); }
 #endif
+
+/* ---- Sobol ----
+ * A coordinate is the sum (exclusive or) of those columns of a matrix whose bits are set in the index. Owen's
+ * scrambling flips each bit of it by a function of the bits above. Everything is computed with the bits reversed.
+ * There, that function is a hash in which a bit depends on the bits below alone, as in sums and in products with odd
+ * numbers. */
+
 MCSI_CORE mcs_u mcsi_reverse_bits(mcs_u x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
     x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
@@ -2099,16 +2268,17 @@ MCSI_CORE mcs_u mcsi_reverse_bits(mcs_u x) {
     x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
     return (x >> 16) | (x << 16);
 }
-/* Owen's scrambling of a number whose bits are reversed: every bit is flipped by a hash of those below it. */
+/* Owen's scrambling of a number whose bits are reversed. (x ^ (x c) with even c is a bijection as wanted, too.) */
 MCSI_CORE mcs_u mcsi_scramble_reversed(mcs_u x, uint32_t seed) {
     x = x ^ (x * 0x3d20adeau);
     x = (x + seed) * ((seed >> 16) | 1u);
     x = x ^ (x * 0x05526c56u);
     return x ^ (x * 0x53a22864u);
 }
+/* Dimension 0 has the unit matrix: its coordinate, reversed, is the index itself. */
 MCSI_FN mcs_u mcs_sobol_bits(mcs_u index, uint32_t dim, uint32_t seed) {
+    /* The columns of the matrices of dimensions 1 to 3, with their bits reversed. */
     static const uint32_t matrix[3][32] = {
-        /* columns of the generator matrices, bits reversed */
         {0x00000001u, 0x00000003u, 0x00000005u, 0x0000000fu, 0x00000011u, 0x00000033u, 0x00000055u, 0x000000ffu,
          0x00000101u, 0x00000303u, 0x00000505u, 0x00000f0fu, 0x00001111u, 0x00003333u, 0x00005555u, 0x0000ffffu,
          0x00010001u, 0x00030003u, 0x00050005u, 0x000f000fu, 0x00110011u, 0x00330033u, 0x00550055u, 0x00ff00ffu,
@@ -2123,22 +2293,18 @@ MCSI_FN mcs_u mcs_sobol_bits(mcs_u index, uint32_t dim, uint32_t seed) {
          0x0100011au, 0x030002a7u, 0x0400079eu, 0x0a000b6du, 0x1f001001u, 0x2e003003u, 0x45004004u, 0xc900a00au}};
     const uint32_t group = dim / 4u;
     const uint32_t axis = dim % 4u;
-    mcs_u x = index;
+    /* Scrambling the index permutes the points within each power of two. */
     if (group)
         index = mcsi_reverse_bits(mcsi_scramble_reversed(mcsi_reverse_bits(index), mcsi_scalar_hash(group, seed)));
-    if (axis == 0) {
-        x = index;
-    } else {
+    mcs_u x = index;
+    if (axis > 0) {
         x = index & 0u;
         for (uint32_t k = 0; k < 32; k++) x = x ^ ((0u - ((index >> k) & 1u)) & matrix[axis - 1][k]);
     }
     return mcsi_reverse_bits(mcsi_scramble_reversed(x, mcsi_scalar_hash(dim, ~seed)));
 }
 MCSI_FN mcs_f mcs_sobol(mcs_u index, uint32_t dim, uint32_t seed) { return mcs_u01(mcs_sobol_bits(index, dim, seed)); }
-MCSI_FN mcs_vec2 mcs_r2(mcs_u index, uint32_t seed) { /* steps 1/g and 1/g^2 of 2^32, g = 1.3247 the plastic number */
-    return mcsi_vec2(mcs_u01(index * 3242174889u + mcsi_scalar_hash(0u, seed)),
-                     mcs_u01(index * 2447445414u + mcsi_scalar_hash(1u, seed)));
-}
+
 #ifdef MCSI_LOOPS
 MCSI_LOOP void mcsi_sobol_loop(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
     mcs_u index;
@@ -2153,22 +2319,31 @@ MCSI_LOOP void mcsi_sobol_loop(uint32_t first, uint32_t dim, uint32_t seed, size
 }
 #endif
 
+/* ---- the other points ---- */
+
+/* The steps are 2^32/g and 2^32/g^2, where g = 1.3247 is the plastic number, the root of g^3 = g + 1. */
+MCSI_FN mcs_vec2 mcs_r2(mcs_u index, uint32_t seed) {
+    return mcsi_vec2(mcs_u01(index * 3242174889u + mcsi_scalar_hash(0u, seed)),
+                     mcs_u01(index * 2447445414u + mcsi_scalar_hash(1u, seed)));
+}
+
 #if MCSI_W == 1
-MCS_FN uint32_t mcsi_strata(uint32_t n) { return n < 1u ? 1u : n > 1048576u ? 1048576u : n; }
-/* A place in stratum i of n, from the bits of a hash: few enough of them that i + place is exact, so the point stays in its
- * stratum. */
+/* A count of strata or slabs within [1, 2^20]. */
+MCS_FN uint32_t mcsi_sane_count(uint32_t n) { return n < 1u ? 1u : n > 1048576u ? 1048576u : n; }
+/* A point in stratum i of n: (i + (j + 1/2) 2^-k) / n, j being the upper k bits of a hash. k is small enough that the
+ * sum is exact, so that the point stays in its stratum: 22 bits, less the bits of n - 1. */
 MCS_FN float mcsi_jitter(uint32_t i, uint32_t n, uint32_t bits) {
     uint32_t shift = 10;
-    uint32_t top = n - 1;
-    for (; top; top >>= 1) shift++;
+    for (uint32_t highest = n - 1; highest; highest >>= 1) shift++;
     return ((float)i + ((float)(bits >> shift) + 0.5f) / (float)(1u << (32 - shift))) / (float)n;
 }
-/* The place of i in a random permutation of 0 .. n-1: bijections of the next power of two, repeated until the result is below n. */
+/* Where a random permutation of 0 ... n-1 takes i. The rounds are a bijection of the numbers below the next power of
+ * two. They are repeated until the result is below n, which makes a bijection of those. */
 MCS_FN uint32_t mcsi_permute(uint32_t i, uint32_t n, uint32_t seed) {
     uint32_t mask = n - 1;
     for (uint32_t k = 1; k < 32; k *= 2) mask |= mask >> k;
-    uint32_t shift;
-    for (shift = 1; mask >> (2 * shift); shift++) {}
+    uint32_t shift = 1; /* half the bits of the mask */
+    while (mask >> (2 * shift)) shift++;
     do
         for (uint32_t r = 0; r < 12; r++) {
             const uint32_t h = mcs_hash(r, seed);
@@ -2179,74 +2354,94 @@ MCS_FN uint32_t mcsi_permute(uint32_t i, uint32_t n, uint32_t seed) {
     return i;
 }
 MCS_FN mcs_vec2 mcs_stratified(uint32_t index, uint32_t nx, uint32_t ny, uint32_t seed) {
-    const uint32_t x = index % mcsi_strata(nx);
-    const uint32_t y = index / mcsi_strata(nx) % mcsi_strata(ny);
-    return mcsi_vec2(mcsi_jitter(x, mcsi_strata(nx), mcs_hash(index, seed)),
-                     mcsi_jitter(y, mcsi_strata(ny), mcs_hash(index, ~seed)));
+    const uint32_t cols = mcsi_sane_count(nx);
+    const uint32_t rows = mcsi_sane_count(ny);
+    const uint32_t col = index % cols;
+    const uint32_t row = index / cols % rows;
+    return mcsi_vec2(mcsi_jitter(col, cols, mcs_hash(index, seed)), mcsi_jitter(row, rows, mcs_hash(index, ~seed)));
 }
 MCS_FN float mcs_latin(uint32_t index, uint32_t n, uint32_t dim, uint32_t seed) {
-    const uint32_t m = mcsi_strata(n);
-    const uint32_t s = mcs_hash(dim, seed);
-    return mcsi_jitter(mcsi_permute(index % m, m, s), m, mcs_hash(index, s));
+    const uint32_t slabs = mcsi_sane_count(n);
+    const uint32_t dim_seed = mcs_hash(dim, seed);
+    const uint32_t slab = mcsi_permute(index % slabs, slabs, dim_seed);
+    return mcsi_jitter(slab, slabs, mcs_hash(index, dim_seed));
 }
 #endif
 
 #ifndef MCS_NO_1D
-/* ==== [1d] bodies */
+/* ==== [1d] bodies =================================================================================================
+ * P is the cumulative distribution of a density p. A sampler solves P(x) = u, and an inverse returns P(x). */
 
-MCSI_CORE mcs_f mcsi_u_of(mcs_i ok, mcs_f u) {
-    return mcsi_sel(ok, mcsi_min(mcsi_max(u, mcs_set(0.0f)), mcs_set(0.99999994f)), mcs_set(0.0f));
-}
-/* u of a map that is unbounded at 0: at least the middle of the first of 2^24 cells. */
-MCSI_CORE mcs_f mcsi_off_zero(mcs_f u) { return mcsi_max(u, mcs_set(2.98023224e-08f)); }
 MCSI_CORE mcs_sample1 mcsi_sample1(mcs_i ok, mcs_f x, mcs_f pdf) {
     mcs_sample1 s;
     s.x = mcsi_sel(ok, x, mcs_set(0.0f));
     s.pdf = mcsi_sane_result(ok, pdf);
     return s;
 }
-
-/* linear: weights a, b >= 0 times a power of two, in two halves, that brings the larger one to 2^60, or a subnormal one to 2^38 at
- * least: then no square overflows, and that of the smaller one underflows only where it is below 2^-101 of the larger. */
-MCSI_CORE mcs_i mcsi_linear_ends(mcs_f *a, mcs_f *b) {
-    const mcs_f top = mcsi_max(*a, *b);
-    const mcs_i ok = (*a >= 0.0f) & (*b >= 0.0f) & (top > 0.0f) & (top <= FLT_MAX);
-    const mcs_i power = 0x5d800000 - (mcsi_bits(top) & 0x7f800000);
-    const mcs_i first = (power >> 1) & -0x800000;
-    MCSI_REQUIRE(ok);
-    const mcs_f one = mcsi_from_bits(first + 0x3f800000);
-    const mcs_f other = mcsi_from_bits(power - first + 0x3f800000);
-    *a = *a * one * other;
-    *b = *b * one * other;
-    return ok;
+/* What an inverse returns: u clamped into [0, 1 - 2^-24], 0 where ok is not set. */
+MCSI_CORE mcs_f mcsi_inverted(mcs_i ok, mcs_f u) {
+    return mcsi_sel(ok, mcsi_min(mcsi_max(u, mcs_set(0.0f)), mcs_set(0.99999994f)), mcs_set(0.0f));
 }
-/* x is the root of a x + (b - a) x^2 / 2 = u (a + b) / 2, which has the slope r = a + (b - a) x there. The closed form in float is
- * some ulp off and may fall from one u to the next. One step of Newton's with the missing part in double leaves 2^-43 of an error;
- * the next u is 2^-25 of x further, so rounding cannot bring x below the last one. */
+/* u of a map that is unbounded at 0: at least 2^-25, the middle of the first of 2^24 cells. */
+MCSI_CORE mcs_f mcsi_off_zero(mcs_f u) { return mcsi_max(u, mcs_set(2.98023224e-08f)); }
+
+/* ---- linear ---- */
+
+/* The heights at both ends, scaled; ok where they are good. */
+typedef struct {
+    mcs_i ok;
+    mcs_f a, b;
+} mcsi_linear;
+
+/* Only the ratio of the heights counts. They are scaled by a power of two that brings the larger one to 2^60, or a
+ * subnormal one to at least 2^38. Then no square overflows, and that of the smaller one underflows only where it is
+ * below 2^-101 of the larger one's. The power is applied in two halves, as a whole it may be no float. */
+MCSI_CORE mcsi_linear mcsi_linear_make(mcs_f a, mcs_f b) {
+    const mcs_f larger = mcsi_max(a, b);
+    const mcs_i power = 0x5d800000 - (mcsi_bits(larger) & 0x7f800000);
+    const mcs_i half_power = (power >> 1) & -0x800000;
+    const mcs_f scale1 = mcsi_from_bits(half_power + 0x3f800000);
+    const mcs_f scale2 = mcsi_from_bits(power - half_power + 0x3f800000);
+    mcsi_linear ends;
+    ends.ok = (a >= 0.0f) & (b >= 0.0f) & (larger > 0.0f) & (larger <= FLT_MAX);
+    MCSI_REQUIRE(ends.ok);
+    ends.a = a * scale1 * scale2;
+    ends.b = b * scale1 * scale2;
+    return ends;
+}
+/* P(x) = u is a x + (b - a) x^2 / 2 = u (a + b) / 2. Its root is x = u (a + b) / (a + r), where r = sqrt((1-u) a^2 + u
+ * b^2) is the height at x, so that the density needs no x. In float that is some ulp off and may fall from one u to the
+ * next. One step of Newton's method, with what is missing from u computed in double, leaves 2^-43 of an error. The next
+ * u is 2^-25 of x further, so that rounding cannot bring x below the last one. */
 MCSI_SAMPLE mcs_sample1 mcs_linear_sample(mcs_f a, mcs_f b, mcs_f u) {
-    mcs_i ok = mcsi_linear_ends(&a, &b);
+    const mcsi_linear ends = mcsi_linear_make(a, b);
+    mcs_i ok = ends.ok;
     u = mcsi_sane_u(u, &ok);
-    const mcs_f r = mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b));
-    const mcs_f steep = mcsi_max(r, mcs_set(8.67361738e-19f)); /* at least 2^-60, for u = 0 where a = 0 */
-    const mcs_f inverse = 1.0f / ((a + steep) * steep);
-    mcs_f x = u * (a + b) * (inverse * steep);
-    const mcsi_d da = MCSI_WIDEN(a);
-    const mcsi_d db = MCSI_WIDEN(b);
+    const mcs_f r = mcsi_sqrt((1.0f - u) * (ends.a * ends.a) + u * (ends.b * ends.b));
+    const mcs_f divisor = mcsi_max(r, mcs_set(8.67361738e-19f)); /* 2^-60, for u = 0 where a = 0 */
+    const mcs_f inverse = 1.0f / ((ends.a + divisor) * divisor); /* one division for two quotients */
+    const mcs_f x = u * (ends.a + ends.b) * (inverse * divisor);
+    const mcsi_d da = MCSI_WIDEN(ends.a);
+    const mcsi_d db = MCSI_WIDEN(ends.b);
     const mcsi_d dx = MCSI_WIDEN(x);
     const mcsi_d missing = MCSI_WIDEN(u) * (da + db) - dx * ((da + da) + (db - da) * dx);
-    x = mcsi_stored(x + 0.5f * MCSI_NARROW(missing) * (inverse * (a + steep)));
-    return mcsi_sample1(ok, mcsi_min(x, mcs_set(1.0f)), r * (2.0f / (a + b)));
+    const mcs_f better = mcsi_stored(x + 0.5f * MCSI_NARROW(missing) * (inverse * (ends.a + divisor)));
+    return mcsi_sample1(ok, mcsi_min(better, mcs_set(1.0f)), r * (2.0f / (ends.a + ends.b)));
 }
 MCSI_FN mcs_f mcs_linear_pdf(mcs_f a, mcs_f b, mcs_f x) {
-    const mcs_i ok = mcsi_linear_ends(&a, &b);
+    const mcsi_linear ends = mcsi_linear_make(a, b);
     const mcs_f t = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1.0f));
-    return mcsi_sane_result(ok & (t == x), 2.0f * (((1.0f - t) * a + t * b) / (a + b)));
+    const mcs_f height = (1.0f - t) * ends.a + t * ends.b;
+    return mcsi_sane_result(ends.ok & (t == x), 2.0f * (height / (ends.a + ends.b)));
 }
 MCSI_FN mcs_f mcs_linear_invert(mcs_f a, mcs_f b, mcs_f x) {
-    const mcs_i ok = mcsi_linear_ends(&a, &b);
+    const mcsi_linear ends = mcsi_linear_make(a, b);
     x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1.0f));
-    return mcsi_u_of(ok, x * ((a * (2.0f - x) + b * x) / (a + b)));
+    return mcsi_inverted(ends.ok, x * ((ends.a * (2.0f - x) + ends.b * x) / (ends.a + ends.b)));
 }
+
+/* ---- tent ----
+ * With v = 2 min(u, 1 - u), the distance to the nearer end is r sqrt(v). The density is that distance over r^2. */
 
 MCSI_SAMPLE mcs_sample1 mcs_tent_sample(mcs_f r, mcs_f u) {
     mcs_i ok = mcsi_scale_ok(r);
@@ -2263,11 +2458,13 @@ MCSI_FN mcs_f mcs_tent_pdf(mcs_f r, mcs_f x) {
 }
 MCSI_FN mcs_f mcs_tent_invert(mcs_f r, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(r);
-    const mcs_f t = mcsi_max((r - mcsi_min(mcsi_abs(x), r)) / r, mcs_set(0.0f));
-    const mcs_f below = 0.5f * t * t;
     MCSI_REQUIRE(ok);
-    return mcsi_u_of(ok & (x == x), mcsi_sel(x < 0.0f, below, 1.0f - below));
+    const mcs_f q = mcsi_max((r - mcsi_min(mcsi_abs(x), r)) / r, mcs_set(0.0f));
+    const mcs_f outside = 0.5f * q * q; /* the mass beyond x on its side */
+    return mcsi_inverted(ok & (x == x), mcsi_sel(x < 0.0f, outside, 1.0f - outside));
 }
+
+/* ---- exponential: x = -ln(1 - u) / rate, where e^(-rate x) = 1 - u ---- */
 
 MCSI_SAMPLE mcs_sample1 mcs_exponential_sample(mcs_f rate, mcs_f u) {
     mcs_i ok = mcsi_scale_ok(rate);
@@ -2275,159 +2472,177 @@ MCSI_SAMPLE mcs_sample1 mcs_exponential_sample(mcs_f rate, mcs_f u) {
     u = mcsi_sane_u(u, &ok);
     return mcsi_sample1(ok, mcsi_log1m(u) / -rate, rate * (1.0f - u));
 }
+/* At 1e20 the density is 0 for every rate. */
 MCSI_FN mcs_f mcs_exponential_pdf(mcs_f rate, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(rate);
     MCSI_REQUIRE(ok);
-    x = mcsi_min(x, mcs_set(1e20f)); /* the density is 0 there at every rate */
+    x = mcsi_min(x, mcs_set(1e20f));
     return mcsi_sane_result(ok & (x >= 0.0f), rate * mcsi_exp_neg(-rate * mcsi_max(x, mcs_set(0.0f))));
 }
 MCSI_FN mcs_f mcs_exponential_invert(mcs_f rate, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(rate);
     MCSI_REQUIRE(ok);
     x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1e20f));
-    mcs_f minus_one;
-    mcsi_exp_both(-mcsi_min(mcsi_max(rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &minus_one);
-    return mcsi_u_of(ok, -minus_one);
+    mcs_f minus_u;
+    mcsi_exp_both(-mcsi_min(mcsi_max(rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &minus_u);
+    return mcsi_inverted(ok, -minus_u);
 }
 
-/* truncexp: rate m -> e^(-rate m) and its distance to 1; `flat` where the density is uniform to float precision. There the rate and
- * the distance become 1, as divisors that are not used. */
-MCSI_CORE mcs_i mcsi_truncexp_ends(mcs_f *rate, mcs_f m, mcs_f *e, mcs_f *one_minus_e, mcs_i *flat) {
-    const mcs_i ok = (*rate >= 0.0f) & (*rate <= 1e18f) & mcsi_scale_ok(m);
-    const mcs_f t = *rate * m;
-    MCSI_REQUIRE(ok);
-    *flat = t < 1e-8f;
-    *e = mcsi_exp_both(-mcsi_sel(ok & (t < 80.0f), t, mcs_set(80.0f)), one_minus_e);
-    *one_minus_e = mcsi_sel(*flat, mcs_set(1.0f), -*one_minus_e);
-    *rate = mcsi_sel(*flat, mcs_set(1.0f), *rate);
-    return ok;
+/* ---- truncexp ----
+ * With e = e^(-rate m), P(x) = u is e^(-rate x) = 1 - u (1 - e). */
+
+/* What depends on the parameters alone. */
+typedef struct {
+    mcs_i ok, flat; /* flat: the density is uniform to float precision */
+    mcs_f rate;     /* 1 where flat: a divisor whose quotient is not used */
+    mcs_f e;
+    mcs_f one_minus_e; /* 1 where flat */
+} mcsi_truncexp;
+
+MCSI_CORE mcsi_truncexp mcsi_truncexp_make(mcs_f rate, mcs_f m) {
+    const mcs_f t = rate * m;
+    mcsi_truncexp d;
+    d.ok = (rate >= 0.0f) & (rate <= 1e18f) & mcsi_scale_ok(m);
+    MCSI_REQUIRE(d.ok);
+    d.flat = t < 1e-8f;
+    mcs_f e_minus_one;
+    d.e = mcsi_exp_both(-mcsi_sel(d.ok & (t < 80.0f), t, mcs_set(80.0f)), &e_minus_one);
+    d.one_minus_e = mcsi_sel(d.flat, mcs_set(1.0f), -e_minus_one);
+    d.rate = mcsi_sel(d.flat, mcs_set(1.0f), rate);
+    return d;
 }
+/* w is 1 - u (1 - e). Where it is 1/2 and more, u (1 - e) has more digits of the logarithm's argument than w; what w
+ * lacks of them is the correction of the logarithm. */
 MCSI_SAMPLE mcs_sample1 mcs_truncexp_sample(mcs_f rate, mcs_f m, mcs_f u) {
-    mcs_f e, d;
-    mcs_i flat;
-    mcs_i ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
+    const mcsi_truncexp d = mcsi_truncexp_make(rate, m);
+    mcs_i ok = d.ok;
     u = mcsi_sane_u(u, &ok);
-    const mcs_f w =
-        mcsi_stored((1.0f - u) + u * e); /* 1 - u d = e^(-rate x); u d itself has more digits of it where it is small */
-    const mcs_f c =
-        mcsi_blend((0x3effffff - mcsi_bits(w)) >> 31, (1.0f - w) - u * d, mcs_set(0.0f)); /* where w >= 1/2 */
-    const mcs_f x = mcsi_min(mcsi_log_of_sum(w, c) / -rate, m);
-    return mcsi_sample1(ok, mcsi_sel(flat, u * m, x), mcsi_sel(flat, 1.0f / m, w * (rate / d)));
+    const mcs_f w = mcsi_stored((1.0f - u) + u * d.e);
+    const mcs_i from_half_on = (0x3effffff - mcsi_bits(w)) >> 31;
+    const mcs_f lacking = mcsi_blend(from_half_on, (1.0f - w) - u * d.one_minus_e, mcs_set(0.0f));
+    const mcs_f x = mcsi_min(mcsi_log_of_sum(w, lacking) / -d.rate, m);
+    return mcsi_sample1(ok, mcsi_sel(d.flat, u * m, x), mcsi_sel(d.flat, 1.0f / m, w * (d.rate / d.one_minus_e)));
 }
 MCSI_FN mcs_f mcs_truncexp_pdf(mcs_f rate, mcs_f m, mcs_f x) {
-    mcs_f e, d;
-    mcs_i flat;
-    const mcs_i ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
+    const mcsi_truncexp d = mcsi_truncexp_make(rate, m);
     const mcs_f t = mcsi_min(mcsi_max(x, mcs_set(0.0f)), m);
-    return mcsi_sane_result(ok & (t == x), mcsi_sel(flat, 1.0f / m, rate * mcsi_exp_neg(-rate * t) / d));
+    const mcs_f pdf = mcsi_sel(d.flat, 1.0f / m, d.rate * mcsi_exp_neg(-d.rate * t) / d.one_minus_e);
+    return mcsi_sane_result(d.ok & (t == x), pdf);
 }
 MCSI_FN mcs_f mcs_truncexp_invert(mcs_f rate, mcs_f m, mcs_f x) {
-    mcs_f e, d;
-    mcs_i flat;
-    const mcs_i ok = mcsi_truncexp_ends(&rate, m, &e, &d, &flat);
+    const mcsi_truncexp d = mcsi_truncexp_make(rate, m);
     x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), m);
-    mcs_f p;
-    mcsi_exp_both(-mcsi_min(mcsi_max(rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &p);
-    return mcsi_u_of(ok, mcsi_sel(flat, x / m, -p / d));
+    mcs_f minus_p; /* -P(x) of the distribution that is not cut off */
+    mcsi_exp_both(-mcsi_min(mcsi_max(d.rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &minus_p);
+    return mcsi_inverted(d.ok, mcsi_sel(d.flat, x / m, -minus_p / d.one_minus_e));
 }
 
-MCSI_SAMPLE mcs_sample1 mcs_normal_sample(mcs_f mean, mcs_f sd, mcs_f u) {
-    mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
-    MCSI_REQUIRE(ok);
-    u = mcsi_sane_u(u, &ok);
-    const mcs_f z = mcsi_normal_quantile(mcsi_off_zero(u));
-    return mcsi_sample1(ok, mean + sd * z, mcsi_exp_neg(-0.5f * z * z) * (0.398942280f / sd));
-}
-/* |x - mean| / scale, at most 200: both densities are 0 there. */
+/* ---- normal and logistic ---- */
+
+MCSI_CORE mcs_i mcsi_bell_ok(mcs_f mean, mcs_f scale) { return mcsi_scale_ok(scale) & (mcsi_abs(mean) <= 1e30f); }
+/* |x - mean| / scale, but at most 200, where both densities are 0. */
 MCSI_CORE mcs_f mcsi_deviation(mcs_f mean, mcs_f scale, mcs_f x) {
     return mcsi_min(mcsi_abs(x - mean), 200.0f * scale) / scale;
 }
-MCSI_FN mcs_f mcs_normal_pdf(mcs_f mean, mcs_f sd, mcs_f x) {
-    const mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
-    const mcs_f z = mcsi_deviation(mean, sd, x);
+
+MCSI_SAMPLE mcs_sample1 mcs_normal_sample(mcs_f mean, mcs_f sd, mcs_f u) {
+    mcs_i ok = mcsi_bell_ok(mean, sd);
     MCSI_REQUIRE(ok);
+    u = mcsi_sane_u(u, &ok);
+    const mcs_f z = mcsi_normal_quantile(mcsi_off_zero(u));
+    return mcsi_sample1(ok, mean + sd * z, mcsi_exp_neg(-0.5f * z * z) * (0.398942280f / sd)); /* 1/sqrt(2 pi) */
+}
+MCSI_FN mcs_f mcs_normal_pdf(mcs_f mean, mcs_f sd, mcs_f x) {
+    const mcs_i ok = mcsi_bell_ok(mean, sd);
+    MCSI_REQUIRE(ok);
+    const mcs_f z = mcsi_deviation(mean, sd, x);
     return mcsi_sane_result(ok & (x == x), 0.398942280f * mcsi_exp_neg(-0.5f * z * z) / sd);
 }
 MCSI_FN mcs_f mcs_normal_invert(mcs_f mean, mcs_f sd, mcs_f x) {
-    const mcs_i ok = mcsi_scale_ok(sd) & (mcsi_abs(mean) <= 1e30f);
-    const mcs_f tail = mcsi_normal_tail(mcsi_deviation(mean, sd, x));
+    const mcs_i ok = mcsi_bell_ok(mean, sd);
     MCSI_REQUIRE(ok);
-    return mcsi_u_of(ok & (x == x), mcsi_sel(x < mean, tail, 1.0f - tail));
+    const mcs_f tail = mcsi_normal_tail(mcsi_deviation(mean, sd, x));
+    return mcsi_inverted(ok & (x == x), mcsi_sel(x < mean, tail, 1.0f - tail));
 }
 
-MCSI_SAMPLE mcs_sample1 mcs_logistic_sample(mcs_f mean, mcs_f s, mcs_f u) {
-    mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
+/* P(x) = 1/(1 + e^-z), so that z = ln(u / (1 - u)) and the density is u (1 - u) / scale. */
+MCSI_SAMPLE mcs_sample1 mcs_logistic_sample(mcs_f mean, mcs_f scale, mcs_f u) {
+    mcs_i ok = mcsi_bell_ok(mean, scale);
     MCSI_REQUIRE(ok);
     const mcs_f v = mcsi_off_zero(mcsi_sane_u(u, &ok));
-    return mcsi_sample1(ok, mean + s * mcsi_log(v / (1.0f - v)), v * (1.0f - v) / s);
+    return mcsi_sample1(ok, mean + scale * mcsi_log(v / (1.0f - v)), v * (1.0f - v) / scale);
 }
-MCSI_FN mcs_f mcs_logistic_pdf(mcs_f mean, mcs_f s, mcs_f x) {
-    const mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
-    const mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, s, x));
+MCSI_FN mcs_f mcs_logistic_pdf(mcs_f mean, mcs_f scale, mcs_f x) {
+    const mcs_i ok = mcsi_bell_ok(mean, scale);
     MCSI_REQUIRE(ok);
-    return mcsi_sane_result(ok & (x == x), e / ((1.0f + e) * (1.0f + e)) / s);
+    const mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, scale, x));
+    return mcsi_sane_result(ok & (x == x), e / ((1.0f + e) * (1.0f + e)) / scale);
 }
-MCSI_FN mcs_f mcs_logistic_invert(mcs_f mean, mcs_f s, mcs_f x) {
-    const mcs_i ok = mcsi_scale_ok(s) & (mcsi_abs(mean) <= 1e30f);
-    const mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, s, x));
+MCSI_FN mcs_f mcs_logistic_invert(mcs_f mean, mcs_f scale, mcs_f x) {
+    const mcs_i ok = mcsi_bell_ok(mean, scale);
     MCSI_REQUIRE(ok);
-    return mcsi_u_of(ok & (x == x), mcsi_sel(x < mean, e, mcs_set(1.0f)) / (1.0f + e));
+    const mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, scale, x));
+    return mcsi_inverted(ok & (x == x), mcsi_sel(x < mean, e, mcs_set(1.0f)) / (1.0f + e));
 }
 
-MCSI_CORE mcs_i mcsi_exponent_ok(mcs_f n) { return (n >= 0.0f) & (n <= 1e9f); }
-/* v^(1/(n+1)) and the density (n+1) x^n = (n+1) v / x there. */
-MCSI_CORE mcs_f mcsi_root(mcs_f n, mcs_f v, mcs_f *density) {
-    mcs_f over;
-    const mcs_f x = mcsi_pow_unit(v, n, 1.0, 1, &over);
-    *density = mcsi_sel(n > 0.0f, (n + 1.0f) * over, mcs_set(1.0f));
-    return x;
+/* ---- power and evenpower ---- */
+
+MCSI_CORE mcs_i mcsi_exponent_ok(mcs_f e) { return (e >= 0.0f) & (e <= 1e9f); }
+/* x^(e + plus), x in [0,1]. */
+MCSI_CORE mcs_f mcsi_power(mcs_f e, double plus, mcs_f x) { return mcsi_pow_unit(x, e, plus, 0, NULL); }
+/* P(x) = x^(e+1) = u. With x the root, the density (e + 1) x^e is (e + 1) u / x. */
+MCSI_CORE mcs_sample1 mcsi_root(mcs_f e, mcs_f u) {
+    mcs_f u_over_x;
+    mcs_sample1 s;
+    s.x = mcsi_pow_unit(u, e, 1.0, 1, &u_over_x);
+    s.pdf = mcsi_sel(e > 0.0f, (e + 1.0f) * u_over_x, mcs_set(1.0f));
+    return s;
 }
-MCSI_CORE mcs_f mcsi_power(mcs_f n, double plus, mcs_f x) { return mcsi_pow_unit(x, n, plus, 0, NULL); }
-MCSI_SAMPLE mcs_sample1 mcs_power_sample(mcs_f n, mcs_f u) {
-    mcs_i ok = mcsi_exponent_ok(n);
+
+MCSI_SAMPLE mcs_sample1 mcs_power_sample(mcs_f e, mcs_f u) {
+    mcs_i ok = mcsi_exponent_ok(e);
     MCSI_REQUIRE(ok);
-    n = mcsi_sel(ok, n, mcs_set(0.0f));
+    e = mcsi_sel(ok, e, mcs_set(0.0f));
     u = mcsi_sane_u(u, &ok);
-    mcs_f pdf;
-    const mcs_f x = mcsi_root(n, u, &pdf);
-    return mcsi_sample1(ok, x, pdf);
+    const mcs_sample1 s = mcsi_root(e, u);
+    return mcsi_sample1(ok, s.x, s.pdf);
 }
-MCSI_FN mcs_f mcs_power_pdf(mcs_f n, mcs_f x) {
-    mcs_i ok = mcsi_exponent_ok(n);
+MCSI_FN mcs_f mcs_power_pdf(mcs_f e, mcs_f x) {
+    mcs_i ok = mcsi_exponent_ok(e);
     MCSI_REQUIRE(ok);
     ok = ok & (x >= 0.0f) & (x <= 1.0f);
-    n = mcsi_sane_parameter(ok, n, 0.0f, 1e9f);
-    return mcsi_sane_result(ok, (n + 1.0f) * mcsi_power(n, 0.0, mcsi_sane_parameter(ok, x, 0.0f, 1.0f)));
+    e = mcsi_sane_parameter(ok, e, 0.0f, 1e9f);
+    return mcsi_sane_result(ok, (e + 1.0f) * mcsi_power(e, 0.0, mcsi_sane_parameter(ok, x, 0.0f, 1.0f)));
 }
-MCSI_FN mcs_f mcs_power_invert(mcs_f n, mcs_f x) {
-    mcs_i ok = mcsi_exponent_ok(n);
+MCSI_FN mcs_f mcs_power_invert(mcs_f e, mcs_f x) {
+    mcs_i ok = mcsi_exponent_ok(e);
     MCSI_REQUIRE(ok);
     ok = ok & (x == x);
-    n = mcsi_sane_parameter(ok, n, 0.0f, 1e9f);
-    return mcsi_u_of(ok, mcsi_power(n, 1.0, mcsi_sane_parameter(ok, x, 0.0f, 1.0f)));
+    e = mcsi_sane_parameter(ok, e, 0.0f, 1e9f);
+    return mcsi_inverted(ok, mcsi_power(e, 1.0, mcsi_sane_parameter(ok, x, 0.0f, 1.0f)));
 }
 
-MCSI_SAMPLE mcs_sample1 mcs_evenpower_sample(mcs_f n, mcs_f u) {
-    mcs_i ok = mcsi_exponent_ok(n);
+/* x is the signed root of 2 u - 1. */
+MCSI_SAMPLE mcs_sample1 mcs_evenpower_sample(mcs_f e, mcs_f u) {
+    mcs_i ok = mcsi_exponent_ok(e);
     MCSI_REQUIRE(ok);
-    n = mcsi_sel(ok, n, mcs_set(0.0f));
-    const mcs_f d = 2.0f * mcsi_sane_u(u, &ok) - 1.0f;
-    mcs_f pdf;
-    const mcs_f x = mcsi_root(n, mcsi_abs(d), &pdf);
-    return mcsi_sample1(ok, mcsi_with_sign(x, d), 0.5f * pdf);
+    e = mcsi_sel(ok, e, mcs_set(0.0f));
+    const mcs_f signed_u = 2.0f * mcsi_sane_u(u, &ok) - 1.0f;
+    const mcs_sample1 s = mcsi_root(e, mcsi_abs(signed_u));
+    return mcsi_sample1(ok, mcsi_with_sign(s.x, signed_u), 0.5f * s.pdf);
 }
-MCSI_FN mcs_f mcs_evenpower_pdf(mcs_f n, mcs_f x) { return 0.5f * mcs_power_pdf(n, mcsi_abs(x)); }
-MCSI_FN mcs_f mcs_evenpower_invert(mcs_f n, mcs_f x) {
-    mcs_i ok = mcsi_exponent_ok(n);
+MCSI_FN mcs_f mcs_evenpower_pdf(mcs_f e, mcs_f x) { return 0.5f * mcs_power_pdf(e, mcsi_abs(x)); }
+MCSI_FN mcs_f mcs_evenpower_invert(mcs_f e, mcs_f x) {
+    mcs_i ok = mcsi_exponent_ok(e);
     MCSI_REQUIRE(ok);
     ok = ok & (x == x);
-    n = mcsi_sane_parameter(ok, n, 0.0f, 1e9f);
-    const mcs_f beside = 0.5f * mcsi_power(n, 1.0, mcsi_sane_parameter(ok, mcsi_abs(x), 0.0f, 1.0f));
-    return mcsi_u_of(ok, mcsi_sel(x < 0.0f, 0.5f - beside, 0.5f + beside));
+    e = mcsi_sane_parameter(ok, e, 0.0f, 1e9f);
+    const mcs_f from_centre = 0.5f * mcsi_power(e, 1.0, mcsi_sane_parameter(ok, mcsi_abs(x), 0.0f, 1.0f));
+    return mcsi_inverted(ok, mcsi_sel(x < 0.0f, 0.5f - from_centre, 0.5f + from_centre));
 }
 
 #ifdef MCSI_LOOPS
-/* Loops of the densities with one parameter and with two. */
+/* The loops of the densities with one parameter and of those with two. */
 #define MCSI_LOOP_LINE(NAME)                                                                     \
     MCSI_LOOP void mcsi_##NAME##_loop(float a, size_t n, const float *u, float *x, float *pdf) { \
         mcsi_batch b;                                                                            \
@@ -2457,82 +2672,84 @@ MCSI_LOOP_LINE(evenpower)
 #endif
 #endif /* MCS_NO_1D */
 
-/* ==== [disk] bodies */
+/* ==== [disk] bodies =============================================================================================== */
 
-MCSI_CORE mcs_sample2 mcsi_sample2(mcs_i ok, mcs_f R, mcs_f r, mcs_f turns) {
-    ok = ok & mcsi_scale_ok(R);
-    MCSI_REQUIRE(mcsi_scale_ok(R));
-    r = mcsi_sel(ok, R * r, mcs_set(0.0f));
-    mcs_f s, c;
-    mcsi_sincos_turns(turns, &s, &c);
-    mcs_sample2 d;
-    d.x = r * c;
-    d.y = r * s;
-    d.pdf = mcsi_sane_result(ok, MCSI_1_PI / R / R);
-    return d;
+/* A point at the distance `r` times the radius, which may be negative, and at an angle in turns. */
+MCSI_CORE mcs_sample2 mcsi_polar(mcs_i ok, mcs_f radius, mcs_f r, mcs_f turns) {
+    MCSI_REQUIRE(mcsi_scale_ok(radius));
+    ok = ok & mcsi_scale_ok(radius);
+    const mcs_f distance = mcsi_sel(ok, radius * r, mcs_set(0.0f));
+    mcs_f sine, cosine;
+    mcsi_sincos_turns(turns, &sine, &cosine);
+    mcs_sample2 s;
+    s.x = distance * cosine;
+    s.y = distance * sine;
+    s.pdf = mcsi_sane_result(ok, MCSI_1_PI / radius / radius);
+    return s;
 }
-/* A coordinate in units of the radius, but no further than 4, which is outside. */
-MCSI_CORE mcs_f mcsi_in_radii(mcs_f R, mcs_f x) { return mcsi_min(mcsi_max(x, -4.0f * R), 4.0f * R) / R; }
-MCSI_CORE mcs_f mcsi_disk_pdf(mcs_f R, mcs_f x, mcs_f y) {
-    const mcs_f p = mcsi_in_radii(R, x);
-    const mcs_f q = mcsi_in_radii(R, y);
-    MCSI_REQUIRE(mcsi_scale_ok(R));
-    return mcsi_sane_result(mcsi_scale_ok(R) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / R / R);
+/* A coordinate in units of the radius, but no further than 4, which is outside and has a square. */
+MCSI_CORE mcs_f mcsi_in_radii(mcs_f radius, mcs_f x) {
+    return mcsi_min(mcsi_max(x, -4.0f * radius), 4.0f * radius) / radius;
 }
-MCSI_CORE mcs_vec2 mcsi_uv(mcs_i ok, mcs_f u1, mcs_f u2) {
-    const mcs_f top = mcs_set(0.99999994f);
-    const mcs_f zero = mcs_set(0.0f);
-    return mcsi_vec2(mcsi_sel(ok, mcsi_min(mcsi_max(u1, zero), top), zero),
-                     mcsi_sel(ok, mcsi_min(mcsi_max(u2, zero), top), zero));
+/* A sampled point may be rounded to just outside of the rim, by no more than 4 x 2^-23 in the square. */
+MCSI_CORE mcs_f mcsi_disk_pdf(mcs_f radius, mcs_f x, mcs_f y) {
+    MCSI_REQUIRE(mcsi_scale_ok(radius));
+    const mcs_f p = mcsi_in_radii(radius, x);
+    const mcs_f q = mcsi_in_radii(radius, y);
+    return mcsi_sane_result(mcsi_scale_ok(radius) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / radius / radius);
 }
 
-MCSI_SAMPLE mcs_sample2 mcs_disk_sample(mcs_f R, mcs_f u1, mcs_f u2) {
+MCSI_SAMPLE mcs_sample2 mcs_disk_sample(mcs_f radius, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
     u1 = mcsi_sane_u(u1, &ok);
     u2 = mcsi_sane_u(u2, &ok);
-    return mcsi_sample2(ok, R, mcsi_sqrt(u1), u2);
+    return mcsi_polar(ok, radius, mcsi_sqrt(u1), u2);
 }
-MCSI_FN mcs_f mcs_disk_pdf(mcs_f R, mcs_f x, mcs_f y) { return mcsi_disk_pdf(R, x, y); }
-MCSI_FN mcs_vec2 mcs_disk_invert(mcs_f R, mcs_f x, mcs_f y) {
-    const mcs_f p = mcsi_in_radii(R, x);
-    const mcs_f q = mcsi_in_radii(R, y);
-    MCSI_REQUIRE(mcsi_scale_ok(R));
-    return mcsi_uv(mcsi_scale_ok(R) & (p * p + q * q < 4.0f), p * p + q * q, mcsi_atan2_turns(q, p));
+MCSI_FN mcs_f mcs_disk_pdf(mcs_f radius, mcs_f x, mcs_f y) { return mcsi_disk_pdf(radius, x, y); }
+MCSI_FN mcs_vec2 mcs_disk_invert(mcs_f radius, mcs_f x, mcs_f y) {
+    MCSI_REQUIRE(mcsi_scale_ok(radius));
+    const mcs_f p = mcsi_in_radii(radius, x);
+    const mcs_f q = mcsi_in_radii(radius, y);
+    return mcsi_uv(mcsi_scale_ok(radius) & (p * p + q * q < 4.0f), p * p + q * q, mcsi_atan2_turns(q, p));
 }
 
-MCSI_SAMPLE mcs_sample2 mcs_concentric_sample(mcs_f R, mcs_f u1, mcs_f u2) {
+/* The square [-1,1]^2 is cut into four triangles by its diagonals. A point whose longer coordinate is r, positive or
+ * negative, goes to the distance r from the origin, and the shorter one over r tells the angle from that axis, in
+ * eighths of a turn. The distance keeps its sign, so that all angles are within an eighth of a turn of +x or +y. */
+MCSI_SAMPLE mcs_sample2 mcs_concentric_sample(mcs_f radius, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
     u1 = mcsi_sane_u(u1, &ok);
     u2 = mcsi_sane_u(u2, &ok);
     const mcs_f a = 2.0f * u1 - 1.0f;
     const mcs_f b = 2.0f * u2 - 1.0f;
-    const mcs_i wide = mcsi_abs(a) > mcsi_abs(b);
-    const mcs_f r = mcsi_sel(wide, a, b);
-    mcs_f q = mcsi_sel(wide, b, -a);
-    const mcs_f axis = mcsi_sel(wide, mcs_set(0.0f), mcs_set(0.25f));
-    q = 0.125f * (q / mcsi_sel(r == 0.0f, mcs_set(1.0f), r));
-    return mcsi_sample2(ok, R, r,
-                        axis + q); /* the radius has a sign: angles stay within an eighth of a turn of +x or +y */
+    const mcs_i along_x = mcsi_abs(a) > mcsi_abs(b);
+    const mcs_f r = mcsi_sel(along_x, a, b);
+    const mcs_f across = mcsi_sel(along_x, b, -a);
+    const mcs_f axis = mcsi_sel(along_x, mcs_set(0.0f), mcs_set(0.25f));
+    const mcs_f angle = 0.125f * (across / mcsi_sel(r == 0.0f, mcs_set(1.0f), r));
+    return mcsi_polar(ok, radius, r, axis + angle);
 }
-MCSI_FN mcs_f mcs_concentric_pdf(mcs_f R, mcs_f x, mcs_f y) { return mcsi_disk_pdf(R, x, y); }
-MCSI_FN mcs_vec2 mcs_concentric_invert(mcs_f R, mcs_f x, mcs_f y) {
-    const mcs_f p = mcsi_stored(mcsi_in_radii(R, x));
-    const mcs_f q = mcsi_stored(mcsi_in_radii(R, y));
+MCSI_FN mcs_f mcs_concentric_pdf(mcs_f radius, mcs_f x, mcs_f y) { return mcsi_disk_pdf(radius, x, y); }
+MCSI_FN mcs_vec2 mcs_concentric_invert(mcs_f radius, mcs_f x, mcs_f y) {
+    MCSI_REQUIRE(mcsi_scale_ok(radius));
+    const mcs_f p = mcsi_stored(mcsi_in_radii(radius, x));
+    const mcs_f q = mcsi_stored(mcsi_in_radii(radius, y));
     const mcs_f r2 = p * p + q * q;
     const mcs_f r = mcsi_sqrt(mcsi_sel(r2 < 4.0f, r2, mcs_set(0.0f)));
-    const mcs_i wide = mcsi_abs(p) > mcsi_abs(q);
-    const mcs_f along = mcsi_sel(wide, p, q);
-    const mcs_f across = mcsi_sel(wide, q, p); /* the nearer axis, and the other one */
+    const mcs_i along_x = mcsi_abs(p) > mcsi_abs(q);
+    const mcs_f along = mcsi_sel(along_x, p, q);
+    const mcs_f across = mcsi_sel(along_x, q, p);
     const mcs_f eighths = 8.0f * mcsi_atan2_turns(mcsi_abs(across), mcsi_abs(along));
     const mcs_f longer = mcsi_with_sign(r, along);
     const mcs_f shorter = mcsi_with_sign(r * eighths, across);
-    MCSI_REQUIRE(mcsi_scale_ok(R));
-    return mcsi_uv(mcsi_scale_ok(R) & (r2 < 4.0f), 0.5f + 0.5f * mcsi_sel(wide, longer, shorter),
-                   0.5f + 0.5f * mcsi_sel(wide, shorter, longer));
+    return mcsi_uv(mcsi_scale_ok(radius) & (r2 < 4.0f), 0.5f + 0.5f * mcsi_sel(along_x, longer, shorter),
+                   0.5f + 0.5f * mcsi_sel(along_x, shorter, longer));
 }
 
-/* ==== [sphere] bodies */
+/* ==== [sphere] bodies =============================================================================================
+ * Where z = 1 - t with t linear in u1, the sine is sqrt(t (2 - t)), which keeps its digits at both poles. */
 
+/* A direction from the sine and cosine of its angle to +z, and its azimuth in turns. */
 MCSI_CORE mcs_dir mcsi_around_z(mcs_i ok, mcs_f sine, mcs_f z, mcs_f turns, mcs_f pdf) {
     mcs_f s, c;
     mcsi_sincos_turns(turns, &s, &c);
@@ -2541,10 +2758,10 @@ MCSI_CORE mcs_dir mcsi_around_z(mcs_i ok, mcs_f sine, mcs_f z, mcs_f turns, mcs_
     d.pdf = mcsi_sane_result(ok, pdf);
     return d;
 }
-/* 1 - cos(theta) and 1 + cos(theta) of a direction, each accurate where it is small. */
+/* 1 - cos(theta) of a direction, accurate near +z: sin^2 / (1 + cos) above the horizon. */
 MCSI_CORE mcs_f mcsi_one_minus_z(mcs_vec3 w) {
-    const mcs_f s = w.x * w.x + w.y * w.y;
-    return mcsi_sel(w.z > 0.0f, s / (1.0f + mcsi_abs(w.z)), 1.0f - w.z);
+    const mcs_f sin2 = w.x * w.x + w.y * w.y;
+    return mcsi_sel(w.z > 0.0f, sin2 / (1.0f + mcsi_abs(w.z)), 1.0f - w.z);
 }
 
 MCSI_SAMPLE mcs_dir mcs_sphere_sample(mcs_f u1, mcs_f u2) {
@@ -2599,11 +2816,13 @@ MCSI_FN mcs_vec2 mcs_cosine_invert(mcs_vec3 w) {
     return mcsi_uv(ok, w.x * w.x + w.y * w.y, mcsi_atan2_turns(w.y, w.x));
 }
 
+/* 1 - cos = sin^2 / (1 + cos), which does not cancel. */
 MCSI_FN mcs_f mcs_cone_from_sin2(mcs_f sin2) {
     const mcs_f s = mcsi_min(mcsi_max(sin2, mcs_set(0.0f)), mcs_set(1.0f));
     return s / (1.0f + mcsi_sqrt(1.0f - s));
 }
 MCSI_CORE mcs_i mcsi_cone_ok(mcs_f k) { return (k >= 1e-30f) & (k <= 2.0f); }
+/* With t = k u1, 2 - t is (2 - k) + k (1 - u1), which keeps its digits where k is 2. */
 MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_cone_ok(k);
     MCSI_REQUIRE(ok);
@@ -2613,6 +2832,7 @@ MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
     const mcs_f t = k * u1;
     return mcsi_around_z(ok, mcsi_sqrt(t * ((2.0f - k) + k * (1.0f - u1))), 1.0f - t, u2, MCSI_1_2PI / k);
 }
+/* A sampled direction may be rounded to just outside of the rim. */
 MCSI_FN mcs_f mcs_cone_pdf(mcs_f k, mcs_vec3 w) {
     mcs_i ok = mcsi_cone_ok(k);
     MCSI_REQUIRE(ok);
@@ -2627,15 +2847,16 @@ MCSI_FN mcs_vec2 mcs_cone_invert(mcs_f k, mcs_vec3 w) {
 }
 
 #ifdef MCSI_LOOPS
-#define MCSI_LOOP_DISK(NAME)                                                                                    \
-    MCSI_LOOP void mcsi_##NAME##_loop(float R, size_t n, const float *u1, const float *u2, float *x, float *y,  \
-                                      float *pdf) {                                                             \
-        mcsi_batch b;                                                                                           \
-        mcsi_batch_start(&b, n, u1, u2, NULL);                                                                  \
-        b.out[0] = x;                                                                                           \
-        b.out[1] = y;                                                                                           \
-        b.out[2] = pdf;                                                                                         \
-        MCSI_EACH(b) { mcsi_out_sample2(&b, mcs_##NAME##_sample(mcs_set(R), mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
+/* The loops of disks and of directions without a parameter. */
+#define MCSI_LOOP_DISK(NAME)                                                                                         \
+    MCSI_LOOP void mcsi_##NAME##_loop(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,  \
+                                      float *pdf) {                                                                  \
+        mcsi_batch b;                                                                                                \
+        mcsi_batch_start(&b, n, u1, u2, NULL);                                                                       \
+        b.out[0] = x;                                                                                                \
+        b.out[1] = y;                                                                                                \
+        b.out[2] = pdf;                                                                                              \
+        MCSI_EACH(b) { mcsi_out_sample2(&b, mcs_##NAME##_sample(mcs_set(radius), mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
     }
 #define MCSI_LOOP_SPHERE(NAME)                                                                                  \
     MCSI_LOOP void mcsi_##NAME##_loop(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, \
@@ -2659,13 +2880,10 @@ MCSI_LOOP void mcsi_cone_loop(float k, size_t n, const float *u1, const float *u
 }
 #endif
 
-/* ==== [frame] bodies */
+/* ==== [frame] bodies ==============================================================================================
+ * sign, a and b are those of the paper, listing 3: a = -1/(sign + n.z), b = n.x n.y a. The sign of n.z is also that of
+ * -0, so that the divisor is never 0. */
 
-#if MCSI_W > 1
-typedef struct {
-    mcs_vec3 s, t, n;
-} mcs_frame;
-#endif
 MCSI_FN mcs_frame mcs_frame_make(mcs_vec3 n) {
     mcs_i ok = mcsi_always();
     n = mcsi_sane_direction(n, &ok);
@@ -2678,24 +2896,27 @@ MCSI_FN mcs_frame mcs_frame_make(mcs_vec3 n) {
     f.n = n;
     return f;
 }
-/* Any finite v; components that are NaN or beyond 1e37 count as 0. */
-MCSI_CORE mcs_f mcsi_finite(mcs_f x) { return mcsi_sel(mcsi_abs(x) <= 1e37f, x, mcs_set(0.0f)); }
+/* mcsi_to_world and mcsi_to_local are for vectors that are known to be finite. */
 MCSI_CORE mcs_vec3 mcsi_to_world(const mcs_frame *f, mcs_vec3 v) {
     return mcsi_vec3(f->s.x * v.x + f->t.x * v.y + f->n.x * v.z, f->s.y * v.x + f->t.y * v.y + f->n.y * v.z,
                      f->s.z * v.x + f->t.z * v.y + f->n.z * v.z);
 }
-MCSI_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v) {
-    return mcsi_to_world(f, mcsi_vec3(mcsi_finite(v.x), mcsi_finite(v.y), mcsi_finite(v.z)));
-}
 MCSI_CORE mcs_vec3 mcsi_to_local(const mcs_frame *f, mcs_vec3 v) {
     return mcsi_vec3(mcsi_dot(f->s, v), mcsi_dot(f->t, v), mcsi_dot(f->n, v));
+}
+/* A component as it is, but 0 where it is NaN or beyond 1e37: sums of three products stay finite. */
+MCSI_CORE mcs_f mcsi_finite(mcs_f x) { return mcsi_sel(mcsi_abs(x) <= 1e37f, x, mcs_set(0.0f)); }
+MCSI_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v) {
+    return mcsi_to_world(f, mcsi_vec3(mcsi_finite(v.x), mcsi_finite(v.y), mcsi_finite(v.z)));
 }
 MCSI_FN mcs_vec3 mcs_to_local(const mcs_frame *f, mcs_vec3 v) {
     return mcsi_to_local(f, mcsi_vec3(mcsi_finite(v.x), mcsi_finite(v.y), mcsi_finite(v.z)));
 }
 
 #ifndef MCS_NO_LOBES
-/* ==== [microfacet] bodies */
+/* ==== [microfacet] bodies =========================================================================================
+ * Half-vectors are used without normalising them where that can be had: the sum wo + wi is exact where it cancels
+ * (Sterbenz), and ratios of its components need no length. */
 
 MCSI_CORE mcs_vec3 mcsi_sum(mcs_vec3 a, mcs_vec3 b) { return mcsi_vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
 MCSI_FN mcs_vec3 mcs_reflect(mcs_vec3 wo, mcs_vec3 h) {
@@ -2708,24 +2929,26 @@ MCSI_FN mcs_vec3 mcs_reflect(mcs_vec3 wo, mcs_vec3 h) {
 MCSI_FN mcs_f mcs_reflect_pdf(mcs_f pdf_h, mcs_f cos_d) {
     return mcsi_sane_result((pdf_h > 0.0f) & (cos_d > 0.0f), mcsi_quotient(pdf_h, 4.0f * cos_d));
 }
+/* The sum is scaled by its largest component first, whose square would underflow where wo and wi almost cancel. */
 MCSI_FN mcs_vec3 mcs_half(mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
     wo = mcsi_sane_direction(wo, &ok);
     wi = mcsi_sane_direction(wi, &ok);
-    mcs_vec3 h = mcsi_sum(wo, wi);
-    mcs_f l = mcsi_max(mcsi_max(mcsi_abs(h.x), mcsi_abs(h.y)), mcsi_abs(h.z));
-    const mcs_i some = l > 0.0f;
-    l = mcsi_sel(some, l, mcs_set(1.0f));
-    h = mcsi_vec3(h.x / l, h.y / l, mcsi_sel(some, h.z / l, mcs_set(1.0f)));
-    l = mcsi_sqrt(mcsi_dot(h, h));
-    return mcsi_vec3(h.x / l, h.y / l, h.z / l);
+    const mcs_vec3 sum = mcsi_sum(wo, wi);
+    const mcs_f largest = mcsi_max(mcsi_max(mcsi_abs(sum.x), mcsi_abs(sum.y)), mcsi_abs(sum.z));
+    const mcs_i exists = largest > 0.0f;
+    const mcs_f scale = mcsi_sel(exists, largest, mcs_set(1.0f));
+    const mcs_vec3 h = mcsi_vec3(sum.x / scale, sum.y / scale, mcsi_sel(exists, sum.z / scale, mcs_set(1.0f)));
+    const mcs_f length = mcsi_sqrt(mcsi_dot(h, h));
+    return mcsi_vec3(h.x / length, h.y / length, h.z / length);
 }
+/* wo.h = |wo + wi| / 2: wo.(wo + wi) = 1 + wo.wi, which is half the square of |wo + wi|. */
 MCSI_FN mcs_f mcs_cos_d(mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
     wo = mcsi_sane_direction(wo, &ok);
     wi = mcsi_sane_direction(wi, &ok);
-    const mcs_vec3 h = mcsi_sum(wo, wi);
-    return mcsi_sane_result(ok, 0.5f * mcsi_sqrt(mcsi_dot(h, h)));
+    const mcs_vec3 sum = mcsi_sum(wo, wi);
+    return mcsi_sane_result(ok, 0.5f * mcsi_sqrt(mcsi_dot(sum, sum)));
 }
 MCSI_FN mcs_f mcs_schlick(mcs_f f0, mcs_f cos_d) {
     const mcs_f zero = mcs_set(0.0f);
@@ -2736,12 +2959,18 @@ MCSI_FN mcs_f mcs_schlick(mcs_f f0, mcs_f cos_d) {
     return f0 + (1.0f - f0) * (m2 * m2 * m);
 }
 
-/* A direction of almost unit length brought to it, by one Newton step of 1/sqrt. */
+/* ---- what all lobes use ---- */
+
+/* A direction of almost unit length brought to it, by one step of Newton's method for 1/sqrt. */
 MCSI_CORE mcs_vec3 mcsi_to_unit(mcs_vec3 w) {
     const mcs_f s = 1.5f - 0.5f * mcsi_dot(w, w);
     return mcsi_vec3(w.x * s, w.y * s, w.z * s);
 }
-/* What a BRDF sampler returns: samples below the surface are lost. */
+/* wo mirrored at a half-vector p of any length; s = 2 (p.wo)/|p|^2. */
+MCSI_CORE mcs_vec3 mcsi_mirror(mcs_vec3 wo, mcs_vec3 p, mcs_f s) {
+    return mcsi_to_unit(mcsi_vec3(s * p.x - wo.x, s * p.y - wo.y, s * p.z - wo.z));
+}
+/* What samplers of BRDFs return: a sample below the surface is lost. */
 MCSI_CORE mcs_brdf mcsi_brdf(mcs_i ok, mcs_vec3 wi, mcs_f pdf, mcs_f weight) {
     mcs_brdf s;
     s.wi = wi;
@@ -2749,62 +2978,16 @@ MCSI_CORE mcs_brdf mcsi_brdf(mcs_i ok, mcs_vec3 wi, mcs_f pdf, mcs_f weight) {
     s.weight = mcsi_sane_result(s.pdf > 0.0f, weight);
     return s;
 }
-/* wo mirrored at a half-vector p; s = 2 (p.wo)/|p|^2. */
-MCSI_CORE mcs_vec3 mcsi_mirror(mcs_vec3 wo, mcs_vec3 p, mcs_f s) {
-    return mcsi_to_unit(mcsi_vec3(s * p.x - wo.x, s * p.y - wo.y, s * p.z - wo.z));
-}
-
-/* Is any lane of a mask set? For detours that few samples need; compilers are told so, as the detours would cost registers. */
-MCSI_CORE int mcsi_rarely(mcs_i m) {
-#if MCSI_W == 1 && defined(MCSI_GNU)
-    return (int)__builtin_expect(m, 0);
-#elif MCSI_W == 1
-    return m;
-#elif defined(MCSI_REDUCE_OR)
-    return (int)__builtin_expect(__builtin_reduce_or(m) != 0, 0);
-#elif defined(MCSI_X86) && MCSI_W == 4
-    return (int)__builtin_expect(__builtin_ia32_movmskps((mcs_f)m), 0);
-#elif defined(MCSI_AVX)
-    return (int)__builtin_expect(__builtin_ia32_movmskps256((mcs_f)m), 0);
-#elif defined(MCSI_AVX512) && !defined(__clang__)
-    return (int)__builtin_expect(__builtin_ia32_ptestmd512(m, m, 0xffff), 0);
-#else
-    uint64_t all = 0;
-    uint64_t part[MCSI_W / 2];
-    MCSI_COPY(part, &m, sizeof m);
-    for (int k = 0; k < MCSI_W / 2; k++) all |= part[k];
-    return (int)__builtin_expect(all != 0, 0);
-#endif
-}
-#if MCSI_W == 1
-/* (sin, cos)(2 pi t), t in [0,1], in double, to 1e-12. The detours take their lanes one by one: all widths share this code. */
-MCS_FN void mcsi_sincos_d(double t, double *sine, double *cosine) {
-    const int k = (int)(4.0 * t + 0.5);
-    const double x = 6.283185307179586 * (t - 0.25 * k);
-    const double z = x * x;
-    double s = 1.0 - z * (1.0 / 42) * (1.0 - z * (1.0 / 72) * (1.0 - z * (1.0 / 110) * (1.0 - z * (1.0 / 156))));
-    double c = 1.0 - z * (1.0 / 30) * (1.0 - z * (1.0 / 56) * (1.0 - z * (1.0 / 90) * (1.0 - z * (1.0 / 132))));
-    s = x * (1.0 - z * (1.0 / 6) * (1.0 - z * (1.0 / 20) * s));
-    c = 1.0 - z * (1.0 / 2) * (1.0 - z * (1.0 / 12) * c);
-    *sine = k & 1 ? c : s;
-    *cosine = k & 1 ? s : c;
-    if (k & 2) *sine = -*sine;
-    if ((k + 1) & 2) *cosine = -*cosine;
-}
-/* a cos(2 pi t) + b sin(2 pi t), accurate where it cancels. */
-MCS_FN float mcsi_project(double a, double b, float t) {
-    double s, c;
-    mcsi_sincos_d((double)t, &s, &c);
-    return (float)(a * c + b * s);
-}
-#endif
-/* Where wo.h needs a detour: a density has it as divisor, and below 1/8 its terms cancel too much. d = p.wo of a half-vector p
- * with p2 = |p|^2; lanes that reflect below the surface are lost in any case. No wo.z above 1/4 gets here. */
+/* Where wo.h is to be computed again in double. Densities have it as a divisor, and below 1/8 its terms cancel too
+ * much. d = p.wo of a half-vector p with p2 = |p|^2. Lanes that reflect below the surface are lost in any case and left
+ * out. No wo.z above 1/4 gets here. */
 MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d > wo_z * p2) & (64.0f * d * d < p2); }
 
 #ifdef MCSI_LOOPS
-/* The loops of a BRDF, one material and one wo for all: samples, values (_pdf, _eval), lobes about +z, and visible normals. Each
- * spreads the scalars of the call over lanes first. */
+/* ---- loops of a BRDF: one material and one wo for all ----
+ * MCSI_LOOP_SAMPLE is that of a sampler of wi, MCSI_LOOP_VALUE that of _pdf and _eval, MCSI_LOOP_LOBE that of a sampler
+ * that does not depend on wo, and MCSI_LOOP_VISIBLE that of visible normals. Each spreads the scalars of the call over
+ * lanes first. */
 #define MCSI_LOOP_SAMPLE(NAME, MATERIAL)                                                                         \
     MCSI_LOOP void mcsi_##NAME##_sample_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n,     \
                                              const float *u1, const float *u2, float *x, float *y, float *z,     \
@@ -3685,8 +3868,10 @@ MCSI_LOOP_VALUE(ashikhmin_eval, ashikhmin)
 #endif
 #endif /* MCS_NO_LOBES */
 
-/* ==== [mis] bodies */
+/* ==== [mis] bodies ================================================================================================ */
 
+/* pg/pf, from which both heuristics are computed, as squares of densities overflow. *ok is set where both densities are
+ * good. Equal densities give 1, and so do two infinite ones. */
 MCSI_CORE mcs_f mcsi_mis_ratio(mcs_f pf, mcs_f pg, mcs_i *ok) {
     const mcs_f one = mcs_set(1.0f);
     *ok = (pf > 0.0f) & (pg >= 0.0f);
@@ -3700,8 +3885,8 @@ MCSI_FN mcs_f mcs_mis_balance(mcs_f pf, mcs_f pg) {
 MCSI_FN mcs_f mcs_mis_power(mcs_f pf, mcs_f pg) {
     mcs_i ok;
     const mcs_f r = mcsi_mis_ratio(pf, pg, &ok);
-    const mcs_f least = mcsi_min(r, mcs_set(1.8446743e19f)); /* the largest whose square is a float */
-    return mcsi_sane_result(ok & (r <= least), 1.0f / (1.0f + least * least));
+    const mcs_f squarable = mcsi_min(r, mcs_set(1.8446743e19f)); /* the largest float whose square is one */
+    return mcsi_sane_result(ok & (r <= squarable), 1.0f / (1.0f + squarable * squarable));
 }
 MCSI_FN mcs_f mcs_mix_pdf(mcs_f c, mcs_f pf, mcs_f pg) {
     const mcs_i ok = c == c;
@@ -6282,7 +6467,7 @@ MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_re
 #endif
 
 #if MCSI_W == 1
-/* ==== [estimator] bodies */
+/* ==== [estimator] bodies ========================================================================================= */
 
 /* Values up to DBL_MAX are good, so their differences and the squares of these may overflow. Differences are therefore
  * halved, and the sum of squares is computed in two ways: as it stands where every factor is small enough, else scaled by
@@ -6294,7 +6479,7 @@ MCS_FN double mcsi_stat_sum(double sum, double a, double b, double k) {
         return sum + 2.0 * a * (2.0 * b) * k;
     const double down = 7.458340731200207e-155; /* 2^-512 */
     const double product = (a * down) * (b * down);
-    /* A quarter of the result over 2^1024; from 1/4 on, the result is beyond DBL_MAX. A product of 8 is so in any case. */
+    /* The result over 2^1026. From 1/4 on, the result is beyond DBL_MAX; a product of 8 is so in any case. */
     const double quarter = 0.25 * (sum * down * down) + (product < 8.0 ? product : 8.0) * k;
     return quarter < 0.25 ? 4.0 * quarter / down / down : DBL_MAX;
 }
@@ -6518,6 +6703,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_beckmann_sample_loop MCSI_(beckmann_sample_loop)
 #define mcsi_beckmann_shadow MCSI_(beckmann_shadow)
 #define mcsi_beckmann_spread MCSI_(beckmann_spread)
+#define mcsi_bell_ok MCSI_(bell_ok)
 #define mcsi_bits MCSI_(bits)
 #define mcsi_blend MCSI_(blend)
 #define mcsi_brdf MCSI_(brdf)
@@ -6544,7 +6730,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_exp_both MCSI_(exp_both)
 #define mcsi_exp_neg MCSI_(exp_neg)
 #define mcsi_exp_reduced MCSI_(exp_reduced)
-#define mcsi_exponent MCSI_(exponent)
+#define mcsi_exponent_bits MCSI_(exponent_bits)
 #define mcsi_exponent_ok MCSI_(exponent_ok)
 #define mcsi_exponential_loop MCSI_(exponential_loop)
 #define mcsi_falloff MCSI_(falloff)
@@ -6577,8 +6763,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_hemisphere_loop MCSI_(hemisphere_loop)
 #define mcsi_in MCSI_(in)
 #define mcsi_in_radii MCSI_(in_radii)
-#define mcsi_linear_ends MCSI_(linear_ends)
+#define mcsi_inverted MCSI_(inverted)
+#define mcsi_linear MCSI_(linear)
 #define mcsi_linear_loop MCSI_(linear_loop)
+#define mcsi_linear_make MCSI_(linear_make)
 #define mcsi_linear_place MCSI_(linear_place)
 #define mcsi_log MCSI_(log)
 #define mcsi_log1m MCSI_(log1m)
@@ -6612,6 +6800,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_phong_power MCSI_(phong_power)
 #define mcsi_phong_sample_loop MCSI_(phong_sample_loop)
 #define mcsi_phong_spread MCSI_(phong_spread)
+#define mcsi_polar MCSI_(polar)
 #define mcsi_pow_unit MCSI_(pow_unit)
 #define mcsi_power MCSI_(power)
 #define mcsi_power_loop MCSI_(power_loop)
@@ -6622,7 +6811,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_reverse_bits MCSI_(reverse_bits)
 #define mcsi_root MCSI_(root)
 #define mcsi_sample1 MCSI_(sample1)
-#define mcsi_sample2 MCSI_(sample2)
 #define mcsi_sane_direction MCSI_(sane_direction)
 #define mcsi_sane_parameter MCSI_(sane_parameter)
 #define mcsi_sane_result MCSI_(sane_result)
@@ -6664,9 +6852,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_to_unit MCSI_(to_unit)
 #define mcsi_to_world MCSI_(to_world)
 #define mcsi_trunc MCSI_(trunc)
-#define mcsi_truncexp_ends MCSI_(truncexp_ends)
+#define mcsi_truncexp MCSI_(truncexp)
 #define mcsi_truncexp_loop MCSI_(truncexp_loop)
-#define mcsi_u_of MCSI_(u_of)
+#define mcsi_truncexp_make MCSI_(truncexp_make)
 #define mcsi_uv MCSI_(uv)
 #define mcsi_vec2 MCSI_(vec2)
 #define mcsi_vec3 MCSI_(vec3)
@@ -6935,6 +7123,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_beckmann_sample_loop
 #undef mcsi_beckmann_shadow
 #undef mcsi_beckmann_spread
+#undef mcsi_bell_ok
 #undef mcsi_bits
 #undef mcsi_blend
 #undef mcsi_brdf
@@ -6961,7 +7150,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_exp_both
 #undef mcsi_exp_neg
 #undef mcsi_exp_reduced
-#undef mcsi_exponent
+#undef mcsi_exponent_bits
 #undef mcsi_exponent_ok
 #undef mcsi_exponential_loop
 #undef mcsi_falloff
@@ -6994,8 +7183,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_hemisphere_loop
 #undef mcsi_in
 #undef mcsi_in_radii
-#undef mcsi_linear_ends
+#undef mcsi_inverted
+#undef mcsi_linear
 #undef mcsi_linear_loop
+#undef mcsi_linear_make
 #undef mcsi_linear_place
 #undef mcsi_log
 #undef mcsi_log1m
@@ -7029,6 +7220,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_phong_power
 #undef mcsi_phong_sample_loop
 #undef mcsi_phong_spread
+#undef mcsi_polar
 #undef mcsi_pow_unit
 #undef mcsi_power
 #undef mcsi_power_loop
@@ -7039,7 +7231,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_reverse_bits
 #undef mcsi_root
 #undef mcsi_sample1
-#undef mcsi_sample2
 #undef mcsi_sane_direction
 #undef mcsi_sane_parameter
 #undef mcsi_sane_result
@@ -7081,9 +7272,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_to_unit
 #undef mcsi_to_world
 #undef mcsi_trunc
-#undef mcsi_truncexp_ends
+#undef mcsi_truncexp
 #undef mcsi_truncexp_loop
-#undef mcsi_u_of
+#undef mcsi_truncexp_make
 #undef mcsi_uv
 #undef mcsi_vec2
 #undef mcsi_vec3
