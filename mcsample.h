@@ -122,9 +122,16 @@
  *   [product]     map times lobe times cosine                              light from all around on a given surface
  *   [estimator]   mean, variance, standard error                           every estimate
  *
- *   PART II       machinery: compilers and processors, lanes, vector maths             maintainers
- *   PART III      the bodies of [rng] to [mis], and why each formula is written so     maintainers
- *   PART IV       the bodies of [tables] to [estimator]                                maintainers */
+ * The rest is for maintainers.
+ *
+ *   PART II       machinery: compilers and processors, the passes for 4, 8 and 16 lanes
+ *   [lanes]       what C has no operator for
+ *   [maths]       elementary functions
+ *   [vectors]     points and directions
+ *   [sane]        bad input made harmless
+ *   [loops]       what array functions consist of
+ *   PART III      the bodies of [rng] to [mis], and why each formula is written so
+ *   PART IV       the bodies of [tables] to [estimator] */
 #ifndef MCSAMPLE_H
 #define MCSAMPLE_H
 
@@ -1454,9 +1461,8 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
  *
  *   mcs_f, mcs_i, mcs_u    lanes of float, int32_t, uint32_t
  *   mcsi_d, mcsi_q         as many lanes of double; as many bytes of uint64_t as mcs_u has
- *   masks                  mcs_i, 0 or 1 in the scalar pass, 0 or -1 in each lane of the others. They are joined by &
- *   and |,
- *                          chosen by with mcsi_sel, and used for nothing else.
+ *   masks                  mcs_i, 0 or 1 in the scalar pass, 0 or -1 in each lane of the others. & and | join them,
+ *                          mcsi_sel chooses by them, and they are used for nothing else.
  *   float, uint32_t        stay scalar: one number for all lanes
  *
  * MCSI_CORE stands before private functions. They must be inlined, because compilers would return their structs through
@@ -1475,7 +1481,7 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
 #define MCSI_SAMPLE MCSI_HOT
 #endif
 
-/* Tells mistakes of the caller; in lanes nobody could say which lane it was. */
+/* Tells mistakes of the caller, in the scalar pass alone. */
 #if MCSI_W == 1
 #define MCSI_REQUIRE(ok) MCS_ASSERT(ok)
 #else
@@ -2126,6 +2132,7 @@ MCS_FN void mcs_pcg32_advance(mcs_pcg32 *r, uint64_t delta) {
     }
     r->state = all_mul * r->state + all_add;
 }
+#undef MCSI_PCG32_MULTIPLIER
 MCS_API void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
     for (size_t i = 0; i < n; i++) {
         const float u = mcs_pcg32_float(r);
@@ -2691,7 +2698,7 @@ MCSI_CORE mcs_sample2 mcsi_polar(mcs_i ok, mcs_f radius, mcs_f r, mcs_f turns) {
 MCSI_CORE mcs_f mcsi_in_radii(mcs_f radius, mcs_f x) {
     return mcsi_min(mcsi_max(x, -4.0f * radius), 4.0f * radius) / radius;
 }
-/* A sampled point may be rounded to just outside of the rim, by no more than 4 x 2^-23 in the square. */
+/* A sampled point may be rounded to just outside of the rim. */
 MCSI_CORE mcs_f mcsi_disk_pdf(mcs_f radius, mcs_f x, mcs_f y) {
     MCSI_REQUIRE(mcsi_scale_ok(radius));
     const mcs_f p = mcsi_in_radii(radius, x);
