@@ -7389,12 +7389,13 @@ MCS_API void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x,
     MCSI_WIDEST(evenpower_loop, (e, n, u, x, pdf));
 }
 #endif
-MCS_API void mcs_disk_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y, float *pdf) {
-    MCSI_WIDEST(disk_loop, (R, n, u1, u2, x, y, pdf));
+MCS_API void mcs_disk_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,
+                               float *pdf) {
+    MCSI_WIDEST(disk_loop, (radius, n, u1, u2, x, y, pdf));
 }
-MCS_API void mcs_concentric_sample_n(float R, size_t n, const float *u1, const float *u2, float *x, float *y,
+MCS_API void mcs_concentric_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,
                                      float *pdf) {
-    MCSI_WIDEST(concentric_loop, (R, n, u1, u2, x, y, pdf));
+    MCSI_WIDEST(concentric_loop, (radius, n, u1, u2, x, y, pdf));
 }
 MCS_API void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
     MCSI_WIDEST(sphere_loop, (n, u1, u2, x, y, z, pdf));
