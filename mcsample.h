@@ -1698,13 +1698,19 @@ MCSI_CORE mcs_f mcsi_to_grid(mcs_f x, float step, float big, mcs_i *k) {
 
 /* ---- angles, in turns ---- */
 
-/* sine and cosine become those of 2 pi t, t in [-1/8, 1]; 1.4 ulp. *opposite is set where t is within an eighth of a
- * turn of half a turn. There, *one_plus is 1 + cos(2 pi t), computed without cancellation.
+/* Sine and cosine of an angle. Within an eighth of a turn of half a turn `behind` is set, and there one_plus_cosine is
+ * 1 + cosine without the cancellation of that sum. */
+typedef struct {
+    mcs_f sine, cosine, one_plus_cosine;
+    mcs_i behind;
+} mcsi_angle;
+
+/* The angle 2 pi t, t in [-1/8, 1], to 1.4 ulp.
  *
  * t = k/4 + r with |r| <= 1/8, which is exact. For odd k sine and cosine change places. The sine changes its sign for
  * the k of 2 and 3, the cosine for those of 1 and 2. Where k = 2, the cosine is -cos(2 pi r), and 1 plus it is the
  * negative of cos(2 pi r) - 1. */
-MCSI_CORE void mcsi_sincos_behind(mcs_f t, mcs_f *sine, mcs_f *cosine, mcs_i *opposite, mcs_f *one_plus) {
+MCSI_CORE mcsi_angle mcsi_angle_of_turns(mcs_f t) {
     mcs_i k;
     const mcs_f r = t - mcsi_to_grid(t, 0.25f, 3145728.0f, &k);
     const mcs_f z = r * r;
@@ -1713,15 +1719,17 @@ MCSI_CORE void mcsi_sincos_behind(mcs_f t, mcs_f *sine, mcs_f *cosine, mcs_i *op
     const mcs_f c_minus_1 = z * ((-19.7392082f + z * 64.9391479f) + zz * (-85.4245148f + z * 58.6202126f));
     const mcs_f c = 1.0f + c_minus_1;
     const mcs_i swap = -(k & 1);
-    *sine = mcsi_from_bits(mcsi_bits(mcsi_blend(swap, c, s)) ^ (mcs_i)((mcs_u)(k & 2) << 30));
-    *cosine = mcsi_from_bits(mcsi_bits(mcsi_blend(swap, s, c)) ^ (mcs_i)((mcs_u)((k + 1) & 2) << 30));
-    *opposite = k == 2;
-    *one_plus = -c_minus_1;
+    mcsi_angle a;
+    a.sine = mcsi_from_bits(mcsi_bits(mcsi_blend(swap, c, s)) ^ (mcs_i)((mcs_u)(k & 2) << 30));
+    a.cosine = mcsi_from_bits(mcsi_bits(mcsi_blend(swap, s, c)) ^ (mcs_i)((mcs_u)((k + 1) & 2) << 30));
+    a.one_plus_cosine = -c_minus_1;
+    a.behind = k == 2;
+    return a;
 }
 MCSI_CORE void mcsi_sincos_turns(mcs_f t, mcs_f *sine, mcs_f *cosine) {
-    mcs_i opposite;
-    mcs_f one_plus;
-    mcsi_sincos_behind(t, sine, cosine, &opposite, &one_plus);
+    const mcsi_angle a = mcsi_angle_of_turns(t);
+    *sine = a.sine;
+    *cosine = a.cosine;
 }
 
 /* The angle of (x, y) in turns, in [0, 1 - 2^-24]; 0 for (0, 0). Its absolute error is below 2^-23 turns, its relative
@@ -3609,15 +3617,14 @@ MCSI_CORE mcsi_visible_half mcsi_visible_draw(const mcs_ggx *m, const mcsi_visib
     const mcs_f q = u2 * v->cap;
     mcs_f hz = v->cap * (1.0f - u2) + v->lift;
     const mcs_f s = mcsi_sqrt(q * (v->one_minus_iz + hz));
-    mcs_i behind;
-    mcs_f sine, cosine, one_plus;
-    mcsi_sincos_behind(u1, &sine, &cosine, &behind, &one_plus);
-    behind = behind & (hz < 1.0f);
+    const mcsi_angle azimuth = mcsi_angle_of_turns(u1);
+    const mcs_i behind = azimuth.behind & (hz < 1.0f);
     mcsi_visible_half h;
     h.scale = mcsi_sel(behind, v->i_sin + s, mcs_set(1.0f));
     const mcs_f r = s * h.scale;
-    const mcs_f along = mcsi_sel(behind, r * one_plus + (hz - 2.0f * v->i_z) * hz, s * cosine + v->i_sin);
-    const mcs_f across = r * sine; /* sin^2 = (1 - c.z) (1 + c.z) */
+    const mcs_f along =
+        mcsi_sel(behind, r * azimuth.one_plus_cosine + (hz - 2.0f * v->i_z) * hz, s * azimuth.cosine + v->i_sin);
+    const mcs_f across = r * azimuth.sine; /* sin^2 = (1 - c.z) (1 + c.z) */
     hz = hz * h.scale;
     h.n2 = along * along + across * across + hz * hz;
     h.p = mcsi_vec3(m->s.ax * (along * v->x_dir - across * v->y_dir), m->s.ay * (along * v->y_dir + across * v->x_dir),
@@ -6692,6 +6699,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_ward_weight MCS_(ward_weight)
 #define mcsi_abs MCSI_(abs)
 #define mcsi_always MCSI_(always)
+#define mcsi_angle MCSI_(angle)
+#define mcsi_angle_of_turns MCSI_(angle_of_turns)
 #define mcsi_any MCSI_(any)
 #define mcsi_anywhere MCSI_(anywhere)
 #define mcsi_around_z MCSI_(around_z)
@@ -6827,7 +6836,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_scramble_reversed MCSI_(scramble_reversed)
 #define mcsi_secant2 MCSI_(secant2)
 #define mcsi_sel MCSI_(sel)
-#define mcsi_sincos_behind MCSI_(sincos_behind)
 #define mcsi_sincos_turns MCSI_(sincos_turns)
 #define mcsi_slope_brdf MCSI_(slope_brdf)
 #define mcsi_slope_cosine MCSI_(slope_cosine)
@@ -7112,6 +7120,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_ward_weight
 #undef mcsi_abs
 #undef mcsi_always
+#undef mcsi_angle
+#undef mcsi_angle_of_turns
 #undef mcsi_any
 #undef mcsi_anywhere
 #undef mcsi_around_z
@@ -7247,7 +7257,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_scramble_reversed
 #undef mcsi_secant2
 #undef mcsi_sel
-#undef mcsi_sincos_behind
 #undef mcsi_sincos_turns
 #undef mcsi_slope_brdf
 #undef mcsi_slope_cosine

@@ -55,10 +55,9 @@ typedef void block_fn(const float *in, float *y_out, float *z_out);
 
 #define DO_sincos(I, P) I(sincos_turns)(x, &y, &z)
 #define DO_behind(I, P)                          \
-    P(f) sine;                                   \
-    P(i) behind;                                 \
-    I(sincos_behind)(x, &sine, &z, &behind, &y); \
-    (void)behind
+    const I(angle) angle = I(angle_of_turns)(x); \
+    y = angle.one_plus_cosine;                   \
+    z = angle.cosine
 #define DO_atan_y(I, P) y = z = I(atan2_turns)(x, P(set)(1.0f))
 #define DO_atan_x(I, P) y = I(atan2_turns)(P(set)(1.0f), x), z = I(atan2_turns)(P(set)(-1.0f), x)
 #define DO_log(I, P) y = I(log)(x)
