@@ -14,8 +14,8 @@ static const char *const mcst_claim_sentences[] = {
     "unit length within 4 x 2^-24, pdf within 0.2 E.",                                                        /* [sphere] */
     "pdf of u 0.4 E (n below 1: 1.2 E, below 0.1: 2.9 E), of w and eval 0.6 E, weight 0.3e-6, |w| 4 x 2^-24", /* [phong] */
     "pdf of u 1.2 E; of h and wi 1e-6 (1 + e), eval 1.4e-6 (1 + e), e the exponent, while e is below 87; weight 0.8e-6, of a "
-    "sample 1.8e-6; |h| and |wi| 4 x 2^-24",        /* [ward] */
-    "Parameters, edges, cost and accuracy as Ward", /* [beckmann] */
+    "sample 1.8e-6; |h| and |wi| 4 x 2^-24",                                               /* [ward] */
+    "that of [ward]: pdf, eval and weights are held to the same figures", /* [beckmann] */
     "h and ggx: pdf of u 1.2 E, of h or wi 1.2 E; vndf, bounded: pdf of u 2.1 E, of h or wi 1.5 E; eval 1.5 E, weight 0.7e-6, of a "
     "sample 0.7e-6 (ggx 1.6e-6); |h| and |wi| 4 x 2^-24", /* [ggx] */
     "pdf of u 0.8 E (an exponent below 1: 1.4 E, below 0.1: 3.7 E), of h, wi and eval 0.6 E, weight 0.1e-6, |h| and |wi| 4 x 2^-24",
