@@ -1287,9 +1287,9 @@ MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float 
  * 12.5. */
 #ifndef MCS_NO_TABLES
 typedef struct {
-    uint64_t edge, line, info, rows, row_guide, cdf, col_guide, bytes;
-    uint32_t row_shift, col_shift, guides, unused;
-} mcsi_env_parts;
+    uint64_t edge, row, row_light, row_sums, row_guide, col_sums, col_guide, bytes;
+    uint32_t row_shift, col_shift, guide_length, unused;
+} mcsi_env_offsets;
 typedef struct {
     const float *pixels;
     uint32_t w, h, channels;
@@ -1299,12 +1299,12 @@ typedef struct {
 } mcs_image;
 typedef struct {
     uint32_t magic, version;
-    mcsi_env_parts at;
+    mcsi_env_offsets offset;
     double total;
     uint32_t w, h, bad, row0, row1, col0, col1, uniform, incomplete;
     float turn, inner; /* mcsi_env_direction */
     mcs_frame frame;
-    uint64_t sum; /* mcsi_env_sum */
+    uint64_t checksum; /* mcsi_env_checksum */
 } mcs_env;
 typedef struct {
     mcs_vec3 w;
@@ -4353,7 +4353,28 @@ MCSI_FN mcs_f mcs_mix_pdf(mcs_f c, mcs_f pf, mcs_f pg) {
 #ifndef MCS_NO_TABLES
 /* ==== [tables] bodies */
 
-#define MCSI_ONE 0x80000000u /* the integer that stands for probability 1 */
+/* ---- memory of the caller's: alignment, sizes, and the only casts ---- */
+
+/* What lies `offset` bytes from the start of an object, to read and to write. Each object has one function that computes
+ * its offsets and its size. */
+#define MCSI_READ(type, object, offset) ((const type *)(const void *)((const char *)(object) + (offset)))
+#define MCSI_WRITE(type, object, offset) ((type *)(void *)((char *)(object) + (offset)))
+
+/* One less than the alignment of the caller's memory: that of a double, 8 bytes but on i386. */
+typedef struct {
+    char before;
+    double at;
+} mcsi_aligned;
+#define MCSI_ALIGN (offsetof(mcsi_aligned, at) - 1)
+MCS_FN uint64_t mcsi_up8(uint64_t bytes) { return (bytes + 7) / 8 * 8; }
+/* Whether a table of `need` bytes, 0 for a size that is refused, can be built here. */
+MCS_FN mcs_status mcsi_table_check(const void *t, size_t bytes, const void *source, size_t need) {
+    if (!t || !source || ((uintptr_t)t & MCSI_ALIGN)) return MCS_ERR_ARG;
+    if (need == 0) return MCS_ERR_SIZE;
+    return bytes < need ? MCS_ERR_MEMORY : MCS_OK;
+}
+
+/* ---- weights ---- */
 
 /* What a number counts as: itself, +infinity as FLT_MAX, what is negative or NaN as 0. */
 MCSI_CORE float mcsi_clean(float x, uint32_t *bad) {
@@ -4361,14 +4382,14 @@ MCSI_CORE float mcsi_clean(float x, uint32_t *bad) {
     ++*bad;
     return x > 0.0f ? FLT_MAX : 0.0f;
 }
-/* A weight on its way to becoming a cumulative sum in the same place. */
+/* A weight stands in the word that its cumulative sum will take. */
 MCSI_CORE float mcsi_word_weight(const uint32_t *word) {
     float w;
     MCSI_COPY(&w, word, sizeof w);
     return w;
 }
 MCSI_CORE void mcsi_put_weight(uint32_t *word, float w) { MCSI_COPY(word, &w, sizeof w); }
-/* memmove of n words, which kernels do not have. */
+/* memmove of n words. CUDA device code has no memmove. */
 MCS_FN void mcsi_move(uint32_t *to, const float *from, uint32_t n) {
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
     const int up = (uintptr_t)to <= (uintptr_t)from;
@@ -4377,7 +4398,7 @@ MCS_FN void mcsi_move(uint32_t *to, const float *from, uint32_t n) {
     memmove(to, from, n * sizeof *to);
 #endif
 }
-/* Moves a list, which may overlap the table, into the place of its sums, cleaned; counts the bad ones. */
+/* Moves a list, which may overlap the table, to where its sums will be, and cleans it. Returns the number of bad entries. */
 MCS_FN uint32_t mcsi_weights_in(uint32_t *words, const float *f, uint32_t n) {
     uint32_t bad = 0;
     mcsi_move(words, f, n);
@@ -4385,7 +4406,22 @@ MCS_FN uint32_t mcsi_weights_in(uint32_t *words, const float *f, uint32_t n) {
     return bad;
 }
 
-/* A run over part of a list: the sum of all parts before, of this part so far, and the entries so far that are not zero. */
+/* ---- cdf: cumulative shares and their guide, of tables, of the rows and columns of maps, of windows ----
+ * Chen and Asau 1974, "On generating random variates from an empirical distribution". */
+
+#define MCSI_ONE 0x80000000u /* the integer that stands for probability 1 */
+
+/* Entry i of n has sums[i + 1] - sums[i] of all 2^31. guide[g], g < 2^31 >> shift, is the last i with sums[i] <= g 2^shift:
+ * the search for U starts at guide[U >> shift] and ends at the next entry. The last entry of the guide is the last i that
+ * has a share. guide_bytes: 2 where n is small enough (maps), else 4 (tables); it is a constant wherever a cdf is made. */
+typedef struct {
+    const uint32_t *sums;
+    const void *guide;
+    uint32_t n, shift, guide_bytes;
+} mcsi_cdf;
+
+/* A run over a quarter of a list: the sum of all quarters before it, its own so far, and how many entries so far, from the
+ * start of the list, are not zero. */
 typedef struct {
     double before, sum;
     uint32_t seen;
@@ -4395,7 +4431,8 @@ MCSI_CORE void mcsi_run_add(mcsi_run *r, const uint32_t *words, uint32_t i) {
     r->sum += (double)w;
     r->seen += w > 0.0f;
 }
-MCSI_CORE void mcsi_run_start(mcsi_run *r, double *total, uint32_t *some) {
+/* Turns a run that has added up its quarter into one that writes it. */
+MCSI_CORE void mcsi_run_restart(mcsi_run *r, double *total, uint32_t *some) {
     const double sum = r->sum;
     const uint32_t seen = r->seen;
     r->before = *total;
@@ -4404,6 +4441,8 @@ MCSI_CORE void mcsi_run_start(mcsi_run *r, double *total, uint32_t *some) {
     *total += sum;
     *some += seen;
 }
+/* Replaces weight i by its cumulative sum. Each of the `some` entries that are not zero gets a share of 1 beforehand, the
+ * others share what is left of 2^31: scale of it per weight. */
 MCSI_CORE void mcsi_run_put(mcsi_run *r, uint32_t *words, uint32_t i, double scale, uint32_t some) {
     const double w = (double)mcsi_word_weight(words + i);
     const double below = (r->before + r->sum) * scale;
@@ -4412,209 +4451,255 @@ MCSI_CORE void mcsi_run_put(mcsi_run *r, uint32_t *words, uint32_t i, double sca
     r->sum += w;
     r->seen += w > 0.0;
 }
-/* Cumulative sums 0 = cdf[0] <= ... <= cdf[n] = 2^31 in the place of n weights (floats, finite, not negative): entry i gets its
- * share cdf[i + 1] - cdf[i] of 2^31, at least 1 unless it is zero. Returns the sum of the weights; 0: all are zero, all shares are
- * alike. Four parts take turns, as each sum waits for the one before it. */
-MCS_FN double mcsi_cdf_build(uint32_t *cdf, uint32_t n) {
+MCS_FN void mcsi_sums_even(uint32_t *sums, uint32_t n) {
+    for (uint32_t i = 0; i < n; i++) sums[i] = (uint32_t)((uint64_t)i * MCSI_ONE / n);
+}
+/* Turns n weights (finite, not negative) into n + 1 cumulative sums, 0 to 2^31, in their place. An entry that is not zero
+ * has a share of at least 1. Returns the sum of the weights; when it is 0, all shares are alike. The quarters of the list
+ * take turns, as each sum has to wait for the one before it. */
+MCS_FN double mcsi_sums_build(uint32_t *sums, uint32_t n) {
     mcsi_run a = {0.0, 0.0, 0};
     mcsi_run b = a;
     mcsi_run c = a;
     mcsi_run d = a;
+    const uint32_t quarter = n / 4;
+    for (uint32_t i = 0; i < quarter; i++) {
+        mcsi_run_add(&a, sums, i);
+        mcsi_run_add(&b, sums, quarter + i);
+        mcsi_run_add(&c, sums, 2 * quarter + i);
+        mcsi_run_add(&d, sums, 3 * quarter + i);
+    }
+    for (uint32_t i = 4 * quarter; i < n; i++) mcsi_run_add(&d, sums, i);
     double total = 0.0;
     uint32_t some = 0;
-    const uint32_t part = n / 4;
-    for (uint32_t i = 0; i < part; i++) {
-        mcsi_run_add(&a, cdf, i);
-        mcsi_run_add(&b, cdf, part + i);
-        mcsi_run_add(&c, cdf, 2 * part + i);
-        mcsi_run_add(&d, cdf, 3 * part + i);
-    }
-    for (uint32_t i = 4 * part; i < n; i++) mcsi_run_add(&d, cdf, i);
-    mcsi_run_start(&a, &total, &some);
-    mcsi_run_start(&b, &total, &some);
-    mcsi_run_start(&c, &total, &some);
-    mcsi_run_start(&d, &total, &some);
-    cdf[n] = MCSI_ONE;
+    mcsi_run_restart(&a, &total, &some);
+    mcsi_run_restart(&b, &total, &some);
+    mcsi_run_restart(&c, &total, &some);
+    mcsi_run_restart(&d, &total, &some);
+    sums[n] = MCSI_ONE;
     if (some == 0) {
-        for (uint32_t i = 0; i < n; i++) cdf[i] = (uint32_t)((uint64_t)i * MCSI_ONE / n);
+        mcsi_sums_even(sums, n);
         return 0.0;
     }
     const double scale = (double)(MCSI_ONE - some) / total;
-    for (uint32_t i = 0; i < part; i++) {
-        mcsi_run_put(&a, cdf, i, scale, some);
-        mcsi_run_put(&b, cdf, part + i, scale, some);
-        mcsi_run_put(&c, cdf, 2 * part + i, scale, some);
-        mcsi_run_put(&d, cdf, 3 * part + i, scale, some);
+    for (uint32_t i = 0; i < quarter; i++) {
+        mcsi_run_put(&a, sums, i, scale, some);
+        mcsi_run_put(&b, sums, quarter + i, scale, some);
+        mcsi_run_put(&c, sums, 2 * quarter + i, scale, some);
+        mcsi_run_put(&d, sums, 3 * quarter + i, scale, some);
     }
-    for (uint32_t i = 4 * part; i < n; i++) mcsi_run_put(&d, cdf, i, scale, some);
+    for (uint32_t i = 4 * quarter; i < n; i++) mcsi_run_put(&d, sums, i, scale, some);
     return total;
 }
 
-/* Guide tables: entry g of 2^k is the last i with cdf[i] <= g 2^shift, and one more entry is the last that can be drawn. Entries
- * are uint16_t where lists are short enough (rows of images), else uint32_t. */
-MCS_FN uint32_t mcsi_guide_shift(uint32_t n, uint32_t cells_per_entry) {
+/* The shift of a guide with about one entry for `per_guide` of n. */
+MCS_FN uint32_t mcsi_guide_shift(uint32_t n, uint32_t per_guide) {
     uint32_t shift = 31;
-    while (shift > 0 && (MCSI_ONE >> (shift - 1)) <= n / cells_per_entry) shift--;
+    while (shift > 0 && (MCSI_ONE >> (shift - 1)) <= n / per_guide) shift--;
     return shift;
 }
-#define MCSI_GUIDE_BUILD(guide, type, shift, cdf, n)                                                              \
-    do {                                                                                                          \
-        const uint32_t end_ = MCSI_ONE >> (shift);                                                                \
-        uint32_t last_ = (n)-1;                                                                                   \
-        for (uint32_t g_ = 0; g_ <= end_; g_++) (guide)[g_] = 0;                                                  \
-        for (uint32_t i_ = 0; i_ < (n); i_++) (guide)[((cdf)[i_] + ((1u << (shift)) - 1)) >> (shift)] = (type)i_; \
-        for (uint32_t g_ = 1; g_ < end_; g_++)                                                                    \
-            if ((guide)[g_] < (guide)[g_ - 1]) (guide)[g_] = (guide)[g_ - 1];                                     \
-        while ((cdf)[last_] == MCSI_ONE) last_--;                                                                 \
-        (guide)[end_] = (type)last_;                                                                              \
-    } while (0)
-/* The cell that holds U: the last i in [lo, hi] with cdf[i] <= U, one that is known to be there. Without branches where the guide
- * leaves few cells, as nothing could predict them. */
-MCSI_CORE uint32_t mcsi_cdf_search(const uint32_t *cdf, uint32_t n, uint32_t lo, uint32_t hi, uint32_t U) {
+/* Entries of a guide, the last one included. */
+MCSI_CORE uint32_t mcsi_guide_length(uint32_t shift) { return (MCSI_ONE >> shift) + 1; }
+MCSI_CORE uint32_t mcsi_guide_get(const void *guide, uint32_t bytes, uint32_t g) {
+    return bytes == 2 ? ((const uint16_t *)guide)[g] : ((const uint32_t *)guide)[g];
+}
+MCSI_CORE void mcsi_guide_put(void *guide, uint32_t bytes, uint32_t g, uint32_t i) {
+    if (bytes == 2) ((uint16_t *)guide)[g] = (uint16_t)i;
+    else ((uint32_t *)guide)[g] = i;
+}
+/* Fills the guide of n entries. First each entry i goes to the first g that may start at it, later ones over earlier ones;
+ * then what was left out takes over its neighbour's. */
+MCSI_CORE void mcsi_guide_build(void *guide, uint32_t bytes, uint32_t shift, const uint32_t *sums, uint32_t n) {
+    const uint32_t end = MCSI_ONE >> shift;
+    MCSI_FILL(guide, 0, ((size_t)end + 1) * bytes);
+    for (uint32_t i = 0; i < n; i++) mcsi_guide_put(guide, bytes, (sums[i] + ((1u << shift) - 1)) >> shift, i);
+    for (uint32_t g = 1; g < end; g++) {
+        const uint32_t before = mcsi_guide_get(guide, bytes, g - 1);
+        if (mcsi_guide_get(guide, bytes, g) < before) mcsi_guide_put(guide, bytes, g, before);
+    }
+    uint32_t last = n - 1;
+    while (sums[last] == MCSI_ONE) last--;
+    mcsi_guide_put(guide, bytes, end, last);
+}
+
+/* The last i in [lo, hi] with sums[i] <= U. Requires sums[lo] <= U. Free of branches for up to 4 entries, which no
+ * predictor could learn. */
+MCSI_CORE uint32_t mcsi_cdf_search(const uint32_t *sums, uint32_t n, uint32_t lo, uint32_t hi, uint32_t U) {
     uint32_t left = hi - lo + 1;
     if (left <= 4 && n >= 4) {
         lo = lo < n - 4 ? lo : n - 4;
-        lo += (uint32_t)(cdf[lo + 2] <= U) << 1;
-        return lo + (uint32_t)(cdf[lo + 1] <= U);
+        lo += (uint32_t)(sums[lo + 2] <= U) << 1;
+        return lo + (uint32_t)(sums[lo + 1] <= U);
     }
-    for (; left > 1; left -= left / 2) lo += (left / 2) * (uint32_t)(cdf[lo + left / 2] <= U);
+    for (; left > 1; left -= left / 2) lo += (left / 2) * (uint32_t)(sums[lo + left / 2] <= U);
     return lo;
 }
+/* The entry that holds U, U < 2^31. */
+MCSI_CORE uint32_t mcsi_cdf_find(const mcsi_cdf *c, uint32_t U) {
+    const uint32_t g = U >> c->shift;
+    const uint32_t lo = mcsi_guide_get(c->guide, c->guide_bytes, g);
+    const uint32_t hi = mcsi_guide_get(c->guide, c->guide_bytes, g + 1);
+    return mcsi_cdf_search(c->sums, c->n, lo, hi, U);
+}
+MCSI_CORE uint32_t mcsi_cdf_mass(const mcsi_cdf *c, uint32_t i) { return c->sums[i + 1] - c->sums[i]; }
+/* Whether sums and guide are as the builders leave them. */
+MCS_FN int mcsi_cdf_ok(const mcsi_cdf *c) {
+    const uint32_t *sums = c->sums;
+    const uint32_t n = c->n;
+    const uint32_t end = MCSI_ONE >> c->shift;
+    if (sums[0] != 0 || sums[n] != MCSI_ONE) return 0;
+    for (uint32_t i = 0; i < n; i++)
+        if (sums[i] > sums[i + 1]) return 0;
+    for (uint32_t g = 0; g < end; g++) {
+        const uint32_t i = mcsi_guide_get(c->guide, c->guide_bytes, g);
+        if (i >= n || sums[i] > g << c->shift || sums[i + 1] <= g << c->shift) return 0;
+    }
+    const uint32_t last = mcsi_guide_get(c->guide, c->guide_bytes, end);
+    return last < n && sums[last] < MCSI_ONE && sums[last + 1] == MCSI_ONE;
+}
+
+/* ---- entries of a pwc table: of a random number, of random bits, of x ---- */
+
+enum { MCSI_CELLS_MAX = 1 << 28 };
+/* Offsets in a table of n cells, in bytes; the vertices are those of pwl. The guide is that of mcsi_guide_shift(n, 1). */
+typedef struct {
+    size_t sums, guide, vertices, pwc_bytes, pwl_bytes;
+} mcsi_pwc_offsets;
+MCSI_CORE mcsi_pwc_offsets mcsi_pwc_layout(uint32_t n, uint32_t shift) {
+    mcsi_pwc_offsets o;
+    o.sums = sizeof(mcs_pwc);
+    o.guide = o.sums + ((size_t)n + 1) * sizeof(uint32_t);
+    o.vertices = o.guide + (size_t)mcsi_guide_length(shift) * sizeof(uint32_t);
+    o.pwc_bytes = (o.vertices + 7) / 8 * 8;
+    o.pwl_bytes = (o.vertices + ((size_t)n + 1) * sizeof(float) + 7) / 8 * 8;
+    return o;
+}
+MCSI_CORE mcsi_cdf mcsi_pwc_cdf(const mcs_pwc *t) {
+    const mcsi_pwc_offsets o = mcsi_pwc_layout(t->n, t->shift);
+    mcsi_cdf c;
+    c.sums = MCSI_READ(uint32_t, t, o.sums);
+    c.guide = MCSI_READ(uint32_t, t, o.guide);
+    c.n = t->n;
+    c.shift = t->shift;
+    c.guide_bytes = sizeof(uint32_t);
+    return c;
+}
+/* An entry of a table, its share of 2^31, and a position within it, 0 to 1. */
+typedef struct {
+    double within;
+    uint32_t i, mass;
+} mcsi_entry;
+MCS_FN mcsi_entry mcsi_entry_of_u(const mcs_pwc *t, float u) {
+    const double U = (double)u * MCSI_ONE;
+    const mcsi_cdf c = mcsi_pwc_cdf(t);
+    mcsi_entry p;
+    p.i = mcsi_cdf_find(&c, (uint32_t)U);
+    p.mass = mcsi_cdf_mass(&c, p.i);
+    p.within = (U - c.sums[p.i]) / p.mass;
+    return p;
+}
+/* All 64 bits count: 31 find the entry. What they leave and the others are the position, exact until it is divided. */
+MCS_FN mcsi_entry mcsi_entry_of_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
+    const uint64_t U = (uint64_t)b1 << 32 | b2; /* 2^33 times that of a float u */
+    const mcsi_cdf c = mcsi_pwc_cdf(t);
+    mcsi_entry p;
+    p.i = mcsi_cdf_find(&c, (uint32_t)(U >> 33));
+    p.mass = mcsi_cdf_mass(&c, p.i);
+    p.within = (double)(U - ((uint64_t)c.sums[p.i] << 33)) / ((double)p.mass * 8589934592.0);
+    p.within = p.within < 1.0 ? p.within : 1.0 - 0.5 * DBL_EPSILON;
+    return p;
+}
+/* The cell of x. Outside [0,1] it is the start of the first one, with no share. */
+MCS_FN mcsi_entry mcsi_entry_of_x(const mcs_pwc *t, float x) {
+    const mcsi_cdf c = mcsi_pwc_cdf(t);
+    const int ok = x >= 0.0f && x <= 1.0f;
+    const double v = ok ? (double)x * t->n : 0.0;
+    mcsi_entry p;
+    p.i = v < t->n ? (uint32_t)v : t->n - 1;
+    p.mass = ok ? mcsi_cdf_mass(&c, p.i) : 0;
+    p.within = v - p.i;
+    return p;
+}
+
+/* ---- [tables] pwc and discrete ---- */
+
 /* A number in [0,1) as float, never rounded up to 1. */
 MCS_FN float mcsi_below_one(double x) { return x < 0.99999994 ? (float)x : 0.99999994f; }
-/* (i + f)/n as a float that lies in cell i: rounding must not carry it into the next cell, which may be empty. */
-MCS_FN float mcsi_in_cell(uint32_t i, double f, uint32_t n) {
-    float x = mcsi_below_one(((double)i + f) / n);
+/* (i + within)/n as a float that lies in cell i: rounding must not carry it into the next cell, which may be empty. */
+MCS_FN float mcsi_in_cell(uint32_t i, double within, uint32_t n) {
+    float x = mcsi_below_one(((double)i + within) / n);
     while ((double)x * n >= (double)i + 1.0) x = mcsi_from_bits(mcsi_bits(x) - 1);
     while ((double)x * n < (double)i) x = mcsi_from_bits(mcsi_bits(x) + 1);
     return mcsi_min(x, 0.99999994f);
 }
-/* One less than the alignment of the caller's memory: that of a double, 8 bytes but on i386. */
-typedef struct {
-    char before;
-    double at;
-} mcsi_aligned;
-#define MCSI_ALIGN (offsetof(mcsi_aligned, at) - 1)
-MCS_FN mcs_status mcsi_table_check(const void *t, size_t bytes, const void *source, size_t need) {
-    if (!t || !source || ((uintptr_t)t & MCSI_ALIGN)) return MCS_ERR_ARG;
-    if (need == 0) return MCS_ERR_SIZE;
-    return bytes < need ? MCS_ERR_MEMORY : MCS_OK;
-}
-enum { MCSI_CELLS_MAX = 1 << 28 };
-MCS_FN const uint32_t *mcsi_cdf(const mcs_pwc *t) { return (const uint32_t *)(const void *)(t + 1); }
-MCS_FN const uint32_t *mcsi_guide(const mcs_pwc *t) { return mcsi_cdf(t) + t->n + 1; }
-/* Tables end at a multiple of 8 bytes. */
-MCSI_CORE void mcsi_words_end(uint32_t *words, size_t n) {
-    if (n & 1) words[n] = 0;
-}
-MCS_FN size_t mcsi_pwc_words(uint32_t n) { return (size_t)n + 2 + (MCSI_ONE >> mcsi_guide_shift(n, 1)); }
-
 MCS_API size_t mcs_pwc_bytes(uint32_t n) {
-    return n && n <= MCSI_CELLS_MAX ? (sizeof(mcs_pwc) + mcsi_pwc_words(n) * sizeof(uint32_t) + 7) / 8 * 8 : 0;
+    return n && n <= MCSI_CELLS_MAX ? mcsi_pwc_layout(n, mcsi_guide_shift(n, 1)).pwc_bytes : 0;
 }
-/* The words hold the weights. */
+/* Header, sums and guide of n weights that stand in the place of the sums. */
 MCS_FN mcs_status mcsi_pwc_fill(mcs_pwc *t, uint32_t n, uint32_t bad) {
-    uint32_t *cdf = (uint32_t *)(void *)(t + 1);
-    uint32_t *guide = cdf + n + 1;
     t->n = n;
     t->bad = bad;
     t->unused = 0;
     t->shift = mcsi_guide_shift(n, 1);
-    t->total = mcsi_cdf_build(cdf, n);
-    MCSI_GUIDE_BUILD(guide, uint32_t, t->shift, cdf, n);
+    const mcsi_pwc_offsets o = mcsi_pwc_layout(n, t->shift);
+    uint32_t *sums = MCSI_WRITE(uint32_t, t, o.sums);
+    t->total = mcsi_sums_build(sums, n);
+    mcsi_guide_build(MCSI_WRITE(uint32_t, t, o.guide), sizeof(uint32_t), t->shift, sums, n);
     return t->total > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
+/* Tables end at a multiple of 8 bytes: what the lists leave of it is 0. */
+MCSI_CORE void mcsi_pwc_pad(mcs_pwc *t, size_t used, size_t bytes) {
+    if (used < bytes) *MCSI_WRITE(uint32_t, t, used) = 0;
+}
 MCS_API mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n) {
-    const mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwc_bytes(n));
-    if (e) return e;
-    uint32_t *words = (uint32_t *)(void *)(t + 1);
-    const uint32_t bad = mcsi_weights_in(words, f, n);
-    mcsi_words_end(words, mcsi_pwc_words(n));
+    const mcs_status status = mcsi_table_check(t, bytes, f, mcs_pwc_bytes(n));
+    if (status) return status;
+    const mcsi_pwc_offsets o = mcsi_pwc_layout(n, mcsi_guide_shift(n, 1));
+    const uint32_t bad = mcsi_weights_in(MCSI_WRITE(uint32_t, t, o.sums), f, n);
+    mcsi_pwc_pad(t, o.vertices, o.pwc_bytes);
     return mcsi_pwc_fill(t, n, bad);
+}
+/* The mean of f over cell i of n, by Gauss's rule with 4 points. */
+MCS_FN float mcsi_cell_mean(float (*f)(float x, void *context), void *context, uint32_t i, uint32_t n) {
+    const double a = 0.34785484513745385 * ((double)f((float)((i + 0.069431844202973712) / n), context) +
+                                            (double)f((float)((i + 0.93056815579702629) / n), context));
+    const double b = 0.65214515486254614 * ((double)f((float)((i + 0.33000947820757187) / n), context) +
+                                            (double)f((float)((i + 0.66999052179242813) / n), context));
+    return (float)(0.5 * (a + b));
 }
 MCS_API mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context,
                                     uint32_t n) {
-    const mcs_status e = mcsi_table_check(t, bytes, f ? (const void *)t : NULL, mcs_pwc_bytes(n));
+    const mcs_status status = mcsi_table_check(t, bytes, f ? (const void *)t : NULL, mcs_pwc_bytes(n));
+    if (status) return status;
+    const mcsi_pwc_offsets o = mcsi_pwc_layout(n, mcsi_guide_shift(n, 1));
+    uint32_t *words = MCSI_WRITE(uint32_t, t, o.sums);
     uint32_t bad = 0;
-    if (e) return e;
-    uint32_t *words = (uint32_t *)(void *)(t + 1);
-    for (uint32_t i = 0; i < n; i++) {
-        const double a = 0.34785484513745385 * ((double)f((float)((i + 0.069431844202973712) / n), context) +
-                                                (double)f((float)((i + 0.93056815579702629) / n), context));
-        const double b = 0.65214515486254614 * ((double)f((float)((i + 0.33000947820757187) / n), context) +
-                                                (double)f((float)((i + 0.66999052179242813) / n), context));
-        mcsi_put_weight(words + i, mcsi_clean((float)(0.5 * (a + b)), &bad));
-    }
-    mcsi_words_end(words, mcsi_pwc_words(n));
+    for (uint32_t i = 0; i < n; i++) mcsi_put_weight(words + i, mcsi_clean(mcsi_cell_mean(f, context, i, n), &bad));
+    mcsi_pwc_pad(t, o.vertices, o.pwc_bytes);
     return mcsi_pwc_fill(t, n, bad);
 }
-/* A draw: the cell, its share, and the place in it, in [0,1). */
-typedef struct {
-    double place;
-    uint32_t i, mass;
-} mcsi_pwc_place;
-MCSI_CORE uint32_t mcsi_pwc_find(const mcs_pwc *t, uint32_t U) {
-    const uint32_t *guide = mcsi_guide(t) + (U >> t->shift);
-    return mcsi_cdf_search(mcsi_cdf(t), t->n, guide[0], guide[1], U);
-}
-MCS_FN mcsi_pwc_place mcsi_pwc_draw(const mcs_pwc *t, float u) {
-    const double U = (double)u * MCSI_ONE;
-    const uint32_t i = mcsi_pwc_find(t, (uint32_t)U);
-    const uint32_t *cdf = mcsi_cdf(t) + i;
-    mcsi_pwc_place p;
-    p.i = i;
-    p.mass = cdf[1] - cdf[0];
-    p.place = (U - cdf[0]) / p.mass;
-    return p;
-}
-/* All 64 bits count: 31 find the cell, and with what those leave the others are its place, exact until it is divided. */
-MCS_FN mcsi_pwc_place mcsi_pwc_draw_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
-    const uint64_t U = (uint64_t)b1 << 32 | b2; /* 2^33 times that of a float u */
-    const uint32_t i = mcsi_pwc_find(t, (uint32_t)(U >> 33));
-    const uint32_t *cdf = mcsi_cdf(t) + i;
-    mcsi_pwc_place p;
-    p.i = i;
-    p.mass = cdf[1] - cdf[0];
-    p.place = (double)(U - ((uint64_t)cdf[0] << 33)) / ((double)p.mass * 8589934592.0);
-    p.place = p.place < 1.0 ? p.place : 1.0 - 0.5 * DBL_EPSILON;
-    return p;
-}
-/* The cell of x, with the place of x in it; ok when x is in [0,1]. */
-MCS_FN uint32_t mcsi_pwc_cell(const mcs_pwc *t, float x, double *place, int *ok) {
-    double v = (double)x * t->n;
-    *ok = x >= 0.0f && x <= 1.0f;
-    v = *ok ? v : 0.0;
-    const uint32_t i = v < t->n ? (uint32_t)v : t->n - 1;
-    *place = v - i;
-    return i;
-}
-MCSI_CORE mcs_cell mcsi_pwc_cell_at(const mcs_pwc *t, mcsi_pwc_place p, int ok) {
+
+MCSI_CORE mcs_cell mcsi_pwc_cell(const mcs_pwc *t, mcsi_entry p, int ok) {
     mcs_cell c;
     c.i = p.i;
-    c.x = mcsi_in_cell(p.i, p.place, t->n);
+    c.x = mcsi_in_cell(p.i, p.within, t->n);
     c.pdf = ok ? (float)((double)p.mass / MCSI_ONE * t->n) : 0.0f;
     return c;
 }
 MCS_API mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u) {
     int32_t ok = 1;
     u = mcsi_sane_u(u, &ok);
-    return mcsi_pwc_cell_at(t, mcsi_pwc_draw(t, u), ok);
+    return mcsi_pwc_cell(t, mcsi_entry_of_u(t, u), ok);
 }
 MCS_API mcs_cell mcs_pwc_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
-    return mcsi_pwc_cell_at(t, mcsi_pwc_draw_bits(t, b1, b2), 1);
+    return mcsi_pwc_cell(t, mcsi_entry_of_bits(t, b1, b2), 1);
 }
 MCS_API float mcs_pwc_pdf(const mcs_pwc *t, float x) {
-    double place;
-    int ok;
-    const uint32_t i = mcsi_pwc_cell(t, x, &place, &ok);
-    return ok ? (float)((double)(mcsi_cdf(t)[i + 1] - mcsi_cdf(t)[i]) / MCSI_ONE * t->n) : 0.0f;
+    return (float)((double)mcsi_entry_of_x(t, x).mass / MCSI_ONE * t->n);
 }
 MCS_API float mcs_pwc_invert(const mcs_pwc *t, float x) {
-    double place;
-    int ok;
-    const uint32_t i = mcsi_pwc_cell(t, x > 1.0f ? 1.0f : x, &place, &ok);
-    const uint32_t a = mcsi_cdf(t)[i];
-    return mcsi_below_one((a + place * (mcsi_cdf(t)[i + 1] - a)) / MCSI_ONE);
+    const mcsi_entry p = mcsi_entry_of_x(t, x > 1.0f ? 1.0f : x);
+    return mcsi_below_one((mcsi_pwc_cdf(t).sums[p.i] + p.within * p.mass) / MCSI_ONE);
 }
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf) {
@@ -4625,98 +4710,99 @@ MCS_API void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float 
     }
 }
 #endif
-MCSI_CORE mcs_pick mcsi_discrete_pick(mcsi_pwc_place p, int ok) {
+MCSI_CORE mcs_pick mcsi_discrete_pick(mcsi_entry p, int ok) {
     mcs_pick c;
     c.i = p.i;
-    c.u = mcsi_below_one(p.place);
+    c.u = mcsi_below_one(p.within);
     c.pmf = ok ? (float)((double)p.mass / MCSI_ONE) : 0.0f;
     return c;
 }
 MCS_API mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u) {
     int32_t ok = 1;
     u = mcsi_sane_u(u, &ok);
-    return mcsi_discrete_pick(mcsi_pwc_draw(t, u), ok);
+    return mcsi_discrete_pick(mcsi_entry_of_u(t, u), ok);
 }
 MCS_API mcs_pick mcs_discrete_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
-    return mcsi_discrete_pick(mcsi_pwc_draw_bits(t, b1, b2), 1);
+    return mcsi_discrete_pick(mcsi_entry_of_bits(t, b1, b2), 1);
 }
 MCS_API float mcs_discrete_pmf(const mcs_pwc *t, uint32_t i) {
-    return i < t->n ? (float)((double)(mcsi_cdf(t)[i + 1] - mcsi_cdf(t)[i]) / MCSI_ONE) : 0.0f;
+    if (i >= t->n) return 0.0f;
+    const mcsi_cdf c = mcsi_pwc_cdf(t);
+    return (float)((double)mcsi_cdf_mass(&c, i) / MCSI_ONE);
 }
 
+/* ---- [tables] pwl ---- */
+
 MCS_API size_t mcs_pwl_bytes(uint32_t n) {
-    return n && n <= MCSI_CELLS_MAX ? (sizeof(mcs_pwl) + (mcsi_pwc_words(n) + n + 1) * sizeof(uint32_t) + 7) / 8 * 8
-                                    : 0;
+    return n && n <= MCSI_CELLS_MAX ? mcsi_pwc_layout(n, mcsi_guide_shift(n, 1)).pwl_bytes : 0;
 }
-MCS_API mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n) {
-    mcs_status e = mcsi_table_check(t, bytes, f, mcs_pwl_bytes(n));
+/* Weights of the cells: the sum of both vertices, or half of it where sums could overflow. Returns the integral times n. */
+MCS_FN double mcsi_pwl_weights(uint32_t *words, const uint32_t *vertex, uint32_t n) {
     float top = 0.0f;
     double total = 0.0;
-    if (e) return e;
-    uint32_t *words = (uint32_t *)(void *)(t + 1);
-    uint32_t *vertex = words + mcsi_pwc_words(n);
-    const uint32_t bad = mcsi_weights_in(vertex, f, n + 1);
-    mcsi_words_end(words, mcsi_pwc_words(n) + n + 1);
     for (uint32_t i = 0; i <= n; i++) top = mcsi_max(top, mcsi_word_weight(vertex + i));
-    for (uint32_t i = 0; i < n;
-         i++) { /* a cell weighs the sum of its vertices, or half of it where that could overflow */
+    for (uint32_t i = 0; i < n; i++) {
         const float a = mcsi_word_weight(vertex + i);
         const float b = mcsi_word_weight(vertex + i + 1);
         const float w = top > 1e38f ? 0.5f * a + 0.5f * b : a + b;
         mcsi_put_weight(words + i, w > 0.0f ? w : mcsi_max(a, b));
         total += 0.5 * ((double)a + (double)b);
     }
-    e = mcsi_pwc_fill(&t->cells, n, bad);
+    return total;
+}
+MCS_API mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n) {
+    mcs_status status = mcsi_table_check(t, bytes, f, mcs_pwl_bytes(n));
+    if (status) return status;
+    const mcsi_pwc_offsets o = mcsi_pwc_layout(n, mcsi_guide_shift(n, 1));
+    uint32_t *vertex = MCSI_WRITE(uint32_t, t, o.vertices);
+    const uint32_t bad = mcsi_weights_in(vertex, f, n + 1);
+    mcsi_pwc_pad(&t->cells, o.vertices + ((size_t)n + 1) * sizeof *vertex, o.pwl_bytes);
+    const double total = mcsi_pwl_weights(MCSI_WRITE(uint32_t, t, o.sums), vertex, n);
+    status = mcsi_pwc_fill(&t->cells, n, bad);
     t->cells.total = total;
-    for (uint32_t i = 0; e == MCS_UNIFORM && i <= n; i++) mcsi_put_weight(vertex + i, 1.0f);
-    return e;
+    for (uint32_t i = 0; status == MCS_UNIFORM && i <= n; i++) mcsi_put_weight(vertex + i, 1.0f);
+    return status;
 }
-MCS_FN const float *mcsi_pwl_vertices(const mcs_pwl *t) {
-    return (const float *)(const void *)(t + 1) + mcsi_pwc_words(t->cells.n);
+MCSI_CORE const float *mcsi_pwl_vertices(const mcs_pwl *t) {
+    return MCSI_READ(float, t, mcsi_pwc_layout(t->cells.n, t->cells.shift).vertices);
 }
-/* Within cell i the density is mass * n times a linear density on [0,1]. */
-MCSI_CORE mcs_cell mcsi_pwl_cell_at(const mcs_pwl *t, mcsi_pwc_place p, int ok) {
-    double a = (double)mcsi_pwl_vertices(t)[p.i];
-    double b = (double)mcsi_pwl_vertices(t)[p.i + 1];
-    double r = a + b;
-    a /= r;
-    b /= r;
-    r = mcsi_sqrt_d((1.0 - p.place) * a * a + p.place * b * b);
+/* Vertices a and b, scaled to a + b = 1: at the position s of its cell the density is mass n times 2((1 - s) a + s b). With
+ * w = within, the share of the cell below s, that is 2r, r = sqrt((1 - w) a^2 + w b^2). s = w/(a + r), without cancellation. */
+MCSI_CORE mcs_cell mcsi_pwl_cell(const mcs_pwl *t, mcsi_entry p, int ok) {
+    const float *vertex = mcsi_pwl_vertices(t) + p.i;
+    const double sum = (double)vertex[0] + (double)vertex[1];
+    const double a = (double)vertex[0] / sum;
+    const double b = (double)vertex[1] / sum;
+    const double r = mcsi_sqrt_d((1.0 - p.within) * a * a + p.within * b * b);
     mcs_cell c;
     c.i = p.i;
-    c.x = mcsi_in_cell(p.i, r > 0.0 ? p.place / (a + r) : 0.0, t->cells.n);
+    c.x = mcsi_in_cell(p.i, r > 0.0 ? p.within / (a + r) : 0.0, t->cells.n);
     c.pdf = ok ? (float)((double)p.mass / MCSI_ONE * t->cells.n * 2.0 * r) : 0.0f;
     return c;
 }
 MCS_API mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u) {
     int32_t ok = 1;
     u = mcsi_sane_u(u, &ok);
-    return mcsi_pwl_cell_at(t, mcsi_pwc_draw(&t->cells, u), ok);
+    return mcsi_pwl_cell(t, mcsi_entry_of_u(&t->cells, u), ok);
 }
 MCS_API mcs_cell mcs_pwl_sample_bits(const mcs_pwl *t, uint32_t b1, uint32_t b2) {
-    return mcsi_pwl_cell_at(t, mcsi_pwc_draw_bits(&t->cells, b1, b2), 1);
+    return mcsi_pwl_cell(t, mcsi_entry_of_bits(&t->cells, b1, b2), 1);
 }
 MCS_API float mcs_pwl_pdf(const mcs_pwl *t, float x) {
-    const float *v = mcsi_pwl_vertices(t);
-    double place;
-    int ok;
-    const uint32_t i = mcsi_pwc_cell(&t->cells, x, &place, &ok);
-    const double mass = mcsi_cdf(&t->cells)[i + 1] - mcsi_cdf(&t->cells)[i];
-    const double sum = (double)v[i] + (double)v[i + 1];
-    return ok && sum > 0.0 ? (float)(mass / MCSI_ONE * t->cells.n * 2.0 *
-                                     ((1.0 - place) * (double)v[i] + place * (double)v[i + 1]) / sum)
-                           : 0.0f;
+    const mcsi_entry p = mcsi_entry_of_x(&t->cells, x);
+    const float *vertex = mcsi_pwl_vertices(t) + p.i;
+    const double sum = (double)vertex[0] + (double)vertex[1];
+    if (!(sum > 0.0)) return 0.0f;
+    return (float)((double)p.mass / MCSI_ONE * t->cells.n * 2.0 *
+                   ((1.0 - p.within) * (double)vertex[0] + p.within * (double)vertex[1]) / sum);
 }
 MCS_API float mcs_pwl_invert(const mcs_pwl *t, float x) {
-    const float *v = mcsi_pwl_vertices(t);
-    double place;
-    int ok;
-    const uint32_t i = mcsi_pwc_cell(&t->cells, x > 1.0f ? 1.0f : x, &place, &ok);
-    const double a = mcsi_cdf(&t->cells)[i];
-    const double mass = mcsi_cdf(&t->cells)[i + 1] - a;
-    const double sum = (double)v[i] + (double)v[i + 1];
-    place = sum > 0.0 ? place * ((double)v[i] * (2.0 - place) + (double)v[i + 1] * place) / sum : 0.0;
-    return mcsi_below_one((a + place * mass) / MCSI_ONE);
+    const mcsi_entry p = mcsi_entry_of_x(&t->cells, x > 1.0f ? 1.0f : x);
+    const float *vertex = mcsi_pwl_vertices(t) + p.i;
+    const double a = (double)vertex[0];
+    const double b = (double)vertex[1];
+    const double before = a + b > 0.0 ? p.within * (a * (2.0 - p.within) + b * p.within) / (a + b) : 0.0;
+    return mcsi_below_one(((double)mcsi_pwc_cdf(&t->cells).sums[p.i] + before * p.mass) / MCSI_ONE);
 }
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float *x, float *pdf) {
@@ -4728,57 +4814,50 @@ MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float 
 }
 #endif
 
-/* Alias table. An entry's weight is an integer share of n * 2^31 (exact); column i keeps `cut` of its 2^31 for i, the rest is
- * alias. */
+/* ---- [tables] alias ---- */
+
+/* weight is an entry's share of n 2^31, exact. Column i keeps `cut` of its 2^31 for entry i; the rest is entry `alias`. */
 typedef struct {
     uint64_t weight;
     uint32_t cut, alias;
 } mcsi_column;
-MCS_FN mcsi_column *mcsi_columns(const mcs_alias *t) {
-    return (mcsi_column *)(void *)((char *)(uintptr_t)t + sizeof(mcs_alias));
-}
+MCSI_CORE const mcsi_column *mcsi_columns(const mcs_alias *t) { return MCSI_READ(mcsi_column, t, sizeof *t); }
 MCS_API size_t mcs_alias_bytes(uint32_t n) { /* the largest do not fit the size_t of a 32-bit machine */
     const uint64_t bytes = sizeof(mcs_alias) + (uint64_t)n * sizeof(mcsi_column);
     return n && n <= MCSI_CELLS_MAX && (size_t)bytes == bytes ? (size_t)bytes : 0;
 }
+/* What a column still has to give, while the table is built: it stands in the place of cut and alias. */
 MCS_FN uint64_t mcsi_column_left(const mcsi_column *c) { return ((uint64_t)c->alias << 32) | c->cut; }
 MCS_FN void mcsi_column_leave(mcsi_column *c, uint64_t left) {
     c->cut = (uint32_t)left;
     c->alias = (uint32_t)(left >> 32);
 }
-MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n) {
-    const mcs_status e = mcsi_table_check(t, bytes, w, mcs_alias_bytes(n));
-    double sum = 0.0;
+/* Integer weights of n entries, by cumulative sums, so that they add up to n 2^31 exactly. `some` of them are not zero and
+ * get at least 1; with some = 0 all are alike. */
+MCS_FN void mcsi_alias_weights(mcsi_column *c, const float *w, uint32_t n, double total, uint32_t some) {
     const uint64_t all = (uint64_t)n << 31;
+    const uint32_t last = some ? some : n;
     uint64_t given = 0;
-    uint32_t some = 0;
     uint32_t seen = 0;
-    uint32_t donor = 0;
-    uint32_t bad = 0;
-    if (e) return e;
-    mcsi_column *c = mcsi_columns(t);
-    t->n = n;
-    t->total = 0.0;
+    uint32_t uncounted = 0;
+    double sum = 0.0;
     for (uint32_t i = 0; i < n; i++) {
-        const double v = (double)mcsi_clean(w[i], &bad);
-        t->total += v;
-        some += v > 0.0;
-    }
-    t->bad = bad;
-    for (uint32_t i = 0; i < n; i++) { /* cumulative shares, so that they add up to n * 2^31 exactly */
-        const double v = some ? (double)mcsi_clean(w[i], &bad) : 1.0;
+        const double v = some ? (double)mcsi_clean(w[i], &uncounted) : 1.0;
         sum += v;
         seen += v > 0.0;
-        const double part = some ? sum / t->total * (double)(all - some) : (double)seen * MCSI_ONE;
-        uint64_t upto = (uint64_t)part;
+        const double share = some ? sum / total * (double)(all - some) : (double)seen * MCSI_ONE;
+        uint64_t upto = (uint64_t)share;
         upto = upto < all - some ? upto : all - some; /* their difference as double rounds, up to 2^54 */
-        upto = seen == (some ? some : n) ? all : (some ? seen : 0) + upto;
+        upto = seen == last ? all : (some ? seen : 0) + upto;
         c[i].weight = upto - given;
         given = upto;
         mcsi_column_leave(&c[i], c[i].weight);
     }
-    /* Columns short of 2^31 are filled up by the current donor. A donor that falls short thereby is filled by the next one: at once
-     * if the scan has passed it, else when the scan comes to it. */
+}
+/* Fills columns short of 2^31 from the current donor. A donor that falls short thereby is filled by the next one: at once
+ * if the scan has passed it, else when the scan comes to it. */
+MCS_FN void mcsi_alias_fill(mcsi_column *c, uint32_t n) {
+    uint32_t donor = 0;
     while (donor < n && c[donor].weight < MCSI_ONE) donor++;
     for (uint32_t i = 0; i < n; i++) {
         uint32_t k = i;
@@ -4793,13 +4872,35 @@ MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, u
     }
     for (uint32_t i = 0; i < n; i++)
         if (c[i].cut == MCSI_ONE) c[i].alias = i;
+}
+MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n) {
+    const mcs_status status = mcsi_table_check(t, bytes, w, mcs_alias_bytes(n));
+    if (status) return status;
+    uint32_t bad = 0;
+    uint32_t some = 0;
+    double total = 0.0;
+    for (uint32_t i = 0; i < n; i++) {
+        const double v = (double)mcsi_clean(w[i], &bad);
+        total += v;
+        some += v > 0.0;
+    }
+    mcsi_column *c = MCSI_WRITE(mcsi_column, t, sizeof *t);
+    t->n = n;
+    t->bad = bad;
+    t->total = total;
+    mcsi_alias_weights(c, w, n, total, some);
+    mcsi_alias_fill(c, n);
     return some ? MCS_OK : MCS_UNIFORM;
 }
-MCSI_CORE mcs_pick mcsi_alias_pick(const mcs_alias *t, uint32_t i, double place, int ok) {
+MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
+    return i < t->n ? (float)((double)mcsi_columns(t)[i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
+}
+/* U in [0, 2^31) is the position in column i. */
+MCSI_CORE mcs_pick mcsi_alias_pick(const mcs_alias *t, uint32_t i, double U, int ok) {
     const mcsi_column *k = mcsi_columns(t) + i;
     mcs_pick c;
-    c.i = place < k->cut ? i : k->alias;
-    c.u = mcsi_below_one(place < k->cut ? place / k->cut : (place - k->cut) / (MCSI_ONE - k->cut));
+    c.i = U < k->cut ? i : k->alias;
+    c.u = mcsi_below_one(U < k->cut ? U / k->cut : (U - k->cut) / (MCSI_ONE - k->cut));
     c.pmf = ok ? (float)((double)mcsi_columns(t)[c.i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
     return c;
 }
@@ -4812,9 +4913,6 @@ MCS_API mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t
     const uint64_t U = (uint64_t)b1 * t->n + ((uint64_t)b2 * t->n >> 32); /* 2^32 times that of sample */
     return mcsi_alias_pick(t, (uint32_t)(U >> 32), 0.5 * (uint32_t)U, 1);
 }
-MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
-    return i < t->n ? (float)((double)mcsi_columns(t)[i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
-}
 
 #endif /* MCS_NO_TABLES */
 #endif /* MCSI_W == 1 */
@@ -4822,47 +4920,61 @@ MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
 /* ==== [env] bodies */
 
 #ifndef MCS_NO_TABLES
-/* A point on its way: where it lies in its row's share of 2^31 and that share, where the row (less its margins) begins in
- * 1 - cos(theta) from the nearer pole and its height (negative when that is the southern one), and where it lies in its texel's
- * share. */
+/* ---- directions of points, and where directions lie, for all widths ---- */
+
+/* A draw between table and direction. row_rest/row_mass: position within the row, 0 to 1. edge: 1 - cos(theta) of the
+ * row's border nearer to a pole, margin included. height: extent of the row in 1 - cos(theta), negative for southern rows
+ * (the sign goes to z). col, col_rest/col_mass: column, and position within it. */
 typedef struct {
     mcs_f row_rest, row_mass, edge, height, col, col_rest, col_mass;
 } mcsi_env_point;
 /* What the rounding of a direction may move: samples keep 2^-22 of the map's width and height off the borders of their texel. */
 #define MCSI_ENV_MARGIN 2.384185791015625e-07
-/* `turn` is a column's width, `inner` the part of it within the margins. */
+/* turn: width of a column in turns. inner: width of its part within the margins. */
 MCSI_CORE mcs_vec3 mcsi_env_direction(const mcs_frame *f, const mcsi_env_point *p, float turn, float inner) {
     const mcs_f t = p->edge + p->row_rest / p->row_mass * p->height;
     const mcs_f sine = mcsi_sqrt(t * (2.0f - t));
     const mcs_f turns = p->col * turn + (p->col_rest / p->col_mass * inner + (float)MCSI_ENV_MARGIN);
     mcs_f s, c;
     mcsi_sincos_turns(turns, &s, &c);
-    return mcsi_to_world(f,
-                         mcsi_vec3(sine * c, sine * s,
-                                   mcsi_from_bits(mcsi_bits(1.0f - t) ^ (mcsi_bits(p->height) & (-0x7fffffff - 1)))));
+    const mcs_i south = mcsi_bits(p->height) & (-0x7fffffff - 1);
+    return mcsi_to_world(f, mcsi_vec3(sine * c, sine * s, mcsi_from_bits(mcsi_bits(1.0f - t) ^ south)));
 }
-/* Where a direction lies: 1 - |cos(theta)|, with the sign of cos(theta), and 4 for a bad direction; the angle to the nearer pole
- * and the azimuth in turns. */
-MCSI_CORE void mcsi_env_locate(const mcs_frame *f, mcs_vec3 w, mcs_f *off_pole, mcs_f *polar, mcs_f *turns) {
+/* off_pole: 1 - |cos(theta)|, with the sign of cos(theta); 4 for a bad direction. polar: angle to the nearer pole, in turns.
+ * azimuth: in turns, 0 to 1. */
+typedef struct {
+    mcs_f off_pole, polar, azimuth;
+} mcsi_angles;
+MCSI_CORE mcsi_angles mcsi_env_angles(const mcs_frame *f, mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     w = mcsi_to_local(f, mcsi_sane_direction(w, &ok));
     const mcs_f sine2 = w.x * w.x + w.y * w.y;
     const mcs_f up = mcsi_abs(w.z);
-    *off_pole = mcsi_sel(ok, mcsi_with_sign(sine2 / (1.0f + up), w.z), mcs_set(4.0f));
-    *polar = mcsi_atan2_turns(mcsi_sqrt(sine2), up);
-    *turns = mcsi_atan2_turns(w.y, w.x);
+    mcsi_angles a;
+    a.off_pole = mcsi_sel(ok, mcsi_with_sign(sine2 / (1.0f + up), w.z), mcs_set(4.0f));
+    a.polar = mcsi_atan2_turns(mcsi_sqrt(sine2), up);
+    a.azimuth = mcsi_atan2_turns(w.y, w.x);
+    return a;
 }
 #if MCSI_W == 1
+/* Draws of a block, for array forms: what is left of each, the row's lists, the texel, and the members of mcsi_env_point. */
 enum { MCSI_ENV_BLOCK = 32 };
 typedef struct {
-    const uint32_t *cdf[MCSI_ENV_BLOCK];
+    double u1, u2, density;
+} mcsi_draw; /* see "drawing" */
+typedef struct {
+    mcsi_draw draw[MCSI_ENV_BLOCK];
+    const uint32_t *sums[MCSI_ENV_BLOCK];
     const uint16_t *guide[MCSI_ENV_BLOCK];
-    double scale[MCSI_ENV_BLOCK], at[MCSI_ENV_BLOCK];
-    uint32_t in_col[MCSI_ENV_BLOCK], in_row[MCSI_ENV_BLOCK]; /* texel */
-    float row_rest[MCSI_ENV_BLOCK], row_mass[MCSI_ENV_BLOCK], edge[MCSI_ENV_BLOCK], height[MCSI_ENV_BLOCK],
-        col[MCSI_ENV_BLOCK], col_rest[MCSI_ENV_BLOCK], col_mass[MCSI_ENV_BLOCK], x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK],
-        z[MCSI_ENV_BLOCK], pdf[MCSI_ENV_BLOCK];
+    uint32_t in_col[MCSI_ENV_BLOCK], in_row[MCSI_ENV_BLOCK];
+    float row_rest[MCSI_ENV_BLOCK], row_mass[MCSI_ENV_BLOCK], edge[MCSI_ENV_BLOCK], height[MCSI_ENV_BLOCK];
+    float col[MCSI_ENV_BLOCK], col_rest[MCSI_ENV_BLOCK], col_mass[MCSI_ENV_BLOCK];
+    float x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK], z[MCSI_ENV_BLOCK], pdf[MCSI_ENV_BLOCK];
 } mcsi_env_block;
+/* Angles of up to a block of directions. */
+typedef struct {
+    float off_pole[MCSI_ENV_BLOCK], polar[MCSI_ENV_BLOCK], azimuth[MCSI_ENV_BLOCK];
+} mcsi_angles_block;
 #endif
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_frame mcsi_spread_frame(const mcsi_scalar_frame *f) {
@@ -4884,37 +4996,40 @@ MCSI_LOOP void mcsi_env_directions_loop(const mcsi_scalar_frame *f, size_t n, mc
         p.col = mcs_load(b->col + i);
         p.col_rest = mcs_load(b->col_rest + i);
         p.col_mass = mcs_load(b->col_mass + i);
-        mcs_vec3 v = mcsi_env_direction(&frame, &p, turn, inner);
+        const mcs_vec3 v = mcsi_env_direction(&frame, &p, turn, inner);
         mcs_store(b->x + i, v.x);
         mcs_store(b->y + i, v.y);
         mcs_store(b->z + i, v.z);
     }
 }
-MCSI_LOOP void mcsi_env_locate_loop(const mcsi_scalar_frame *f, size_t n, const float *x, const float *y,
-                                    const float *z, float *off_pole, float *polar, float *turns) {
+MCSI_LOOP void mcsi_env_angles_loop(const mcsi_scalar_frame *f, size_t n, const float *x, const float *y,
+                                    const float *z, mcsi_angles_block *angles) {
     const mcs_frame frame = mcsi_spread_frame(f);
     mcsi_batch b;
     mcsi_batch_start(&b, n, x, y, z);
-    b.out[0] = off_pole;
-    b.out[1] = polar;
-    b.out[2] = turns;
+    b.out[0] = angles->off_pole;
+    b.out[1] = angles->polar;
+    b.out[2] = angles->azimuth;
     MCSI_EACH(b) {
-        mcs_f o, p, t;
-        mcsi_env_locate(&frame, mcsi_vec3(mcsi_in(&b, 0), mcsi_in(&b, 1), mcsi_in(&b, 2)), &o, &p, &t);
-        mcsi_out(&b, 0, o);
-        mcsi_out(&b, 1, p);
-        mcsi_out(&b, 2, t);
+        const mcsi_angles a = mcsi_env_angles(&frame, mcsi_vec3(mcsi_in(&b, 0), mcsi_in(&b, 1), mcsi_in(&b, 2)));
+        mcsi_out(&b, 0, a.off_pole);
+        mcsi_out(&b, 1, a.polar);
+        mcsi_out(&b, 2, a.azimuth);
     }
 }
 #endif
+
 #if MCSI_W == 1
 /* By the widest loop that this processor has; defined behind the passes. */
 MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner);
-MCS_FN void mcsi_env_locate_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z,
-                              float *off_pole, float *polar, float *turns);
-#endif
+MCS_FN void mcsi_env_angles_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z,
+                              mcsi_angles_block *angles);
 
-#if MCSI_W == 1
+/* ---- image: the weights of its texels ---- */
+
+/* Weights are read in chunks. The largest map has 2^16 columns and rows: guides of rows have 16 bits. */
+enum { MCSI_ENV_CHUNK = 64, MCSI_ENV_MAX = 1 << 16 };
+
 MCS_API mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels) {
     mcs_image im;
     MCSI_FILL(&im, 0, sizeof im);
@@ -4924,115 +5039,125 @@ MCS_API mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, ui
     im.channels = channels;
     return im;
 }
-/* Where things lie behind the header, in bytes: edge[] = 1 - cos(theta) of the row borders from a pole to the equator (double),
- * line[h], info[h]; rows[h + 1], row_guide[]; cdf[h][w + 1], col_guide[h][guides]. */
-/* What a draw needs of a row: the density of a texel with one part in 2^62 of all draws, border and height (mcsi_env_point). */
+/* Whether the floats that a row and an image span are a size that memory can have. */
+MCS_FN int mcsi_image_fits(const mcs_image *im) {
+    const uint64_t most = PTRDIFF_MAX / sizeof(float) / ((uint64_t)im->h + 1);
+    const uint64_t row = im->row_stride < 0 ? -(uint64_t)im->row_stride : (uint64_t)im->row_stride;
+    const uint64_t step = im->pixel_stride ? (uint64_t)im->pixel_stride : im->channels;
+    if (im->pixel_stride < 0 || step < im->channels || step > most || step * im->w > most) return 0;
+    return !row || (row >= (im->w - 1) * step + im->channels && row <= most);
+}
+MCS_FN mcs_status mcsi_image_check(const mcs_image *im) {
+    if (!im || !im->pixels || im->channels == 0 || im->channels == 2) return MCS_ERR_ARG;
+    return mcs_env_bytes(im->w, im->h) && mcsi_image_fits(im) ? MCS_OK : MCS_ERR_SIZE;
+}
+/* The factors add up to 1, so that three FLT_MAX do not overflow. */
+MCSI_CORE float mcsi_luminance(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
+MCSI_CORE float mcsi_pixel(const float *p, uint32_t *bad) {
+    const float plain = mcsi_luminance(p[0], p[1], p[2]);
+    if (mcsi_min(mcsi_min(p[0], p[1]), p[2]) >= 0.0f && plain <= FLT_MAX) return plain; /* NaN and infinity never are */
+    uint32_t channels = 0;
+    const float r = mcsi_clean(p[0], &channels);
+    const float g = mcsi_clean(p[1], &channels);
+    const float b = mcsi_clean(p[2], &channels);
+    *bad += channels != 0;
+    return mcsi_luminance(r, g, b);
+}
+/* Texels [x, x + n) of row y; adds the number of bad ones to *bad. */
+MCS_FN void mcsi_image_texels(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
+    const ptrdiff_t step = im->pixel_stride ? im->pixel_stride : (ptrdiff_t)im->channels;
+    const ptrdiff_t row = im->row_stride ? im->row_stride : step * (ptrdiff_t)im->w;
+    const float *p = im->pixels + (ptrdiff_t)y * row + (ptrdiff_t)x * step;
+    if (im->channels >= 3)
+        for (uint32_t k = 0; k < n; k++, p += step) v[k] = mcsi_pixel(p, bad);
+    else
+        for (uint32_t k = 0; k < n; k++, p += step) v[k] = mcsi_clean(*p, bad);
+}
+/* The same, filtered by (1 2 1)/4 both ways, n <= MCSI_ENV_CHUNK. Columns go round, the first and last row repeat. */
+MCS_FN void mcsi_image_filtered(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
+    float sum[MCSI_ENV_CHUNK + 2] = {0.0f};
+    for (int r = -1; r <= 1; r++) {
+        const uint32_t row = r < 0 && y > 0 ? y - 1 : r > 0 && y + 1 < im->h ? y + 1 : y;
+        uint32_t uncounted = 0;
+        float texel[MCSI_ENV_CHUNK + 2];
+        mcsi_image_texels(im, row, (x + im->w - 1) % im->w, 1, texel, &uncounted);
+        mcsi_image_texels(im, row, x, n, texel + 1, r ? &uncounted : bad);
+        mcsi_image_texels(im, row, (x + n) % im->w, 1, texel + n + 1, &uncounted);
+        for (uint32_t k = 0; k < n + 2; k++) sum[k] += (r ? 0.25f : 0.5f) * texel[k];
+    }
+    for (uint32_t k = 0; k < n; k++) v[k] = 0.25f * sum[k] + 0.5f * sum[k + 1] + 0.25f * sum[k + 2];
+}
+/* The weights of texels [x, x + n) of row y, n <= MCSI_ENV_CHUNK. */
+MCS_FN void mcsi_image_weights(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
+    if (im->bilinear) mcsi_image_filtered(im, y, x, n, v, bad);
+    else mcsi_image_texels(im, y, x, n, v, bad);
+    if (im->floor > 0.0f)
+        for (uint32_t k = 0; k < n; k++) v[k] = mcsi_max(v[k] - im->floor, 0.0f);
+}
+MCSI_CORE uint32_t mcsi_chunk(const mcs_image *im, uint32_t x) {
+    return im->w - x < MCSI_ENV_CHUNK ? im->w - x : (uint32_t)MCSI_ENV_CHUNK;
+}
+
+/* ---- map: layout. Offsets are kept in the header; a map is a file ---- */
+
+/* What a draw needs of a row. texel_density: density per solid angle of a texel that has one of 2^31 shares of its row, in
+ * a row that has one of 2^31 shares of the map. edge, height: see mcsi_env_point. */
 typedef struct {
-    double unit;
+    double texel_density;
     float edge, height;
-} mcsi_env_line;
-/* The part of a row's 2^31 that a window has. */
+} mcsi_row;
+/* What build_rows leaves to finish. weight: sum of the texels' weights times the height of the row. checksum: of its sums
+ * and guide. level: the weight of its texels if they are all alike, else -1. bad: number of bad texels. Columns from col0 on
+ * and before col1 hold its light. */
 typedef struct {
-    uint32_t begin, mass;
-} mcsi_env_span;
-/* What build_rows leaves to finish: the weight of the row; the weight of its texels if they are all alike, else -1. For check:
- * mcsi_env_row_sum. */
-typedef struct {
-    double power;
-    uint64_t sum;
+    double weight;
+    uint64_t checksum;
     float level;
     uint32_t bad, col0, col1;
-} mcsi_env_info;
-/* Rows and columns to draw from: the whole map, whose span is NULL, or a window. */
-typedef struct {
-    const uint32_t *rows;
-    const uint16_t *guide;
-    const mcsi_env_line *line;
-    const mcsi_env_span *span;
-    uint32_t row, count, col, cols, shift, uniform;
-} mcsi_env_view;
+} mcsi_row_light;
 
-enum { MCSI_ENV_MAX = 1 << 16, MCSI_ENV_VERSION = 4, MCSI_ENV_CELLS = 8, MCSI_ENV_CHUNK = 64 };
+enum { MCSI_ENV_VERSION = 4, MCSI_ENV_PER_GUIDE = 8 };
 #define MCSI_ENV_MAGIC 0x4553434du /* "MCSE" in a little-endian file */
 
-MCS_FN uint64_t mcsi_up8(uint64_t bytes) { return (bytes + 7) / 8 * 8; }
-MCS_FN mcsi_env_parts mcsi_env_layout(uint32_t w, uint32_t h) {
-    mcsi_env_parts p;
-    p.row_shift = mcsi_guide_shift(h, 1);
-    p.col_shift = mcsi_guide_shift(w, MCSI_ENV_CELLS);
-    p.unused = 0;
-    p.guides = (MCSI_ONE >> p.col_shift) + 1;
-    p.edge = sizeof(mcs_env);
-    p.line = p.edge + ((h + 1) / 2 + 1) * sizeof(double);
-    p.info = p.line + h * sizeof(mcsi_env_line);
-    p.rows = p.info + h * sizeof(mcsi_env_info);
-    p.row_guide = p.rows + (h + 1) * sizeof(uint32_t);
-    p.cdf = mcsi_up8(p.row_guide + ((MCSI_ONE >> p.row_shift) + 1) * sizeof(uint16_t));
-    p.col_guide = p.cdf + (w + (uint64_t)1) * h * sizeof(uint32_t);
-    p.bytes = mcsi_up8(p.col_guide + (uint64_t)p.guides * h * sizeof(uint16_t));
-    return p;
+/* edge: double[(h + 1)/2 + 1], 1 - cos(theta) of the borders of rows from a pole to the equator. row: mcsi_row[h].
+ * row_light: mcsi_row_light[h]. row_sums: uint32_t[h + 1], with row_guide: uint16_t[]. col_sums: uint32_t[h][w + 1], with
+ * col_guide: uint16_t[h][guide_length]. Zeros fill up to the next multiple of 8 bytes. */
+MCS_FN mcsi_env_offsets mcsi_env_layout(uint32_t w, uint32_t h) {
+    mcsi_env_offsets o;
+    o.row_shift = mcsi_guide_shift(h, 1);
+    o.col_shift = mcsi_guide_shift(w, MCSI_ENV_PER_GUIDE);
+    o.guide_length = mcsi_guide_length(o.col_shift);
+    o.unused = 0;
+    o.edge = sizeof(mcs_env);
+    o.row = o.edge + ((h + 1) / 2 + 1) * sizeof(double);
+    o.row_light = o.row + h * sizeof(mcsi_row);
+    o.row_sums = o.row_light + h * sizeof(mcsi_row_light);
+    o.row_guide = o.row_sums + (h + 1) * sizeof(uint32_t);
+    o.col_sums = mcsi_up8(o.row_guide + mcsi_guide_length(o.row_shift) * sizeof(uint16_t));
+    o.col_guide = o.col_sums + (w + (uint64_t)1) * h * sizeof(uint32_t);
+    o.bytes = mcsi_up8(o.col_guide + (uint64_t)o.guide_length * h * sizeof(uint16_t));
+    return o;
 }
-MCSI_CORE const double *mcsi_env_edge(const mcs_env *e) {
-    return (const double *)(const void *)((const char *)e + e->at.edge);
-}
-MCSI_CORE const uint32_t *mcsi_env_cdf(const mcs_env *e, uint32_t row) {
-    return (const uint32_t *)(const void *)((const char *)e + e->at.cdf) + (size_t)row * (e->w + 1);
+MCSI_CORE const double *mcsi_env_edge(const mcs_env *e) { return MCSI_READ(double, e, e->offset.edge); }
+MCSI_CORE const uint32_t *mcsi_env_sums(const mcs_env *e, uint32_t row) {
+    return MCSI_READ(uint32_t, e, e->offset.col_sums) + (size_t)row * (e->w + 1);
 }
 MCSI_CORE const uint16_t *mcsi_env_guide(const mcs_env *e, uint32_t row) {
-    return (const uint16_t *)(const void *)((const char *)e + e->at.col_guide) + (size_t)row * e->at.guides;
+    return MCSI_READ(uint16_t, e, e->offset.col_guide) + (size_t)row * e->offset.guide_length;
 }
-MCSI_CORE mcsi_env_view mcsi_env_whole(const mcs_env *e) {
-    mcsi_env_view v;
-    v.rows = (const uint32_t *)(const void *)((const char *)e + e->at.rows);
-    v.guide = (const uint16_t *)(const void *)((const char *)e + e->at.row_guide);
-    v.line = (const mcsi_env_line *)(const void *)((const char *)e + e->at.line);
-    v.span = NULL;
-    v.row = 0;
-    v.count = e->h;
-    v.col = 0;
-    v.cols = e->w;
-    v.shift = e->at.row_shift;
-    v.uniform = e->uniform;
-    return v;
+/* The bytes behind the last guide, which fill up the table. */
+MCSI_CORE size_t mcsi_env_padding(const mcs_env *e) {
+    return (size_t)e->offset.bytes - (size_t)((const char *)mcsi_env_guide(e, e->h) - (const char *)e);
 }
-/* Checksums: words of 8 bytes are mixed, each one-to-one, into one of eight sums, and these into one. So a change within one word
- * changes the sum, whatever else there is; of changes without aim one in 2^64 does not. Zeros leave 0. */
-MCSI_CORE uint64_t mcsi_check_mix(uint64_t sum, uint64_t word) {
-    sum = (sum ^ word) * 0x9e3779b97f4a7c15u;
-    return sum ^ sum >> 32;
-}
-MCSI_CORE uint64_t mcsi_check_word(const char *at, size_t bytes) {
-    uint64_t word = 0;
-    MCSI_COPY(&word, at, bytes);
-    return word;
-}
-MCS_FN uint64_t mcsi_checksum(uint64_t before, const void *memory, size_t bytes) {
-    const char *at = (const char *)memory;
-    uint64_t sum[8] = {0};
-    sum[0] = before;
-    for (; bytes >= 64; at += 64, bytes -= 64) {
-        MCSI_UNROLL
-        for (int k = 0; k < 8; k++) sum[k] = mcsi_check_mix(sum[k], mcsi_check_word(at + 8 * k, 8));
-    }
-    for (; bytes >= 8; at += 8, bytes -= 8) sum[0] = mcsi_check_mix(sum[0], mcsi_check_word(at, 8));
-    if (bytes) sum[0] = mcsi_check_mix(sum[0], mcsi_check_word(at, bytes));
-    for (int k = 1; k < 8; k++) sum[0] = mcsi_check_mix(sum[0], sum[k]);
-    return sum[0];
-}
-/* Of a row's cumulative sums and its guide; 0 of a black row. */
-MCSI_CORE uint64_t mcsi_env_row_sum(const uint32_t *cdf, uint32_t w, const uint16_t *guide, uint32_t guides) {
-    return mcsi_checksum(mcsi_checksum(0, cdf, ((size_t)w + 1) * sizeof *cdf), guide, guides * sizeof *guide);
-}
-/* Where the last row's guide ends. */
-MCSI_CORE uint64_t mcsi_env_end(const mcs_env *e) {
-    return e->at.col_guide + (uint64_t)e->at.guides * e->h * sizeof(uint16_t);
-}
-/* Of the whole table but the frame, which may change; rows count by their own sums. */
-MCS_FN uint64_t mcsi_env_sum(const mcs_env *e) {
-    const char *at = (const char *)e;
-    uint64_t sum = mcsi_checksum(0, at, offsetof(mcs_env, frame));
-    sum = mcsi_checksum(sum, at + e->at.edge, (size_t)(e->at.cdf - e->at.edge));
-    return mcsi_checksum(sum, at + mcsi_env_end(e), (size_t)(e->at.bytes - mcsi_env_end(e)));
+/* The columns of a row. */
+MCSI_CORE mcsi_cdf mcsi_env_columns(const mcs_env *e, uint32_t row) {
+    mcsi_cdf c;
+    c.sums = mcsi_env_sums(e, row);
+    c.guide = mcsi_env_guide(e, row);
+    c.n = e->w;
+    c.shift = e->offset.col_shift;
+    c.guide_bytes = sizeof(uint16_t);
+    return c;
 }
 /* 1 - cos(pi x), x in [0,1], without libm so that tables are the same everywhere: 2 sin^2(pi x/2) by Taylor to x^17. */
 MCS_FN double mcsi_one_minus_cos_pi(double x) {
@@ -5050,106 +5175,96 @@ MCS_FN double mcsi_one_minus_cos_pi(double x) {
 }
 /* A row as counted from the nearer pole, where its borders 1 - cos(theta) keep their digits. */
 MCSI_CORE uint32_t mcsi_env_from_pole(uint32_t row, uint32_t h) { return 2 * row < h ? row : h - 1 - row; }
+/* Extent of a row in cos(theta). */
 MCS_FN double mcsi_env_height(uint32_t row, uint32_t h) {
     const uint32_t m = mcsi_env_from_pole(row, h);
     return mcsi_one_minus_cos_pi((m + 1.0) / h) - mcsi_one_minus_cos_pi((double)m / h);
 }
-MCS_FN void mcsi_env_set_line(mcsi_env_line *line, uint32_t row, uint32_t w, uint32_t h) {
-    double height = mcsi_env_height(row, h);
-    const double margin = MCSI_ENV_MARGIN * h;
-    const uint32_t m = mcsi_env_from_pole(row, h);
-    line->unit = w / (6.2831853071795865 * height) * (1.0 / MCSI_ONE / MCSI_ONE);
-    height = m == row ? height : -height;
-    line->edge = (float)(mcsi_one_minus_cos_pi((m + (m != row)) / (double)h) + margin * height);
-    line->height = (float)((1.0 - 2.0 * margin) * height);
+/* 1 - cos(theta) of the upper border of row y. */
+MCS_FN double mcsi_env_top(const mcs_env *e, uint32_t y) {
+    return 2 * y <= e->h + 1 ? mcsi_env_edge(e)[y] : 2.0 - mcsi_env_edge(e)[e->h - y];
 }
-/* Density of a texel per unit of the 2^31 of row i of the view, which has light. */
-MCSI_CORE double mcsi_env_scale(const mcsi_env_view *v, uint32_t i) {
-    const double unit = (v->rows[i + 1] - v->rows[i]) * v->line[i].unit;
-    return v->span ? unit * ((double)MCSI_ONE / v->span[i].mass) : unit;
+MCS_FN mcsi_row mcsi_row_make(uint32_t y, uint32_t w, uint32_t h) {
+    const double height = mcsi_env_height(y, h);
+    const double margin = MCSI_ENV_MARGIN * h;
+    const uint32_t m = mcsi_env_from_pole(y, h);
+    const int south = m != y;
+    const double extent = south ? -height : height;
+    mcsi_row r;
+    r.texel_density = w / (6.2831853071795865 * height) * (1.0 / MCSI_ONE / MCSI_ONE);
+    r.edge = (float)(mcsi_one_minus_cos_pi((m + (uint32_t)south) / (double)h) + margin * extent);
+    r.height = (float)((1.0 - 2.0 * margin) * extent);
+    return r;
 }
 MCSI_CORE void mcsi_env_set_turn(mcs_env *e) {
     e->turn = (float)(1.0 / e->w);
     e->inner = (float)(1.0 / e->w - 2 * MCSI_ENV_MARGIN);
 }
 
-/* ---- building ---- */
+/* ---- map: checksums ----
+ * Words of 8 bytes are mixed, each one-to-one, into one of eight sums, and these into one. So a change within one word
+ * changes the sum, whatever else there is; of changes without aim one in 2^64 does not. Zeros leave 0. */
+
+MCSI_CORE uint64_t mcsi_check_mix(uint64_t sum, uint64_t word) {
+    sum = (sum ^ word) * 0x9e3779b97f4a7c15u;
+    return sum ^ sum >> 32;
+}
+/* Up to 8 bytes. */
+MCSI_CORE uint64_t mcsi_check_word(const char *p, size_t bytes) {
+    uint64_t word = 0;
+    MCSI_COPY(&word, p, bytes);
+    return word;
+}
+/* Of some memory, after that of which `before` is the checksum. */
+MCS_FN uint64_t mcsi_checksum(uint64_t before, const void *memory, size_t bytes) {
+    const char *p = (const char *)memory;
+    uint64_t sum[8] = {0};
+    sum[0] = before;
+    for (; bytes >= 64; p += 64, bytes -= 64) {
+        MCSI_UNROLL
+        for (int k = 0; k < 8; k++) sum[k] = mcsi_check_mix(sum[k], mcsi_check_word(p + 8 * k, 8));
+    }
+    for (; bytes >= 8; p += 8, bytes -= 8) sum[0] = mcsi_check_mix(sum[0], mcsi_check_word(p, 8));
+    if (bytes) sum[0] = mcsi_check_mix(sum[0], mcsi_check_word(p, bytes));
+    for (int k = 1; k < 8; k++) sum[0] = mcsi_check_mix(sum[0], sum[k]);
+    return sum[0];
+}
+/* Of a row's sums and its guide; 0 of a black row. */
+MCSI_CORE uint64_t mcsi_row_checksum(const mcsi_cdf *columns) {
+    const uint64_t sums = mcsi_checksum(0, columns->sums, ((size_t)columns->n + 1) * sizeof *columns->sums);
+    return mcsi_checksum(sums, columns->guide, mcsi_guide_length(columns->shift) * sizeof(uint16_t));
+}
+/* Of the whole table but the frame, which may change; rows count by their own checksums. */
+MCS_FN uint64_t mcsi_env_checksum(const mcs_env *e) {
+    const mcsi_env_offsets *o = &e->offset;
+    uint64_t sum = mcsi_checksum(0, e, offsetof(mcs_env, frame));
+    sum = mcsi_checksum(sum, MCSI_READ(char, e, o->edge), (size_t)(o->col_sums - o->edge));
+    return mcsi_checksum(sum, mcsi_env_guide(e, e->h), mcsi_env_padding(e));
+}
+
+/* ---- map: build ---- */
 
 MCS_API size_t mcs_env_bytes(uint32_t w, uint32_t h) {
     if (w == 0 || h == 0 || w > MCSI_ENV_MAX || h > MCSI_ENV_MAX || (size_t)-1 / w / h < 80) return 0;
     return (size_t)mcsi_env_layout(w, h).bytes;
 }
-/* How many floats a row or an image spans must be a size that memory can have. */
-MCS_FN int mcsi_image_ok(const mcs_image *im) {
-    const uint64_t most = PTRDIFF_MAX / sizeof(float) / ((uint64_t)im->h + 1);
-    const uint64_t row = im->row_stride < 0 ? -(uint64_t)im->row_stride : (uint64_t)im->row_stride;
-    const uint64_t step = im->pixel_stride ? (uint64_t)im->pixel_stride : im->channels;
-    if (im->pixel_stride < 0 || step < im->channels || step > most || step * im->w > most) return 0;
-    return !row || (row >= (im->w - 1) * step + im->channels && row <= most);
-}
 MCS_FN mcs_status mcsi_env_refuse(const mcs_env *e, size_t bytes, const mcs_image *im) {
-    if (!e || !im || !im->pixels || ((uintptr_t)e & MCSI_ALIGN) || im->channels == 0 || im->channels == 2)
-        return MCS_ERR_ARG;
-    if (!mcs_env_bytes(im->w, im->h) || !mcsi_image_ok(im)) return MCS_ERR_SIZE;
+    const mcs_status status = mcsi_image_check(im);
+    if (!e || ((uintptr_t)e & MCSI_ALIGN)) return MCS_ERR_ARG;
+    if (status) return status;
     return bytes < mcs_env_bytes(im->w, im->h) ? MCS_ERR_MEMORY : MCS_OK;
 }
-
-/* The factors add up to 1, so that three FLT_MAX do not overflow. */
-MCSI_CORE float mcsi_luminance(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
-MCSI_CORE float mcsi_pixel(const float *p, uint32_t *bad) {
-    uint32_t channels = 0;
-    const float plain = mcsi_luminance(p[0], p[1], p[2]);
-    if (mcsi_min(mcsi_min(p[0], p[1]), p[2]) >= 0.0f && plain <= FLT_MAX)
-        return plain; /* which NaN and infinity never are */
-    const float r = mcsi_clean(p[0], &channels);
-    const float g = mcsi_clean(p[1], &channels);
-    const float b = mcsi_clean(p[2], &channels);
-    *bad += channels != 0;
-    return mcsi_luminance(r, g, b);
-}
-/* Texels [x, x + n) of a row. */
-MCS_FN void mcsi_image_texels(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
-    const ptrdiff_t step = im->pixel_stride ? im->pixel_stride : (ptrdiff_t)im->channels;
-    const float *p =
-        im->pixels + (ptrdiff_t)y * (im->row_stride ? im->row_stride : step * (ptrdiff_t)im->w) + (ptrdiff_t)x * step;
-    if (im->channels >= 3)
-        for (uint32_t k = 0; k < n; k++, p += step) v[k] = mcsi_pixel(p, bad);
-    else
-        for (uint32_t k = 0; k < n; k++, p += step) v[k] = mcsi_clean(*p, bad);
-}
-/* The weights of texels [x, x + n), n <= MCSI_ENV_CHUNK. */
-MCS_FN void mcsi_image_weights(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
-    if (im->bilinear) {
-        float sum[MCSI_ENV_CHUNK + 2] = {0.0f};
-        for (int r = -1; r <= 1; r++) {
-            const uint32_t near_y = r < 0 && y > 0 ? y - 1 : r > 0 && y + 1 < im->h ? y + 1 : y;
-            uint32_t uncounted = 0;
-            float line[MCSI_ENV_CHUNK + 2];
-            mcsi_image_texels(im, near_y, (x + im->w - 1) % im->w, 1, line, &uncounted);
-            mcsi_image_texels(im, near_y, x, n, line + 1, r ? &uncounted : bad);
-            mcsi_image_texels(im, near_y, (x + n) % im->w, 1, line + n + 1, &uncounted);
-            for (uint32_t k = 0; k < n + 2; k++) sum[k] += (r ? 0.25f : 0.5f) * line[k];
-        }
-        for (uint32_t k = 0; k < n; k++) v[k] = 0.25f * sum[k] + 0.5f * sum[k + 1] + 0.25f * sum[k + 2];
-    } else {
-        mcsi_image_texels(im, y, x, n, v, bad);
-    }
-    if (im->floor > 0.0f)
-        for (uint32_t k = 0; k < n; k++) v[k] = mcsi_max(v[k] - im->floor, 0.0f);
-}
 MCS_API float mcs_env_mean(const mcs_image *im) {
-    double sum = 0.0;
-    uint32_t bad = 0;
-    if (!im || !im->pixels || im->channels == 0 || im->channels == 2 || !mcs_env_bytes(im->w, im->h) ||
-        !mcsi_image_ok(im))
-        return 0.0f;
+    if (mcsi_image_check(im)) return 0.0f;
     mcs_image plain = *im;
     plain.floor = 0.0f;
+    double sum = 0.0;
+    uint32_t bad = 0;
     uint32_t n;
     for (uint32_t y = 0; y < im->h; y++) {
         double row = 0.0;
         for (uint32_t x = 0; x < im->w; x += n) {
-            n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : (uint32_t)MCSI_ENV_CHUNK;
+            n = mcsi_chunk(im, x);
             float v[MCSI_ENV_CHUNK];
             mcsi_image_weights(&plain, y, x, n, v, &bad);
             for (uint32_t k = 0; k < n; k++) row += (double)v[k];
@@ -5159,66 +5274,74 @@ MCS_API float mcs_env_mean(const mcs_image *im) {
     return (float)(sum / (2.0 * im->w));
 }
 
-MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *cdf, uint16_t *guide, uint32_t shift,
-                               mcsi_env_info *info) {
-    uint32_t first = im->w;
-    uint32_t last = 0;
-    uint32_t same = 0;
-    const uint32_t guides = (MCSI_ONE >> shift) + 1;
-    float level = 0.0f;
-    info->bad = 0;
+/* A run over the texels of a row. level: the weight of its first texel, which the first `alike` texels have. first, last:
+ * its light. Weights are kept in words[] from the first light on. */
+typedef struct {
+    uint32_t *words;
+    float level;
+    uint32_t alike, first, last;
+} mcsi_row_scan;
+/* Goes on with texels [x, x + n). */
+MCSI_CORE void mcsi_row_scan_add(mcsi_row_scan *s, const float *weight, uint32_t x, uint32_t n) {
+    if (x == 0) s->level = weight[0];
+    while (s->alike < x + n && s->alike >= x && weight[s->alike - x] == s->level) s->alike++;
+    const int black = s->alike == x + n && !(s->level > 0.0f);
+    uint32_t end = black ? 0 : n;
+    while (end > 0 && !(weight[end - 1] > 0.0f)) end--;
+    if (end > 0 && s->last == 0) {
+        MCSI_FILL(s->words, 0, x * sizeof *s->words);
+        for (s->first = x; !(weight[s->first - x] > 0.0f);) s->first++;
+    }
+    if (end > 0) s->last = x + end;
+    if (s->last) MCSI_COPY(s->words + x, weight, n * sizeof *weight);
+}
+MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *sums, uint16_t *guide, uint32_t shift,
+                               mcsi_row_light *light) {
+    mcsi_row_scan scan = {NULL, 0.0f, 0, 0, 0};
+    scan.words = sums;
+    scan.first = im->w;
+    uint32_t bad = 0;
     uint32_t n;
     for (uint32_t x = 0; x < im->w; x += n) {
-        n = im->w - x < MCSI_ENV_CHUNK ? im->w - x : (uint32_t)MCSI_ENV_CHUNK;
+        n = mcsi_chunk(im, x);
         float v[MCSI_ENV_CHUNK];
-        mcsi_image_weights(im, y, x, n, v, &info->bad);
-        level = x ? level : v[0];
-        while (same < x + n && same >= x && v[same - x] == level) same++;
-        uint32_t lit;
-        for (lit = same == x + n && !(level > 0.0f) ? 0 : n; lit > 0 && !(v[lit - 1] > 0.0f);) lit--;
-        if (lit) { /* weights are kept from the first light on */
-            if (!last) {
-                MCSI_FILL(cdf, 0, x * sizeof *cdf);
-                for (first = x; !(v[first - x] > 0.0f);) first++;
-            }
-            last = x + lit;
-        }
-        if (last) MCSI_COPY(cdf + x, v, n * sizeof *v);
+        mcsi_image_weights(im, y, x, n, v, &bad);
+        mcsi_row_scan_add(&scan, v, x, n);
     }
-    info->power = 0.0;
-    info->sum = 0;
-    info->level = same == im->w ? level : -1.0f;
-    info->col0 = first;
-    info->col1 = last;
-    if (!last) {
-        MCSI_FILL(cdf, 0, ((size_t)im->w + 1) * sizeof *cdf);
-        MCSI_FILL(guide, 0, guides * sizeof *guide);
+    light->weight = 0.0;
+    light->checksum = 0;
+    light->level = scan.alike == im->w ? scan.level : -1.0f;
+    light->bad = bad;
+    light->col0 = scan.first;
+    light->col1 = scan.last;
+    if (!scan.last) {
+        MCSI_FILL(sums, 0, ((size_t)im->w + 1) * sizeof *sums);
+        MCSI_FILL(guide, 0, mcsi_guide_length(shift) * sizeof *guide);
         return;
     }
-    info->power = mcsi_cdf_build(cdf, im->w) * mcsi_env_height(y, im->h);
-    MCSI_GUIDE_BUILD(guide, uint16_t, shift, cdf, im->w);
-    info->sum = mcsi_env_row_sum(cdf, im->w, guide, guides);
+    light->weight = mcsi_sums_build(sums, im->w) * mcsi_env_height(y, im->h);
+    mcsi_guide_build(guide, sizeof *guide, shift, sums, im->w);
+    const mcsi_cdf columns = {sums, guide, im->w, shift, sizeof *guide};
+    light->checksum = mcsi_row_checksum(&columns);
 }
 MCS_API mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1) {
     const mcs_status status = mcsi_env_refuse(e, bytes, im);
-    char *p = (char *)e;
     if (status) return status;
     if (y0 > y1 || y1 > im->h) return MCS_ERR_SIZE;
-    const mcsi_env_parts at = mcsi_env_layout(im->w, im->h);
-    for (; y0 < y1; y0++)
-        mcsi_env_build_row(im, y0, (uint32_t *)(void *)(p + at.cdf) + (size_t)y0 * (im->w + 1),
-                           (uint16_t *)(void *)(p + at.col_guide) + (size_t)y0 * at.guides, at.col_shift,
-                           (mcsi_env_info *)(void *)(p + at.info) + y0);
+    const mcsi_env_offsets o = mcsi_env_layout(im->w, im->h);
+    for (uint32_t y = y0; y < y1; y++) {
+        uint32_t *sums = MCSI_WRITE(uint32_t, e, o.col_sums) + (size_t)y * (im->w + 1);
+        uint16_t *guide = MCSI_WRITE(uint16_t, e, o.col_guide) + (size_t)y * o.guide_length;
+        mcsi_env_build_row(im, y, sums, guide, o.col_shift, MCSI_WRITE(mcsi_row_light, e, o.row_light) + y);
+    }
     return MCS_OK;
 }
-MCS_API mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) {
-    const mcs_status status = mcsi_env_refuse(e, bytes, im);
-    double top = 0.0;
-    if (status) return status;
+/* The header, but for what the rows tell. */
+MCS_FN void mcsi_env_start(mcs_env *e, const mcs_image *im) {
     MCSI_FILL(e, 0, sizeof *e);
     e->magic = MCSI_ENV_MAGIC;
     e->version = MCSI_ENV_VERSION;
-    e->at = mcsi_env_layout(im->w, im->h);
+    e->offset = mcsi_env_layout(im->w, im->h);
     e->w = im->w;
     e->h = im->h;
     e->row0 = im->h;
@@ -5227,33 +5350,50 @@ MCS_API mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im)
     e->incomplete = im->floor > 0.0f;
     mcsi_env_set_turn(e);
     e->frame.s.x = e->frame.t.y = e->frame.n.z = 1.0f;
-    double *edge = (double *)(void *)((char *)e + e->at.edge);
-    mcsi_env_line *line = (mcsi_env_line *)(void *)((char *)e + e->at.line);
-    const mcsi_env_info *info = (const mcsi_env_info *)(const void *)((const char *)e + e->at.info);
-    uint32_t *rows = (uint32_t *)(void *)((char *)e + e->at.rows);
-    uint16_t *guide = (uint16_t *)(void *)((char *)e + e->at.row_guide);
-    MCSI_FILL(rows, 0, (size_t)(e->at.cdf - e->at.rows)); /* this list and its guide do not always fill their parts */
-    MCSI_FILL((char *)e + mcsi_env_end(e), 0, (size_t)(e->at.bytes - mcsi_env_end(e)));
-    for (uint32_t y = 0; y <= (e->h + 1) / 2; y++) edge[y] = mcsi_one_minus_cos_pi((double)y / e->h);
+}
+/* What the rows tell. Returns the weight of the heaviest. */
+MCS_FN double mcsi_env_add_rows(mcs_env *e) {
+    const mcsi_row_light *row = MCSI_READ(mcsi_row_light, e, e->offset.row_light);
+    double top = 0.0;
     for (uint32_t y = 0; y < e->h; y++) {
-        e->bad += info[y].bad;
-        e->total += info[y].power * (6.2831853071795865 / e->w);
-        e->uniform &= info[y].level >= 0.0f && info[y].level == info[0].level;
-        top = info[y].power > top ? info[y].power : top;
-        if (!(info[y].power > 0.0)) continue;
+        e->bad += row[y].bad;
+        e->total += row[y].weight * (6.2831853071795865 / e->w);
+        e->uniform &= row[y].level >= 0.0f && row[y].level == row[0].level;
+        top = row[y].weight > top ? row[y].weight : top;
+        if (!(row[y].weight > 0.0)) continue;
         e->row0 = y < e->row0 ? y : e->row0;
         e->row1 = y + 1;
-        e->col0 = info[y].col0 < e->col0 ? info[y].col0 : e->col0;
-        e->col1 = info[y].col1 > e->col1 ? info[y].col1 : e->col1;
+        e->col0 = row[y].col0 < e->col0 ? row[y].col0 : e->col0;
+        e->col1 = row[y].col1 > e->col1 ? row[y].col1 : e->col1;
     }
+    return top;
+}
+/* Shares of rows, by their weights relative to the heaviest row; none is lost to underflow. */
+MCS_FN void mcsi_env_build_row_sums(mcs_env *e, double top) {
+    const mcsi_row_light *row = MCSI_READ(mcsi_row_light, e, e->offset.row_light);
+    uint32_t *sums = MCSI_WRITE(uint32_t, e, e->offset.row_sums);
     for (uint32_t y = 0; y < e->h; y++) {
-        const double p = top > 0.0 ? info[y].power / top : 0.0;
-        mcsi_put_weight(rows + y, (float)(p > 0.0 && p < 1e-30 ? 1e-30 : p));
+        const double p = top > 0.0 ? row[y].weight / top : 0.0;
+        mcsi_put_weight(sums + y, (float)(p > 0.0 && p < 1e-30 ? 1e-30 : p));
     }
-    mcsi_cdf_build(rows, e->h);
-    MCSI_GUIDE_BUILD(guide, uint16_t, e->at.row_shift, rows, e->h);
-    for (uint32_t y = 0; y < e->h; y++) mcsi_env_set_line(&line[y], y, e->w, e->h);
-    e->sum = mcsi_env_sum(e);
+    mcsi_sums_build(sums, e->h);
+    mcsi_guide_build(MCSI_WRITE(uint16_t, e, e->offset.row_guide), sizeof(uint16_t), e->offset.row_shift, sums, e->h);
+}
+MCS_API mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im) {
+    const mcs_status status = mcsi_env_refuse(e, bytes, im);
+    if (status) return status;
+    mcsi_env_start(e, im);
+    const mcsi_env_offsets *o = &e->offset;
+    /* Lists and their guides do not always fill their parts. */
+    MCSI_FILL(MCSI_WRITE(char, e, o->row_sums), 0, (size_t)(o->col_sums - o->row_sums));
+    MCSI_FILL(MCSI_WRITE(char, e, o->bytes - mcsi_env_padding(e)), 0, mcsi_env_padding(e));
+    double *edge = MCSI_WRITE(double, e, o->edge);
+    for (uint32_t y = 0; y <= (e->h + 1) / 2; y++) edge[y] = mcsi_one_minus_cos_pi((double)y / e->h);
+    const double top = mcsi_env_add_rows(e);
+    mcsi_env_build_row_sums(e, top);
+    mcsi_row *row = MCSI_WRITE(mcsi_row, e, o->row);
+    for (uint32_t y = 0; y < e->h; y++) row[y] = mcsi_row_make(y, e->w, e->h);
+    e->checksum = mcsi_env_checksum(e);
     return top > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 MCS_API mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im) {
@@ -5261,480 +5401,584 @@ MCS_API mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im) 
     return status ? status : mcs_env_finish(e, bytes, im);
 }
 
-/* A cumulative list and its guide as the builders leave them. */
-MCS_FN int mcsi_cdf_ok(const uint32_t *cdf, uint32_t n, const uint16_t *guide, uint32_t shift) {
-    const uint32_t end = MCSI_ONE >> shift;
-    if (cdf[0] != 0 || cdf[n] != MCSI_ONE) return 0;
-    for (uint32_t i = 0; i < n; i++)
-        if (cdf[i] > cdf[i + 1]) return 0;
-    for (uint32_t g = 0; g < end; g++)
-        if (guide[g] >= n || cdf[guide[g]] > g << shift || cdf[guide[g] + 1] <= g << shift) return 0;
-    return guide[end] < n && cdf[guide[end]] < MCSI_ONE && cdf[guide[end] + 1] == MCSI_ONE;
-}
-/* Equal but for the compilers' freedom to contract a*b + c. */
-MCS_FN int mcsi_same(double a, double b, double relative) {
-    const double slack = relative * (b < 0.0 ? -b : b);
-    return a - b <= slack && b - a <= slack;
-}
-/* Whether a frame is orthonormal to 1e-4. Its nine numbers may be a product of rotations: with floats each of them leaves 3 * 2^-24
- * in every number, thus 2 sqrt(3) times as much in the dot product of two columns, 1e-4 after 160 of them. */
-MCSI_CORE int mcsi_dot_is(mcs_vec3 a, mcs_vec3 b, double want) {
-    const double off = (double)a.x * (double)b.x + (double)a.y * (double)b.y + (double)a.z * (double)b.z - want;
-    return off <= 1e-4 && off >= -1e-4;
-}
-MCS_FN int mcsi_frame_ok(const mcs_frame *f) {
-    return mcsi_dot_is(f->s, f->s, 1.0) && mcsi_dot_is(f->t, f->t, 1.0) && mcsi_dot_is(f->n, f->n, 1.0) &&
-           mcsi_dot_is(f->s, f->t, 0.0) && mcsi_dot_is(f->t, f->n, 0.0) && mcsi_dot_is(f->n, f->s, 0.0);
-}
-/* Whether light fills just these rows and columns. */
-MCS_FN int mcsi_env_holds(const mcs_env *e, uint32_t row0, uint32_t row1, uint32_t col0, uint32_t col1) {
-    return e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1;
-}
-MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
-    mcsi_env_parts at;
-    uint32_t row1 = 0;
-    uint32_t col1 = 0;
-    if (!e || ((uintptr_t)e & MCSI_ALIGN)) return MCS_ERR_ARG;
-    if (bytes < sizeof *e) return MCS_ERR_MEMORY;
-    if (e->magic != MCSI_ENV_MAGIC || e->version != MCSI_ENV_VERSION || !mcs_env_bytes(e->w, e->h))
-        return MCS_ERR_FORMAT;
-    at = mcsi_env_layout(e->w, e->h);
-    for (size_t i = 0; i < sizeof at; i++) /* memcmp, which kernels do not have */
-        if (((const char *)&at)[i] != ((const char *)&e->at)[i]) return MCS_ERR_FORMAT;
-    if (e->uniform > 1 || e->incomplete > 1 || !(e->total >= 0.0 && e->total <= DBL_MAX)) return MCS_ERR_FORMAT;
-    if (!mcsi_frame_ok(&e->frame)) return MCS_ERR_FORMAT;
-    if (bytes < at.bytes) return MCS_ERR_MEMORY;
-    if (e->sum != mcsi_env_sum(e)) return MCS_ERR_FORMAT;
-    const mcsi_env_info *info = (const mcsi_env_info *)(const void *)((const char *)e + at.info);
-    for (uint32_t y = 0; y < e->h; y++)
-        if (info[y].sum != mcsi_env_row_sum(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), at.guides))
-            return MCS_ERR_FORMAT;
-    const mcsi_env_view v = mcsi_env_whole(e);
-    uint32_t row0 = e->h;
-    uint32_t col0 = e->w;
-    mcs_env turns;
-    turns.w = e->w;
-    mcsi_env_set_turn(&turns);
-    if (!mcsi_same((double)e->turn, (double)turns.turn, 1.2e-7) ||
-        !mcsi_same((double)e->inner, (double)turns.inner, 1.2e-7))
-        return MCS_ERR_FORMAT;
-    for (uint32_t y = 0; y <= (e->h + 1) / 2; y++)
-        if (!mcsi_same(mcsi_env_edge(e)[y], mcsi_one_minus_cos_pi((double)y / e->h), 1e-14)) return MCS_ERR_FORMAT;
-    if (e->uniform)
-        return mcsi_env_holds(e, 0, e->h, 0, e->w) || mcsi_env_holds(e, e->h, 0, e->w, 0) ? MCS_OK : MCS_ERR_FORMAT;
-    if (!mcsi_cdf_ok(v.rows, e->h, v.guide, v.shift)) return MCS_ERR_FORMAT;
-    for (uint32_t y = 0; y < e->h; y++) {
-        const mcsi_env_line *line = v.line + y;
-        mcsi_env_line want;
-        mcsi_env_set_line(&want, y, e->w, e->h);
-        if (!mcsi_same(line->unit, want.unit, 1e-12) || !mcsi_same((double)line->edge, (double)want.edge, 1.2e-7) ||
-            !mcsi_same((double)line->height, (double)want.height, 1.2e-7))
-            return MCS_ERR_FORMAT;
-        if (v.rows[y] == v.rows[y + 1]) continue;
-        if (!mcsi_cdf_ok(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.col_shift)) return MCS_ERR_FORMAT;
-        const uint32_t *cdf = mcsi_env_cdf(e, y);
-        row0 = y < row0 ? y : row0;
-        row1 = y + 1;
-        size_t i;
-        for (i = 0; cdf[i + 1] == 0; i++) {}
-        col0 = i < col0 ? (uint32_t)i : col0;
-        for (i = e->w; cdf[i - 1] == MCSI_ONE; i--) {}
-        col1 = i > col1 ? (uint32_t)i : col1;
-    }
-    return mcsi_env_holds(e, row0, row1, col0, col1) ? MCS_OK : MCS_ERR_FORMAT;
-}
+/* ---- window: what is drawn from ---- */
 
-/* ---- drawing ---- */
-
-/* A random number times 2^31. */
-MCSI_CORE double mcsi_times_one(float u, int32_t *ok) { return (double)mcsi_sane_u(u, ok) * MCSI_ONE; }
-/* The place of U in row i of the view. */
-MCSI_CORE double mcsi_env_within(const mcsi_env_view *v, uint32_t i, double U) {
-    if (!v->span) return U;
-    const mcsi_env_span part = v->span[i];
-    U *= part.mass * (1.0 / MCSI_ONE); /* and the sum must not round up to the end */
-    U = part.begin + (U < part.mass - 4.76837158203125e-07 ? U : part.mass - 4.76837158203125e-07);
-    U -= U > MCSI_ONE - 2.384185791015625e-07 ? (double)MCSI_ONE
-                                              : 0.0; /* the next double is 2^31: one of x87 may lie between */
-    return U > 0.0 ? U : 0.0;
-}
-/* Row of the view. */
-MCSI_CORE uint32_t mcsi_env_draw_row(const mcsi_env_view *v, double U2, mcsi_env_point *p) {
-    const uint32_t U = (uint32_t)(int32_t)U2;
-    const uint16_t *guide = v->guide + (U >> v->shift);
-    const uint32_t i = mcsi_cdf_search(v->rows, v->count, guide[0], guide[1], U);
-    p->row_rest = (float)(U2 - (int32_t)v->rows[i]);
-    p->row_mass = (float)(v->rows[i + 1] - v->rows[i]);
-    p->edge = v->line[i].edge;
-    p->height = v->line[i].height;
-    return i;
-}
-/* Columns from one guide entry to the next, which hold U, and the first of eight that do if those are alike. */
+/* What a window has of a row: shares begin to begin + mass of its 2^31, modulo 2^31. */
 typedef struct {
-    uint32_t lo, hi, first;
-} mcsi_env_cells;
-MCSI_CORE mcsi_env_cells mcsi_env_cells_of(const uint16_t *guide, uint32_t w, uint32_t U, uint32_t shift) {
-    mcsi_env_cells c;
-    c.lo = guide[0];
-    c.hi = guide[1];
-    c.first = c.lo + (uint32_t)((uint64_t)(U & ((1u << shift) - 1)) * (c.hi - c.lo) >> shift);
-    c.first = c.first < 4 ? 0 : c.first - 4;
-    c.first = c.first + 8 < w ? c.first : w < 8 ? 0 : w - 8;
-    return c;
-}
-/* The column that holds U. Both ends of the eight are asked for at once, so that memory is waited for once. */
-MCSI_CORE uint32_t mcsi_env_search(const uint32_t *cdf, uint32_t w, const mcsi_env_cells *cells, uint32_t U) {
-    uint32_t c = cells->first;
-    if (w < 8 || U < cdf[c] || U >= cdf[c + 8]) return mcsi_cdf_search(cdf, w, cells->lo, cells->hi, U);
-    c += (uint32_t)(cdf[c + 4] <= U) << 2;
-    c += (uint32_t)(cdf[c + 2] <= U) << 1;
-    return c + (uint32_t)(cdf[c + 1] <= U);
-}
-MCSI_CORE uint32_t mcsi_env_draw_col(const uint32_t *cdf, uint32_t w, const mcsi_env_cells *cells, double U1,
-                                     mcsi_env_point *p, uint32_t *mass) {
-    const uint32_t c = mcsi_env_search(cdf, w, cells, (uint32_t)(int32_t)U1);
-    *mass = cdf[c + 1] - cdf[c];
-    p->col = (float)(int32_t)c;
-    p->col_rest = (float)(U1 - (int32_t)cdf[c]);
-    p->col_mass = (float)*mass;
-    return c;
-}
-/* Row of a direction that mcsi_env_locate has placed. */
-MCSI_CORE uint32_t mcsi_env_row_at(const mcs_env *e, float off_pole, float polar) {
-    const double *edge = mcsi_env_edge(e);
-    const uint32_t last = (e->h - 1) / 2;
-    uint32_t m = (uint32_t)(2.0f * polar * (float)e->h);
-    const double t = (double)mcsi_abs(off_pole);
-    m = m < last ? m : last;
-    while (m > 0 && t < edge[m]) m--;
-    while (m < last && t >= edge[m + 1]) m++;
-    return mcsi_bits(off_pole) < 0 ? e->h - 1 - m : m;
-}
-MCSI_CORE uint32_t mcsi_env_col_at(const mcs_env *e, float turns) {
-    const uint32_t col = (uint32_t)((double)turns * e->w);
-    return col < e->w ? col : e->w - 1;
-}
-/* Constant maps: solid angle of the rows and columns of the view over 4 pi, and a point of them. */
-MCS_FN double mcsi_env_top(const mcs_env *e, uint32_t y) {
-    return 2 * y <= e->h + 1 ? mcsi_env_edge(e)[y] : 2.0 - mcsi_env_edge(e)[e->h - y];
-}
-MCSI_CORE float mcsi_env_uniform_pdf(const mcs_env *e, const mcsi_env_view *v) {
-    const double *edge = mcsi_env_edge(e);
-    const uint32_t end = v->row + v->count;
-    const double height =
-        2 * v->row >= e->h ? edge[e->h - v->row] - edge[e->h - end] : mcsi_env_top(e, end) - mcsi_env_top(e, v->row);
-    return (float)(1.0 / (6.2831853071795865 * height * v->cols / e->w));
-}
-MCSI_CORE void mcsi_env_draw_uniform(const mcs_env *e, const mcsi_env_view *v, double U1, double U2,
-                                     mcsi_env_point *p) {
-    double a = mcsi_env_top(e, v->row);
-    double b = mcsi_env_top(e, v->row + v->count);
-    const double margin = MCSI_ENV_MARGIN * e->h;
-    double at = v->col + U1 / MCSI_ONE * v->cols;
-    a += (mcsi_env_top(e, v->row + 1) - a) * margin;
-    b -= (b - mcsi_env_top(e, v->row + v->count - 1)) * margin;
-    const double t = a + (b - a) * (U2 / MCSI_ONE);
-    at = at < e->w ? at : at - e->w;
-    p->row_rest = 0.5f;
-    p->row_mass = 1.0f;
-    p->edge = (float)(t < 1.0 ? t : 2.0 - t);
-    p->height = t < 1.0 ? FLT_MIN : -FLT_MIN;
-    p->col = (float)(uint32_t)at;
-    p->col_rest = (float)(at - (uint32_t)at);
-    p->col_mass = 1.0f;
-}
-MCSI_CORE int mcsi_env_in_view(const mcs_env *e, const mcsi_env_view *v, uint32_t row, uint32_t col) {
-    return row - v->row < v->count && (col >= v->col ? col - v->col : col + e->w - v->col) < v->cols;
-}
-MCSI_CORE float mcsi_env_density(const mcs_env *e, const mcsi_env_view *v, uint32_t row, uint32_t col) {
-    const uint32_t i = row - v->row;
-    if (!mcsi_env_in_view(e, v, row, col)) return 0.0f;
-    if (v->uniform) return mcsi_env_uniform_pdf(e, v);
-    if (v->rows[i] == v->rows[i + 1] || col < e->col0 || col >= e->col1) return 0.0f;
-    const uint32_t *cdf = mcsi_env_cdf(e, row) + col;
-    return (float)((cdf[1] - cdf[0]) * mcsi_env_scale(v, i));
-}
-/* Of a map that is not constant: the point, its texel, the density when `part` of all draws come here. */
-MCSI_CORE float mcsi_env_draw_point(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part,
-                                    mcsi_env_point *p, uint32_t *row, uint32_t *col) {
-    const uint32_t i = mcsi_env_draw_row(v, U2, p);
-    *row = v->row + i;
-    U1 = mcsi_env_within(v, i, U1);
-    const uint32_t U = (uint32_t)(int32_t)U1;
-    const mcsi_env_cells cells =
-        mcsi_env_cells_of(mcsi_env_guide(e, *row) + (U >> e->at.col_shift), e->w, U, e->at.col_shift);
-    uint32_t mass;
-    *col = mcsi_env_draw_col(mcsi_env_cdf(e, *row), e->w, &cells, U1, p, &mass);
-    return (float)(mass * (part * mcsi_env_scale(v, i)));
-}
-/* Texel of a direction drawn from a constant map. */
-MCSI_CORE void mcsi_env_texel_of(const mcs_env *e, mcs_vec3 w, uint32_t *col, uint32_t *row) {
-    float off_pole, polar, turns;
-    mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
-    *row = mcsi_env_row_at(e, off_pole, polar);
-    *col = mcsi_env_col_at(e, turns);
-}
-MCSI_CORE mcs_texel mcsi_env_draw(const mcs_env *e, const mcsi_env_view *v, double U1, double U2, double part, int ok) {
-    mcsi_env_point p;
-    mcs_texel r;
-    if (v->uniform) {
-        mcsi_env_draw_uniform(e, v, U1, U2, &p);
-        r.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner);
-        mcsi_env_texel_of(e, r.w, &r.col, &r.row);
-        r.pdf = ok ? (float)(part * (double)mcsi_env_uniform_pdf(e, v)) : 0.0f;
-    } else {
-        r.pdf = mcsi_env_draw_point(e, v, U1, U2, part, &p, &r.row, &r.col);
-        r.pdf = ok ? r.pdf : 0.0f;
-        r.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner);
-    }
+    uint32_t begin, mass;
+} mcsi_share;
+/* The whole map, whose `share` is NULL, or a rectangle of texels. Its row i is row row0 + i of the map. uniform: it is
+ * drawn as even light per solid angle. */
+typedef struct {
+    mcsi_cdf rows;
+    const mcsi_row *row;
+    const mcsi_share *share;
+    uint32_t row0, col0, cols, uniform;
+} mcsi_window;
+MCSI_CORE mcsi_window mcsi_env_whole(const mcs_env *e) {
+    mcsi_window r;
+    r.rows.sums = MCSI_READ(uint32_t, e, e->offset.row_sums);
+    r.rows.guide = MCSI_READ(uint16_t, e, e->offset.row_guide);
+    r.rows.n = e->h;
+    r.rows.shift = e->offset.row_shift;
+    r.rows.guide_bytes = sizeof(uint16_t);
+    r.row = MCSI_READ(mcsi_row, e, e->offset.row);
+    r.share = NULL;
+    r.row0 = 0;
+    r.col0 = 0;
+    r.cols = e->w;
+    r.uniform = e->uniform;
     return r;
 }
-MCSI_CORE mcs_texel mcsi_env_draw_u(const mcs_env *e, const mcsi_env_view *v, float u1, float u2) {
-    int32_t ok = 1;
-    const double U1 = mcsi_times_one(u1, &ok);
-    const double U2 = mcsi_times_one(u2, &ok);
-    return mcsi_env_draw(e, v, U1, U2, 1.0, ok);
-}
-/* Texel of a direction and the place in it, down from its upper border and across from its first azimuth; 0 for bad directions. */
+/* share: mcsi_share[rows]. sums: uint32_t[rows + 1], with guide: uint16_t[]. */
 typedef struct {
-    uint32_t row, col;
-    double down, across;
-} mcsi_env_place_of;
-MCSI_CORE int mcsi_env_find(const mcs_env *e, mcs_vec3 w, mcsi_env_place_of *at) {
-    const double *edge = mcsi_env_edge(e);
-    float off_pole, polar, turns;
-    mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
-    if (!(off_pole < 4.0f)) return 0;
-    at->row = mcsi_env_row_at(e, off_pole, polar);
-    at->col = mcsi_env_col_at(e, turns);
-    const uint32_t m = mcsi_env_from_pole(at->row, e->h);
-    double t = ((double)mcsi_abs(off_pole) - edge[m]) / (edge[m + 1] - edge[m]);
-    t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
-    at->down = mcsi_bits(off_pole) < 0 ? 1.0 - t : t;
-    at->across = (double)turns * e->w - at->col;
-    return 1;
+    size_t share, sums, guide, bytes;
+} mcsi_window_offsets;
+MCSI_CORE mcsi_window_offsets mcsi_window_layout(uint32_t rows, uint32_t shift) {
+    mcsi_window_offsets o;
+    o.share = sizeof(mcs_env_window);
+    o.sums = o.share + (size_t)rows * sizeof(mcsi_share);
+    o.guide = o.sums + ((size_t)rows + 1) * sizeof(uint32_t);
+    o.bytes = (size_t)mcsi_up8(o.guide + mcsi_guide_length(shift) * sizeof(uint16_t));
+    return o;
 }
-MCSI_CORE mcs_texel mcsi_env_look_up(const mcs_env *e, const mcsi_env_view *v, mcs_vec3 w) {
-    float off_pole, polar, turns;
-    mcsi_env_locate(&e->frame, w, &off_pole, &polar, &turns);
-    const int ok = off_pole < 4.0f;
-    mcs_texel r;
-    r.row = ok ? mcsi_env_row_at(e, off_pole, polar) : 0;
-    r.col = mcsi_env_col_at(e, turns);
-    r.w = ok ? w : e->frame.n;
-    r.pdf = ok ? mcsi_env_density(e, v, r.row, r.col) : 0.0f;
+MCSI_CORE mcsi_window mcsi_window_of(const mcs_env *e, const mcs_env_window *m) {
+    const mcsi_window_offsets o = mcsi_window_layout(m->rows, m->shift);
+    mcsi_window r;
+    r.rows.sums = MCSI_READ(uint32_t, m, o.sums);
+    r.rows.guide = MCSI_READ(uint16_t, m, o.guide);
+    r.rows.n = m->rows;
+    r.rows.shift = m->shift;
+    r.rows.guide_bytes = sizeof(uint16_t);
+    r.row = MCSI_READ(mcsi_row, e, e->offset.row) + m->row;
+    r.share = MCSI_READ(mcsi_share, m, o.share);
+    r.row0 = m->row;
+    r.col0 = m->col;
+    r.cols = m->cols;
+    r.uniform = m->uniform;
     return r;
-}
-#ifndef MCS_NO_BATCH
-/* Blocks of points, so that the misses of one stage (guide, cumulative sums) are under way together before the next one needs
- * them: aim all of them, then land. */
-MCSI_CORE void mcsi_env_block_start(mcsi_env_block *b, size_t n) {
-    if (n >= MCSI_ENV_BLOCK) return;
-    MCSI_FILL(b, 0, sizeof *b); /* directions are computed by whole vectors */
-    for (size_t k = n; k < MCSI_ENV_BLOCK; k++) b->row_mass[k] = b->col_mass[k] = 1.0f;
-}
-MCSI_CORE void mcsi_env_block_aim(const mcs_env *e, const mcsi_env_view *v, mcsi_env_block *b, size_t k, double U1,
-                                  double U2, double part, int ok) {
-    b->cdf[k] = NULL;
-    b->pdf[k] = ok ? 1.0f : 0.0f;
-    mcsi_env_point p;
-    if (v->uniform) {
-        mcsi_env_draw_uniform(e, v, U1, U2, &p);
-        b->col[k] = p.col;
-        b->col_rest[k] = p.col_rest;
-        b->col_mass[k] = p.col_mass;
-        b->pdf[k] *= (float)(part * (double)mcsi_env_uniform_pdf(e, v));
-    } else {
-        const uint32_t i = mcsi_env_draw_row(v, U2, &p);
-        b->in_row[k] = v->row + i;
-        b->at[k] = mcsi_env_within(v, i, U1);
-        b->scale[k] = part * mcsi_env_scale(v, i);
-        b->cdf[k] = mcsi_env_cdf(e, v->row + i);
-        b->guide[k] = mcsi_env_guide(e, v->row + i) + ((uint32_t)(int32_t)b->at[k] >> e->at.col_shift);
-        MCSI_PREFETCH(b->guide[k]);
-    }
-    b->row_rest[k] = p.row_rest;
-    b->row_mass[k] = p.row_mass;
-    b->edge[k] = p.edge;
-    b->height[k] = p.height;
-}
-MCS_FN void mcsi_env_block_land(const mcs_env *e, mcsi_env_block *b, size_t n, float *x, float *y, float *z, float *pdf,
-                                uint32_t *col, uint32_t *row) {
-    mcsi_env_cells cells[MCSI_ENV_BLOCK];
-    for (size_t k = 0; k < n; k++) {
-        if (!b->cdf[k]) continue;
-        cells[k] = mcsi_env_cells_of(b->guide[k], e->w, (uint32_t)(int32_t)b->at[k], e->at.col_shift);
-        MCSI_PREFETCH(b->cdf[k] + cells[k].first);
-        MCSI_PREFETCH(b->cdf[k] + cells[k].first + 8);
-    }
-    for (size_t k = 0; k < n; k++) {
-        if (!b->cdf[k]) continue;
-        uint32_t mass;
-        mcsi_env_point p;
-        b->in_col[k] = mcsi_env_draw_col(b->cdf[k], e->w, &cells[k], b->at[k], &p, &mass);
-        b->col[k] = p.col;
-        b->col_rest[k] = p.col_rest;
-        b->col_mass[k] = p.col_mass;
-        b->pdf[k] *= (float)(mass * b->scale[k]);
-    }
-    const int even = !b->cdf[0] && (col || row); /* a constant map: texels lie where directions do */
-    if (x || y || z || even) mcsi_env_directions_n(&e->frame, n, b, e->turn, e->inner);
-    for (size_t k = 0; even && k < n; k++)
-        mcsi_env_texel_of(e, mcsi_vec3(b->x[k], b->y[k], b->z[k]), &b->in_col[k], &b->in_row[k]);
-    if (x) MCSI_COPY(x, b->x, n * sizeof *x);
-    if (y) MCSI_COPY(y, b->y, n * sizeof *y);
-    if (z) MCSI_COPY(z, b->z, n * sizeof *z);
-    if (pdf) MCSI_COPY(pdf, b->pdf, n * sizeof *pdf);
-    if (col) MCSI_COPY(col, b->in_col, n * sizeof *col);
-    if (row) MCSI_COPY(row, b->in_row, n * sizeof *row);
-}
-MCS_FN void mcsi_env_draw_n(const mcs_env *e, const mcsi_env_view *v, size_t n, const float *u1, const float *u2,
-                            float *x, float *y, float *z, float *pdf, uint32_t *col, uint32_t *row) {
-    mcsi_env_block b;
-    mcsi_env_block_start(&b, n);
-    size_t m;
-    for (size_t i = 0; i < n; i += m) {
-        m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
-        for (size_t k = 0; k < m; k++) {
-            int32_t ok = 1;
-            const double U1 = mcsi_times_one(u1[i + k], &ok);
-            const double U2 = mcsi_times_one(u2[i + k], &ok);
-            mcsi_env_block_aim(e, v, &b, k, U1, U2, 1.0, ok);
-        }
-        mcsi_env_block_land(e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL,
-                            col ? col + i : NULL, row ? row + i : NULL);
-    }
-}
-MCS_API void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y,
-                              float *z, float *pdf, uint32_t *col, uint32_t *row) {
-    const mcsi_env_view v = mcsi_env_whole(e);
-    mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf, col, row);
-}
-MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
-                             uint32_t *row, float *pdf) {
-    const mcsi_env_view v = mcsi_env_whole(e);
-    uint32_t at_row[MCSI_ENV_BLOCK], at_col[MCSI_ENV_BLOCK];
-    size_t m;
-    for (size_t i = 0; i < n; i += m) {
-        m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
-        float off_pole[MCSI_ENV_BLOCK], polar[MCSI_ENV_BLOCK], turns[MCSI_ENV_BLOCK];
-        mcsi_env_locate_n(&e->frame, m, x + i, y + i, z + i, off_pole, polar, turns);
-        for (size_t k = 0; k < m; k++) {
-            const int ok = off_pole[k] < 4.0f;
-            at_row[k] = ok ? mcsi_env_row_at(e, off_pole[k], polar[k]) : e->h;
-            at_col[k] = mcsi_env_col_at(e, turns[k]);
-            if (pdf && ok && !v.uniform) MCSI_PREFETCH(mcsi_env_cdf(e, at_row[k]) + at_col[k]);
-            if (col) col[i + k] = at_col[k];
-            if (row) row[i + k] = ok ? at_row[k] : 0;
-        }
-        for (size_t k = 0; pdf && k < m; k++) pdf[i + k] = mcsi_env_density(e, &v, at_row[k], at_col[k]);
-    }
-}
-MCS_API void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
-    mcs_env_texel_n(e, n, x, y, z, NULL, NULL, pdf);
-}
-#endif
-MCS_API mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2) {
-    const mcsi_env_view v = mcsi_env_whole(e);
-    return mcsi_env_draw_u(e, &v, u1, u2);
-}
-MCS_API mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2) {
-    const mcsi_env_view v = mcsi_env_whole(e);
-    return mcsi_env_draw(e, &v, 0.5 * b1, 0.5 * b2, 1.0, 1);
-}
-MCS_API mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w) {
-    const mcsi_env_view v = mcsi_env_whole(e);
-    return mcsi_env_look_up(e, &v, w);
-}
-MCS_API float mcs_env_pdf(const mcs_env *e, mcs_vec3 w) { return mcs_env_texel(e, w).pdf; }
-MCS_API mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
-    const mcsi_env_view v = mcsi_env_whole(e);
-    mcsi_env_place_of at;
-    if (!mcsi_env_find(e, w, &at)) return mcsi_vec2(0.0f, 0.0f);
-    double u1, u2;
-    if (v.uniform) {
-        const double a = mcsi_env_top(e, at.row);
-        u1 = (at.col + at.across) / e->w;
-        u2 = 0.5 * (a + at.down * (mcsi_env_top(e, at.row + 1) - a));
-    } else {
-        const uint32_t *cdf = mcsi_env_cdf(e, at.row) + at.col;
-        u1 = v.rows[at.row] < v.rows[at.row + 1] ? (cdf[0] + at.across * (cdf[1] - cdf[0])) / MCSI_ONE : 0.0;
-        u2 = (v.rows[at.row] + at.down * (v.rows[at.row + 1] - v.rows[at.row])) / MCSI_ONE;
-    }
-    return mcsi_vec2(mcsi_below_one(u1), mcsi_below_one(u2));
-}
-MCS_API float mcs_env_weight(const mcs_env *e, float pdf) {
-    MCS_ASSERT(!e->incomplete);
-    return mcsi_sane_result(!e->incomplete & (pdf > 0.0f), mcsi_quotient(1.0f, pdf));
-}
-
-/* ---- windows ---- */
-
-MCSI_CORE mcsi_env_view mcsi_env_part(const mcs_env *e, const mcs_env_window *m) {
-    mcsi_env_view v;
-    v.line = (const mcsi_env_line *)(const void *)((const char *)e + e->at.line) + m->row;
-    v.span = (const mcsi_env_span *)(const void *)(m + 1);
-    v.rows = (const uint32_t *)(const void *)(v.span + m->rows);
-    v.guide = (const uint16_t *)(const void *)(v.rows + m->rows + 1);
-    v.row = m->row;
-    v.count = m->rows;
-    v.col = m->col;
-    v.cols = m->cols;
-    v.shift = m->shift;
-    v.uniform = m->uniform;
-    return v;
 }
 MCS_API size_t mcs_env_window_bytes(uint32_t rows) {
     if (rows == 0 || rows > MCSI_ENV_MAX) return 0;
-    return (size_t)mcsi_up8(sizeof(mcs_env_window) + rows * (sizeof(mcsi_env_span) + sizeof(uint32_t)) +
-                            sizeof(uint32_t) + ((MCSI_ONE >> mcsi_guide_shift(rows, 1)) + 1) * sizeof(uint16_t));
+    return mcsi_window_layout(rows, mcsi_guide_shift(rows, 1)).bytes;
+}
+/* What columns [col, col + cols) have of a row of the map; they may go across the seam. */
+MCS_FN mcsi_share mcsi_share_make(const mcs_env *e, uint32_t row, uint32_t col, uint32_t cols) {
+    const uint32_t *sums = mcsi_env_sums(e, row);
+    const uint32_t end = col + cols;
+    mcsi_share s;
+    s.begin = sums[col];
+    s.mass = end <= e->w ? sums[end] - sums[col] : MCSI_ONE - sums[col] + sums[end - e->w];
+    return s;
 }
 MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
                                         uint32_t col, uint32_t cols) {
     if (!m || !e || ((uintptr_t)m & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (rows == 0 || cols == 0 || rows > e->h || row > e->h - rows || cols > e->w || col >= e->w) return MCS_ERR_SIZE;
     if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
-    const mcsi_env_view all = mcsi_env_whole(e);
-    mcsi_env_span *span = (mcsi_env_span *)(void *)(m + 1);
-    uint32_t *cdf = (uint32_t *)(void *)(span + rows);
-    uint16_t *guide = (uint16_t *)(void *)(cdf + rows + 1);
-    MCSI_FILL(m, 0, mcs_env_window_bytes(rows)); /* the guide does not always fill its part */
+    const mcsi_window all = mcsi_env_whole(e);
+    const uint32_t shift = mcsi_guide_shift(rows, 1);
+    const mcsi_window_offsets o = mcsi_window_layout(rows, shift);
+    mcsi_share *share = MCSI_WRITE(mcsi_share, m, o.share);
+    uint32_t *sums = MCSI_WRITE(uint32_t, m, o.sums);
+    MCSI_FILL(m, 0, o.bytes); /* the guide does not always fill its part */
     m->row = row;
     m->rows = rows;
     m->col = col;
     m->cols = cols;
-    m->shift = mcsi_guide_shift(rows, 1);
+    m->shift = shift;
     for (uint32_t i = 0; i < rows; i++) {
-        const uint32_t mass = e->uniform ? 0 : all.rows[row + i + 1] - all.rows[row + i];
-        const uint32_t end = col + cols;
-        if (mass) {
-            const uint32_t *c = mcsi_env_cdf(e, row + i);
-            span[i].begin = c[col];
-            span[i].mass = end <= e->w ? c[end] - c[col] : MCSI_ONE - c[col] + c[end - e->w];
-        }
-        mcsi_put_weight(cdf + i, (float)((double)mass * span[i].mass));
+        const uint32_t mass = e->uniform ? 0 : mcsi_cdf_mass(&all.rows, row + i);
+        if (mass) share[i] = mcsi_share_make(e, row + i, col, cols);
+        mcsi_put_weight(sums + i, (float)((double)mass * share[i].mass));
     }
-    const double total = mcsi_cdf_build(cdf, rows);
-    m->uniform = !(total > 0.0);
-    MCSI_GUIDE_BUILD(guide, uint16_t, m->shift, cdf, rows);
+    m->uniform = !(mcsi_sums_build(sums, rows) > 0.0);
+    mcsi_guide_build(MCSI_WRITE(uint16_t, m, o.guide), sizeof(uint16_t), shift, sums, rows);
     return m->uniform && !(e->uniform && e->total > 0.0) ? MCS_UNIFORM : MCS_OK;
 }
-MCS_API mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2) {
-    const mcsi_env_view v = mcsi_env_part(e, m);
-    return mcsi_env_draw_u(e, &v, u1, u2);
+
+/* ---- map: check ---- */
+
+/* Equal but for the compilers' freedom to contract a*b + c. */
+MCS_FN int mcsi_same(double a, double b, double relative) {
+    const double slack = relative * (b < 0.0 ? -b : b);
+    return a - b <= slack && b - a <= slack;
 }
-MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_vec3 w) {
-    const mcsi_env_view v = mcsi_env_part(e, m);
-    return mcsi_env_look_up(e, &v, w).pdf;
+MCSI_CORE int mcsi_dot_is(mcs_vec3 a, mcs_vec3 b, double want) {
+    const double off = (double)a.x * (double)b.x + (double)a.y * (double)b.y + (double)a.z * (double)b.z - want;
+    return off <= 1e-4 && off >= -1e-4;
 }
+/* Whether a frame is orthonormal to 1e-4. Its nine numbers may be a product of rotations: with floats each of them leaves
+ * 3 * 2^-24 in every number, thus 2 sqrt(3) times as much in the dot product of two columns, 1e-4 after 160 of them. */
+MCS_FN int mcsi_frame_ok(const mcs_frame *f) {
+    return mcsi_dot_is(f->s, f->s, 1.0) && mcsi_dot_is(f->t, f->t, 1.0) && mcsi_dot_is(f->n, f->n, 1.0) &&
+           mcsi_dot_is(f->s, f->t, 0.0) && mcsi_dot_is(f->t, f->n, 0.0) && mcsi_dot_is(f->n, f->s, 0.0);
+}
+/* The header alone: its size and its offsets are those of a build, so that all lists lie within the table. */
+MCS_FN int mcsi_env_header_ok(const mcs_env *e) {
+    if (e->magic != MCSI_ENV_MAGIC || e->version != MCSI_ENV_VERSION || !mcs_env_bytes(e->w, e->h)) return 0;
+    const mcsi_env_offsets o = mcsi_env_layout(e->w, e->h);
+    for (size_t i = 0; i < sizeof o; i++) /* CUDA device code has no memcmp */
+        if (MCSI_READ(char, &o, 0)[i] != MCSI_READ(char, &e->offset, 0)[i]) return 0;
+    if (e->uniform > 1 || e->incomplete > 1 || !(e->total >= 0.0 && e->total <= DBL_MAX)) return 0;
+    return mcsi_frame_ok(&e->frame);
+}
+MCS_FN int mcsi_env_checksums_ok(const mcs_env *e) {
+    if (e->checksum != mcsi_env_checksum(e)) return 0;
+    for (uint32_t y = 0; y < e->h; y++) {
+        const mcsi_cdf columns = mcsi_env_columns(e, y);
+        if (MCSI_READ(mcsi_row_light, e, e->offset.row_light)[y].checksum != mcsi_row_checksum(&columns)) return 0;
+    }
+    return 1;
+}
+/* Whether numbers that follow from the size are those of a build. */
+MCS_FN int mcsi_env_borders_ok(const mcs_env *e) {
+    mcs_env want;
+    want.w = e->w;
+    mcsi_env_set_turn(&want);
+    if (!mcsi_same((double)e->turn, (double)want.turn, 1.2e-7)) return 0;
+    if (!mcsi_same((double)e->inner, (double)want.inner, 1.2e-7)) return 0;
+    for (uint32_t y = 0; y <= (e->h + 1) / 2; y++)
+        if (!mcsi_same(mcsi_env_edge(e)[y], mcsi_one_minus_cos_pi((double)y / e->h), 1e-14)) return 0;
+    return 1;
+}
+MCS_FN int mcsi_row_ok(const mcsi_row *row, uint32_t y, uint32_t w, uint32_t h) {
+    const mcsi_row want = mcsi_row_make(y, w, h);
+    return mcsi_same(row->texel_density, want.texel_density, 1e-12) &&
+           mcsi_same((double)row->edge, (double)want.edge, 1.2e-7) &&
+           mcsi_same((double)row->height, (double)want.height, 1.2e-7);
+}
+/* Whether light fills just these rows and columns. */
+MCS_FN int mcsi_env_fills(const mcs_env *e, uint32_t row0, uint32_t row1, uint32_t col0, uint32_t col1) {
+    return e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1;
+}
+/* Of a map that is not constant: rows, all sums and guides, and the bounds of its light. */
+MCS_FN int mcsi_env_lists_ok(const mcs_env *e) {
+    const mcsi_window all = mcsi_env_whole(e);
+    if (!mcsi_cdf_ok(&all.rows)) return 0;
+    uint32_t row0 = e->h;
+    uint32_t row1 = 0;
+    uint32_t col0 = e->w;
+    uint32_t col1 = 0;
+    for (uint32_t y = 0; y < e->h; y++) {
+        if (!mcsi_row_ok(&all.row[y], y, e->w, e->h)) return 0;
+        if (mcsi_cdf_mass(&all.rows, y) == 0) continue;
+        const mcsi_cdf columns = mcsi_env_columns(e, y);
+        if (!mcsi_cdf_ok(&columns)) return 0;
+        row0 = y < row0 ? y : row0;
+        row1 = y + 1;
+        uint32_t first = 0;
+        while (columns.sums[first + 1] == 0) first++;
+        uint32_t last = e->w;
+        while (columns.sums[last - 1] == MCSI_ONE) last--;
+        col0 = first < col0 ? first : col0;
+        col1 = last > col1 ? last : col1;
+    }
+    return mcsi_env_fills(e, row0, row1, col0, col1);
+}
+MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
+    if (!e || ((uintptr_t)e & MCSI_ALIGN)) return MCS_ERR_ARG;
+    if (bytes < sizeof *e) return MCS_ERR_MEMORY;
+    if (!mcsi_env_header_ok(e)) return MCS_ERR_FORMAT;
+    if (bytes < mcs_env_bytes(e->w, e->h)) return MCS_ERR_MEMORY;
+    if (!mcsi_env_checksums_ok(e) || !mcsi_env_borders_ok(e)) return MCS_ERR_FORMAT;
+    const int lit = mcsi_env_fills(e, 0, e->h, 0, e->w);
+    const int black = mcsi_env_fills(e, e->h, 0, e->w, 0);
+    return (e->uniform ? lit || black : mcsi_env_lists_ok(e)) ? MCS_OK : MCS_ERR_FORMAT;
+}
+
+/* ---- drawing ----
+ * Every draw is a descent: row, column, point in the texel (products begin above it, with a tile). It carries what is left
+ * of the two random numbers, from 0 to 2^31 within the last choice, and the density of the path so far. That is relative to
+ * a uniform draw at first and per solid angle from the row on. A bad random number makes it 0 at the start. Each step is a
+ * function that takes a mcsi_draw, chooses, and hands on the rest. Each density function walks the same steps for a given
+ * texel. */
+
+MCSI_CORE mcsi_draw mcsi_draw_make(double u1, double u2, double density) {
+    mcsi_draw d;
+    d.u1 = u1;
+    d.u2 = u2;
+    d.density = density;
+    return d;
+}
+/* A random number times 2^31. */
+MCSI_CORE double mcsi_times_one(float u, int32_t *ok) { return (double)mcsi_sane_u(u, ok) * MCSI_ONE; }
+MCSI_CORE mcsi_draw mcsi_draw_start(float u1, float u2) {
+    int32_t ok = 1;
+    const double U1 = mcsi_times_one(u1, &ok);
+    const double U2 = mcsi_times_one(u2, &ok);
+    return mcsi_draw_make(U1, U2, ok ? 1.0 : 0.0);
+}
+
+/* -- row -- */
+
+/* Density of a texel per share of row i, which has light. */
+MCSI_CORE double mcsi_window_row_density(const mcsi_window *r, uint32_t i) {
+    const double density = mcsi_cdf_mass(&r->rows, i) * r->row[i].texel_density;
+    return r->share ? density * ((double)MCSI_ONE / r->share[i].mass) : density;
+}
+/* Chooses a row by u2, of which the rest goes to p. */
+MCSI_CORE uint32_t mcsi_window_draw_row(const mcsi_window *r, mcsi_draw *d, mcsi_env_point *p) {
+    mcsi_cdf rows = r->rows;
+    rows.guide_bytes = sizeof(uint16_t); /* which a compiler does not know of a window behind a pointer */
+    const uint32_t i = mcsi_cdf_find(&rows, (uint32_t)(int32_t)d->u2);
+    p->row_rest = (float)(d->u2 - (int32_t)rows.sums[i]);
+    p->row_mass = (float)mcsi_cdf_mass(&rows, i);
+    p->edge = r->row[i].edge;
+    p->height = r->row[i].height;
+    d->density *= mcsi_window_row_density(r, i);
+    return i;
+}
+/* From u1 in the window's share of row i to u1 in the row. */
+MCSI_CORE void mcsi_window_draw_share(const mcsi_window *r, uint32_t i, mcsi_draw *d) {
+    if (!r->share) return;
+    const mcsi_share share = r->share[i];
+    /* Rounding must not carry u1 to the end of the share, nor the wrapped value to 2^31 (x87 registers hold values between
+     * the largest double below 2^31, 2^-22 below it, and 2^31). */
+    const double u1 = d->u1 * (share.mass * (1.0 / MCSI_ONE));
+    const double end = share.mass - 4.76837158203125e-07;
+    const double unwrapped = share.begin + (u1 < end ? u1 : end);
+    const double wrapped = unwrapped - (unwrapped > MCSI_ONE - 2.384185791015625e-07 ? (double)MCSI_ONE : 0.0);
+    d->u1 = wrapped > 0.0 ? wrapped : 0.0;
+}
+
+/* -- column: looked for in two steps, so that array forms can fetch memory between them -- */
+
+/* Where to look for the column of U: in [lo, hi], as two neighbouring guide entries tell. Probably it is one of the eight
+ * from `first` on, around the place where linear interpolation expects it. */
+typedef struct {
+    uint32_t lo, hi, first;
+} mcsi_candidates;
+MCSI_CORE mcsi_candidates mcsi_candidate_columns(const mcsi_cdf *columns, uint32_t U) {
+    const uint32_t w = columns->n;
+    const uint32_t shift = columns->shift;
+    mcsi_candidates c;
+    c.lo = mcsi_guide_get(columns->guide, sizeof(uint16_t), U >> shift);
+    c.hi = mcsi_guide_get(columns->guide, sizeof(uint16_t), (U >> shift) + 1);
+    const uint32_t rest = U & ((1u << shift) - 1);
+    const uint32_t expected = c.lo + (uint32_t)((uint64_t)rest * (c.hi - c.lo) >> shift);
+    const uint32_t first = expected < 4 ? 0 : expected - 4;
+    c.first = first + 8 < w ? first : w < 8 ? 0 : w - 8;
+    return c;
+}
+/* Both ends of the eight are asked for at once, so that memory is waited for once. */
+MCSI_CORE uint32_t mcsi_find_column(const mcsi_cdf *columns, const mcsi_candidates *c, uint32_t U) {
+    const uint32_t *sums = columns->sums;
+    uint32_t col = c->first;
+    if (columns->n < 8 || U < sums[col] || U >= sums[col + 8])
+        return mcsi_cdf_search(sums, columns->n, c->lo, c->hi, U);
+    col += (uint32_t)(sums[col + 4] <= U) << 2;
+    col += (uint32_t)(sums[col + 2] <= U) << 1;
+    return col + (uint32_t)(sums[col + 1] <= U);
+}
+/* Chooses a column by u1, of which the rest goes to p. */
+MCSI_CORE uint32_t mcsi_draw_column(const mcsi_cdf *columns, const mcsi_candidates *c, mcsi_draw *d,
+                                    mcsi_env_point *p) {
+    const uint32_t col = mcsi_find_column(columns, c, (uint32_t)(int32_t)d->u1);
+    const uint32_t mass = mcsi_cdf_mass(columns, col);
+    p->col = (float)(int32_t)col;
+    p->col_rest = (float)(d->u1 - (int32_t)columns->sums[col]);
+    p->col_mass = (float)mass;
+    d->density *= mass;
+    return col;
+}
+
+/* -- constant maps: no tables are read -- */
+
+/* 1 over the solid angle of the window. */
+MCSI_CORE float mcsi_window_uniform_pdf(const mcs_env *e, const mcsi_window *r) {
+    const double *edge = mcsi_env_edge(e);
+    const uint32_t begin = r->row0;
+    const uint32_t end = r->row0 + r->rows.n;
+    const int south = 2 * begin >= e->h; /* there borders keep their digits as counted from the other pole */
+    const double height = south ? edge[e->h - begin] - edge[e->h - end] : mcsi_env_top(e, end) - mcsi_env_top(e, begin);
+    return (float)(1.0 / (6.2831853071795865 * height * r->cols / e->w));
+}
+/* A point of the window, even per solid angle. It keeps off the upper and lower border, as points of texels do. */
+MCSI_CORE mcsi_env_point mcsi_window_draw_uniform(const mcs_env *e, const mcsi_window *r, mcsi_draw *d) {
+    const uint32_t end = r->row0 + r->rows.n;
+    const double top = mcsi_env_top(e, r->row0);
+    const double bottom = mcsi_env_top(e, end);
+    const double margin = MCSI_ENV_MARGIN * e->h;
+    const double first = top + (mcsi_env_top(e, r->row0 + 1) - top) * margin;
+    const double last = bottom - (bottom - mcsi_env_top(e, end - 1)) * margin;
+    const double t = first + (last - first) * (d->u2 / MCSI_ONE);
+    const double unwrapped = r->col0 + d->u1 / MCSI_ONE * r->cols;
+    const double col = unwrapped < e->w ? unwrapped : unwrapped - e->w;
+    mcsi_env_point p;
+    p.row_rest = 0.5f;
+    p.row_mass = 1.0f;
+    p.edge = (float)(t < 1.0 ? t : 2.0 - t);
+    p.height = t < 1.0 ? FLT_MIN : -FLT_MIN;
+    p.col = (float)(uint32_t)col;
+    p.col_rest = (float)(col - (uint32_t)col);
+    p.col_mass = 1.0f;
+    d->density *= (double)mcsi_window_uniform_pdf(e, r);
+    return p;
+}
+
+/* ---- window: where a direction lies, and its density ---- */
+
+/* Row of a direction that is not bad. */
+MCSI_CORE uint32_t mcsi_env_row_at(const mcs_env *e, float off_pole, float polar) {
+    const double *edge = mcsi_env_edge(e);
+    const uint32_t last = (e->h - 1) / 2;
+    const double t = (double)mcsi_abs(off_pole);
+    const uint32_t expected = (uint32_t)(2.0f * polar * (float)e->h);
+    uint32_t m = expected < last ? expected : last;
+    while (m > 0 && t < edge[m]) m--;
+    while (m < last && t >= edge[m + 1]) m++;
+    return mcsi_bits(off_pole) < 0 ? e->h - 1 - m : m;
+}
+MCSI_CORE uint32_t mcsi_env_col_at(const mcs_env *e, float azimuth) {
+    const uint32_t col = (uint32_t)((double)azimuth * e->w);
+    return col < e->w ? col : e->w - 1;
+}
+/* A texel and a position in it: down from its upper border, across from its first azimuth, both 0 to 1. */
+typedef struct {
+    uint32_t row, col;
+    double down, across;
+} mcsi_spot;
+/* Where direction w lies. Returns 0 for a bad direction. */
+MCSI_CORE int mcsi_env_find(const mcs_env *e, mcs_vec3 w, mcsi_spot *s) {
+    const mcsi_angles a = mcsi_env_angles(&e->frame, w);
+    if (!(a.off_pole < 4.0f)) return 0;
+    s->row = mcsi_env_row_at(e, a.off_pole, a.polar);
+    s->col = mcsi_env_col_at(e, a.azimuth);
+    const double *edge = mcsi_env_edge(e) + mcsi_env_from_pole(s->row, e->h);
+    const double t = ((double)mcsi_abs(a.off_pole) - edge[0]) / (edge[1] - edge[0]);
+    const double from_pole = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
+    s->down = mcsi_bits(a.off_pole) < 0 ? 1.0 - from_pole : from_pole;
+    s->across = (double)a.azimuth * e->w - s->col;
+    return 1;
+}
+MCSI_CORE int mcsi_window_holds(const mcs_env *e, const mcsi_window *r, uint32_t row, uint32_t col) {
+    const uint32_t from_col0 = col >= r->col0 ? col - r->col0 : col + e->w - r->col0;
+    return row - r->row0 < r->rows.n && from_col0 < r->cols;
+}
+MCSI_CORE float mcsi_window_density(const mcs_env *e, const mcsi_window *r, uint32_t row, uint32_t col) {
+    const uint32_t i = row - r->row0;
+    if (!mcsi_window_holds(e, r, row, col)) return 0.0f;
+    if (r->uniform) return mcsi_window_uniform_pdf(e, r);
+    if (mcsi_cdf_mass(&r->rows, i) == 0 || col < e->col0 || col >= e->col1) return 0.0f; /* nothing was written there */
+    const uint32_t *sums = mcsi_env_sums(e, row) + col;
+    return (float)((sums[1] - sums[0]) * mcsi_window_row_density(r, i));
+}
+MCSI_CORE mcs_texel mcsi_window_look_up(const mcs_env *e, const mcsi_window *r, mcs_vec3 w) {
+    const mcsi_angles a = mcsi_env_angles(&e->frame, w);
+    const int ok = a.off_pole < 4.0f;
+    mcs_texel x;
+    x.row = ok ? mcsi_env_row_at(e, a.off_pole, a.polar) : 0;
+    x.col = mcsi_env_col_at(e, a.azimuth);
+    x.w = ok ? w : e->frame.n;
+    x.pdf = ok ? mcsi_window_density(e, r, x.row, x.col) : 0.0f;
+    return x;
+}
+
+/* ---- window: the whole descent ---- */
+
+/* A point of a window that is not constant, and its texel. */
+MCSI_CORE mcsi_env_point mcsi_window_draw_point(const mcs_env *e, const mcsi_window *r, mcsi_draw *d, mcs_texel *x) {
+    mcsi_env_point p;
+    const uint32_t i = mcsi_window_draw_row(r, d, &p);
+    mcsi_window_draw_share(r, i, d);
+    const mcsi_cdf columns = mcsi_env_columns(e, r->row0 + i);
+    const mcsi_candidates c = mcsi_candidate_columns(&columns, (uint32_t)(int32_t)d->u1);
+    x->row = r->row0 + i;
+    x->col = mcsi_draw_column(&columns, &c, d, &p);
+    return p;
+}
+/* A constant map has no texels to choose from: they lie where the rounded directions do. */
+MCS_FN mcs_texel mcsi_window_draw_constant(const mcs_env *e, const mcsi_window *r, mcsi_draw d) {
+    const mcsi_env_point p = mcsi_window_draw_uniform(e, r, &d);
+    mcs_texel x;
+    x.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner);
+    x.pdf = (float)d.density;
+    const mcsi_angles a = mcsi_env_angles(&e->frame, x.w);
+    x.row = mcsi_env_row_at(e, a.off_pole, a.polar);
+    x.col = mcsi_env_col_at(e, a.azimuth);
+    return x;
+}
+MCSI_CORE mcs_texel mcsi_window_draw(const mcs_env *e, const mcsi_window *r, mcsi_draw d) {
+    if (r->uniform) return mcsi_window_draw_constant(e, r, d); /* apart: joined, clang 14 loses 40 % on large maps */
+    mcs_texel x;
+    const mcsi_env_point p = mcsi_window_draw_point(e, r, &d, &x);
+    x.w = mcsi_env_direction(&e->frame, &p, e->turn, e->inner);
+    x.pdf = (float)d.density;
+    return x;
+}
+
 #ifndef MCS_NO_BATCH
+/* ---- window: array forms ----
+ * A block of 32 draws goes through in two stages, so that the cache misses of one stage overlap. block_row finds the row of
+ * a draw and fetches its guide; block_columns fetches and searches the columns of all, then computes their directions. */
+
+/* Results, of which any may be NULL. */
+typedef struct {
+    float *x, *y, *z, *pdf;
+    uint32_t *col, *row;
+} mcsi_texels;
+/* For n draws in all. A block that is not full holds points all the same: directions are computed by whole vectors. */
+MCSI_CORE void mcsi_block_start(mcsi_env_block *b, size_t n) {
+    if (n >= MCSI_ENV_BLOCK) return;
+    MCSI_FILL(b, 0, sizeof *b);
+    for (size_t k = n; k < MCSI_ENV_BLOCK; k++) b->row_mass[k] = b->col_mass[k] = 1.0f;
+}
+MCSI_CORE void mcsi_block_column(mcsi_env_block *b, size_t k, const mcsi_env_point *p, double density) {
+    b->col[k] = p->col;
+    b->col_rest[k] = p->col_rest;
+    b->col_mass[k] = p->col_mass;
+    b->pdf[k] = (float)density;
+}
+/* Draw k of the block. */
+MCSI_CORE void mcsi_block_row(const mcs_env *e, const mcsi_window *r, mcsi_draw d, mcsi_env_block *b, size_t k) {
+    b->sums[k] = NULL; /* constant: there is nothing to search */
+    mcsi_env_point p;
+    if (r->uniform) {
+        p = mcsi_window_draw_uniform(e, r, &d);
+        mcsi_block_column(b, k, &p, d.density);
+    } else {
+        const uint32_t i = mcsi_window_draw_row(r, &d, &p);
+        mcsi_window_draw_share(r, i, &d);
+        b->in_row[k] = r->row0 + i;
+        b->sums[k] = mcsi_env_sums(e, r->row0 + i);
+        b->guide[k] = mcsi_env_guide(e, r->row0 + i);
+        b->draw[k] = d;
+        MCSI_PREFETCH(b->guide[k] + ((uint32_t)(int32_t)d.u1 >> e->offset.col_shift));
+    }
+    b->row_rest[k] = p.row_rest;
+    b->row_mass[k] = p.row_mass;
+    b->edge[k] = p.edge;
+    b->height[k] = p.height;
+}
+MCS_FN void mcsi_block_search(const mcs_env *e, mcsi_env_block *b, size_t n) {
+    mcsi_candidates c[MCSI_ENV_BLOCK];
+    mcsi_cdf columns = {NULL, NULL, 0, 0, sizeof(uint16_t)};
+    columns.n = e->w;
+    columns.shift = e->offset.col_shift;
+    for (size_t k = 0; k < n; k++) {
+        if (!b->sums[k]) continue;
+        columns.guide = b->guide[k];
+        c[k] = mcsi_candidate_columns(&columns, (uint32_t)(int32_t)b->draw[k].u1);
+        MCSI_PREFETCH(b->sums[k] + c[k].first);
+        MCSI_PREFETCH(b->sums[k] + c[k].first + 8);
+    }
+    for (size_t k = 0; k < n; k++) {
+        if (!b->sums[k]) continue;
+        columns.sums = b->sums[k];
+        mcsi_env_point p;
+        b->in_col[k] = mcsi_draw_column(&columns, &c[k], &b->draw[k], &p);
+        mcsi_block_column(b, k, &p, b->draw[k].density);
+    }
+}
+/* The other stage, of n draws; results go to out->x[first] and so on. */
+MCS_FN void mcsi_block_columns(const mcs_env *e, mcsi_env_block *b, size_t n, const mcsi_texels *out, size_t first) {
+    mcsi_block_search(e, b, n);
+    const int find_texels = !b->sums[0] && (out->col || out->row); /* of a constant map */
+    if (out->x || out->y || out->z || find_texels) mcsi_env_directions_n(&e->frame, n, b, e->turn, e->inner);
+    for (size_t k = 0; find_texels && k < n; k++) {
+        const mcsi_angles a = mcsi_env_angles(&e->frame, mcsi_vec3(b->x[k], b->y[k], b->z[k]));
+        b->in_row[k] = mcsi_env_row_at(e, a.off_pole, a.polar);
+        b->in_col[k] = mcsi_env_col_at(e, a.azimuth);
+    }
+    if (out->x) MCSI_COPY(out->x + first, b->x, n * sizeof *out->x);
+    if (out->y) MCSI_COPY(out->y + first, b->y, n * sizeof *out->y);
+    if (out->z) MCSI_COPY(out->z + first, b->z, n * sizeof *out->z);
+    if (out->pdf) MCSI_COPY(out->pdf + first, b->pdf, n * sizeof *out->pdf);
+    if (out->col) MCSI_COPY(out->col + first, b->in_col, n * sizeof *out->col);
+    if (out->row) MCSI_COPY(out->row + first, b->in_row, n * sizeof *out->row);
+}
+MCS_FN void mcsi_window_draw_n(const mcs_env *e, const mcsi_window *r, size_t n, const float *u1, const float *u2,
+                               const mcsi_texels *out) {
+    mcsi_env_block b;
+    mcsi_block_start(&b, n);
+    size_t m;
+    for (size_t i = 0; i < n; i += m) {
+        m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
+        for (size_t k = 0; k < m; k++) mcsi_block_row(e, r, mcsi_draw_start(u1[i + k], u2[i + k]), &b, k);
+        mcsi_block_columns(e, &b, m, out, i);
+    }
+}
+MCS_API void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y,
+                              float *z, float *pdf, uint32_t *col, uint32_t *row) {
+    const mcsi_window all = mcsi_env_whole(e);
+    const mcsi_texels out = {x, y, z, pdf, col, row};
+    mcsi_window_draw_n(e, &all, n, u1, u2, &out);
+}
 MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1,
                                      const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
                                      uint32_t *row) {
-    const mcsi_env_view v = mcsi_env_part(e, m);
-    mcsi_env_draw_n(e, &v, n, u1, u2, x, y, z, pdf, col, row);
+    const mcsi_window window = mcsi_window_of(e, m);
+    const mcsi_texels out = {x, y, z, pdf, col, row};
+    mcsi_window_draw_n(e, &window, n, u1, u2, &out);
+}
+MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
+                             uint32_t *row, float *pdf) {
+    const mcsi_window all = mcsi_env_whole(e);
+    uint32_t in_row[MCSI_ENV_BLOCK], in_col[MCSI_ENV_BLOCK];
+    size_t m;
+    for (size_t i = 0; i < n; i += m) {
+        m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
+        mcsi_angles_block a;
+        mcsi_env_angles_n(&e->frame, m, x + i, y + i, z + i, &a);
+        for (size_t k = 0; k < m; k++) {
+            const int ok = a.off_pole[k] < 4.0f;
+            in_row[k] = ok ? mcsi_env_row_at(e, a.off_pole[k], a.polar[k]) : e->h; /* which no window holds */
+            in_col[k] = mcsi_env_col_at(e, a.azimuth[k]);
+            if (pdf && ok && !all.uniform) MCSI_PREFETCH(mcsi_env_sums(e, in_row[k]) + in_col[k]);
+            if (col) col[i + k] = in_col[k];
+            if (row) row[i + k] = ok ? in_row[k] : 0;
+        }
+        for (size_t k = 0; pdf && k < m; k++) pdf[i + k] = mcsi_window_density(e, &all, in_row[k], in_col[k]);
+    }
+}
+MCS_API void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
+    mcs_env_texel_n(e, n, x, y, z, NULL, NULL, pdf);
 }
 #endif
+
+/* ---- the map's interface: one at a time ---- */
+
+MCS_API mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2) {
+    const mcsi_window all = mcsi_env_whole(e);
+    return mcsi_window_draw(e, &all, mcsi_draw_start(u1, u2));
+}
+MCS_API mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2) {
+    const mcsi_window all = mcsi_env_whole(e);
+    return mcsi_window_draw(e, &all, mcsi_draw_make(0.5 * b1, 0.5 * b2, 1.0));
+}
+MCS_API mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w) {
+    const mcsi_window all = mcsi_env_whole(e);
+    return mcsi_window_look_up(e, &all, w);
+}
+MCS_API float mcs_env_pdf(const mcs_env *e, mcs_vec3 w) { return mcs_env_texel(e, w).pdf; }
+MCS_API mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
+    const mcsi_window all = mcsi_env_whole(e);
+    mcsi_spot s;
+    if (!mcsi_env_find(e, w, &s)) return mcsi_vec2(0.0f, 0.0f);
+    if (all.uniform) {
+        const double top = mcsi_env_top(e, s.row);
+        const double t = top + s.down * (mcsi_env_top(e, s.row + 1) - top);
+        return mcsi_vec2(mcsi_below_one((s.col + s.across) / e->w), mcsi_below_one(0.5 * t));
+    }
+    const uint32_t *sums = mcsi_env_sums(e, s.row) + s.col;
+    const uint32_t row_mass = mcsi_cdf_mass(&all.rows, s.row);
+    const double u1 = row_mass ? (sums[0] + s.across * (sums[1] - sums[0])) / MCSI_ONE : 0.0;
+    const double u2 = (all.rows.sums[s.row] + s.down * row_mass) / MCSI_ONE;
+    return mcsi_vec2(mcsi_below_one(u1), mcsi_below_one(u2));
+}
+MCS_API float mcs_env_weight(const mcs_env *e, float pdf) {
+    MCS_ASSERT(!e->incomplete);
+    return mcsi_sane_result(!e->incomplete & (pdf > 0.0f), mcsi_quotient(1.0f, pdf));
+}
+MCS_API mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2) {
+    const mcsi_window window = mcsi_window_of(e, m);
+    return mcsi_window_draw(e, &window, mcsi_draw_start(u1, u2));
+}
+MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_vec3 w) {
+    const mcsi_window window = mcsi_window_of(e, m);
+    return mcsi_window_look_up(e, &window, w).pdf;
+}
 #endif /* MCSI_W == 1 */
 #endif /* MCS_NO_TABLES */
 
@@ -6099,14 +6343,14 @@ MCS_FN void mcsi_patch_store(const mcs_env *e, const mcsi_patch *p, float *field
     field[MCSI_TILE_REACH * stride] = (float)(reach < r2 ? reach : r2) + 1e-6f;
 }
 /* Light of a tile: of row y, the texels of a window's columns. */
-MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_env_view *all, uint32_t y, mcsi_patch *p) {
+MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_window *all, uint32_t y, mcsi_patch *p) {
     const double t = 0.5 * (mcsi_env_top(e, y) + mcsi_env_top(e, y + 1));
     const double sine = mcsi_sqrt_d(t * (2.0 - t));
     double row = 0.0;
     double cx = 0.0;
     double cy = 0.0;
-    const uint32_t mass = all->rows[y + 1] - all->rows[y];
-    const uint32_t *cdf = mcsi_env_cdf(e, y);
+    const uint32_t mass = mcsi_cdf_mass(&all->rows, y);
+    const uint32_t *cdf = mcsi_env_sums(e, y);
     double height = mcsi_env_height(y, e->h);
     p->area += height;
     p->across += height * sine;
@@ -6143,14 +6387,12 @@ MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mc
     mcs_frame axes;
     MCSI_FILL(&axes, 0, sizeof axes);
     axes.s.x = axes.t.y = axes.n.z = 1.0f;
-    const mcsi_env_view v = mcsi_env_part(e, m);
-    uint32_t row, col;
+    const mcsi_window window = mcsi_window_of(e, m);
     for (uint32_t k = 0; k < MCSI_GRID; k++) {
-        const double U1 = mcsi_node_place(k / MCSI_NODES);
-        const double U2 = mcsi_node_place(k % MCSI_NODES);
-        mcsi_env_point at;
-        if (v.uniform) mcsi_env_draw_uniform(e, &v, U1, U2, &at);
-        else mcsi_env_draw_point(e, &v, U1, U2, 1.0, &at, &row, &col);
+        mcsi_draw d = mcsi_draw_make(mcsi_node_place(k / MCSI_NODES), mcsi_node_place(k % MCSI_NODES), 1.0);
+        mcs_texel x;
+        const mcsi_env_point at =
+            window.uniform ? mcsi_window_draw_uniform(e, &window, &d) : mcsi_window_draw_point(e, &window, &d, &x);
         const mcs_vec3 w = mcsi_env_direction(&axes, &at, e->turn, e->inner);
         node[k] = w.x;
         node[MCSI_GRID + k] = w.y;
@@ -6168,7 +6410,7 @@ MCS_FN void mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, uint
     p->col1 = mcsi_tile_begin(j + 1, 2 * rows, e->w);
     if (rows == t->rows) {
         mcs_env_window *m = (mcs_env_window *)(void *)((char *)(uintptr_t)mcsi_tiles_window(t, i, j));
-        const mcsi_env_view all = mcsi_env_whole(e);
+        const mcsi_window all = mcsi_env_whole(e);
         const size_t at = (size_t)j * rows + i;
         float *around = (float *)(uintptr_t)mcsi_tiles_around(t) + 12 * at;
         for (uint32_t y = p->row0; y < p->row1; y++) mcsi_patch_add_row(e, &all, y, p);
@@ -6563,22 +6805,21 @@ MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, uint32_t i, uint32_t
     return mcsi_warp_make(*s.value, *s.pull, s.first[0], s.first[1], s.last[0], s.last[1]);
 }
 /* Where among a tile's light the place of a direction in a row with light lies, for mcsi_warp_density. */
-MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const mcsi_env_place_of *at, float *t1,
-                                float *t2) {
-    const uint32_t *rows = v->rows + (at->row - v->row);
-    const mcsi_env_span *span = v->span + (at->row - v->row);
+MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_window *v, const mcsi_spot *at, float *t1, float *t2) {
+    const uint32_t *rows = v->rows.sums + (at->row - v->row0);
+    const mcsi_share *share = v->share + (at->row - v->row0);
     double P;
     if (v->uniform) {
-        const double a = mcsi_env_top(e, v->row);
-        const double b = mcsi_env_top(e, v->row + v->count);
+        const double a = mcsi_env_top(e, v->row0);
+        const double b = mcsi_env_top(e, v->row0 + v->rows.n);
         P = mcsi_env_top(e, at->row);
         P += at->down * (mcsi_env_top(e, at->row + 1) - P);
-        *t1 = (float)((at->col + at->across - v->col) / v->cols);
+        *t1 = (float)((at->col + at->across - v->col0) / v->cols);
         *t2 = (float)((P - a) / (b - a));
     } else {
-        const uint32_t *cdf = mcsi_env_cdf(e, at->row) + at->col;
-        P = cdf[0] + at->across * (cdf[1] - cdf[0]) - span->begin;
-        *t1 = (float)((P < 0.0 ? P + MCSI_ONE : P) / span->mass);
+        const uint32_t *cdf = mcsi_env_sums(e, at->row) + at->col;
+        P = cdf[0] + at->across * (cdf[1] - cdf[0]) - share->begin;
+        *t1 = (float)((P < 0.0 ? P + MCSI_ONE : P) / share->mass);
         *t2 = (float)((rows[0] + at->down * (rows[1] - rows[0])) / MCSI_ONE);
     }
     *t1 = mcsi_min(mcsi_max(*t1, 0.0f), 1.0f);
@@ -6586,21 +6827,21 @@ MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_env_view *v, const 
 }
 /* Density of the tiles alone; `part` of all draws fall on tile (i, j), there by a fine grid, a bilinear function or the light. */
 MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, const float *fine,
-                                   const mcsi_warp *warp, uint32_t i, uint32_t j, const mcsi_env_place_of *at) {
-    const mcsi_env_view v = mcsi_env_part(e, mcsi_tiles_window(t, i, j));
-    const uint32_t row = at->row - v.row;
-    if (!v.uniform && v.rows[row] == v.rows[row + 1]) return 0.0f; /* no light in it */
+                                   const mcsi_warp *warp, uint32_t i, uint32_t j, const mcsi_spot *at) {
+    const mcsi_window v = mcsi_window_of(e, mcsi_tiles_window(t, i, j));
+    const uint32_t row = at->row - v.row0;
+    if (!v.uniform && mcsi_cdf_mass(&v.rows, row) == 0) return 0.0f; /* no light in it */
     if (fine || warp) {
         float t1, t2;
         mcsi_tiled_place(e, &v, at, &t1, &t2);
         part *= (double)(fine ? mcsi_fine_density(fine, t1, t2) : mcsi_warp_density(warp, t1, t2));
     }
-    if (v.uniform) return (float)(part * (double)mcsi_env_uniform_pdf(e, &v));
-    part *= mcsi_env_scale(&v, row);
-    const uint32_t *cdf = mcsi_env_cdf(e, at->row) + at->col;
+    if (v.uniform) return (float)(part * (double)mcsi_window_uniform_pdf(e, &v));
+    part *= mcsi_window_row_density(&v, row);
+    const uint32_t *cdf = mcsi_env_sums(e, at->row) + at->col;
     return (float)((cdf[1] - cdf[0]) * part);
 }
-MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcsi_env_place_of *at) {
+MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcsi_spot *at) {
     const mcs_tiles *t = p->t;
     const uint32_t i = mcsi_tile_of(at->row, t->rows, p->e->h);
     const uint32_t j = mcsi_tile_of(at->col, t->cols, p->e->w);
@@ -6621,7 +6862,7 @@ MCSI_CORE mcs_texel mcsi_nothing(const mcs_env *e) {
 }
 /* The same for a direction, with the lobe's share. */
 MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
-    mcsi_env_place_of at;
+    mcsi_spot at;
     if (!mcsi_env_find(p->e, w, &at)) return mcsi_nothing(p->e);
     mcs_texel r;
     r.w = w;
@@ -6633,11 +6874,11 @@ MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
 MCS_API float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
 /* What a draw reads of a tile's rows near the place U2 of its light. */
 MCSI_CORE void mcsi_tile_prefetch(const mcs_env *e, const mcs_env_window *m, double U2) {
-    const mcsi_env_view v = mcsi_env_part(e, m);
-    const uint32_t row = (uint32_t)(U2 * v.count * (1.0 / MCSI_ONE));
-    MCSI_PREFETCH(v.guide + row);
-    MCSI_PREFETCH(v.rows + row);
-    MCSI_PREFETCH(v.span + row);
+    const mcsi_window v = mcsi_window_of(e, m);
+    const uint32_t row = (uint32_t)(U2 * v.rows.n * (1.0 / MCSI_ONE));
+    MCSI_PREFETCH((const uint16_t *)v.rows.guide + row);
+    MCSI_PREFETCH(v.rows.sums + row);
+    MCSI_PREFETCH(v.share + row);
 }
 /* Tile row, then column; U2 and U1 become the place in it. */
 MCSI_CORE uint32_t mcsi_product_row(const mcs_product *p, double *U2) {
@@ -6660,8 +6901,8 @@ MCSI_CORE uint32_t mcsi_product_col(const mcs_product *p, uint32_t i, double *U1
 }
 MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, double U1, double U2, double part,
                                     int ok) {
-    const mcsi_env_view v = mcsi_env_part(e, m);
-    return mcsi_env_draw(e, &v, U1, U2, part, ok);
+    const mcsi_window window = mcsi_window_of(e, m);
+    return mcsi_window_draw(e, &window, mcsi_draw_make(U1, U2, ok ? part : 0.0));
 }
 MCS_API mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
     int32_t ok = 1;
@@ -6708,8 +6949,9 @@ MCS_API void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u
         }
         return;
     }
+    const mcsi_texels out = {x, y, z, pdf, col, row};
     mcsi_env_block b;
-    mcsi_env_block_start(&b, n);
+    mcsi_block_start(&b, n);
     mcsi_warp_block warps;
     if (n < MCSI_ENV_BLOCK) MCSI_FILL(&warps, 0, sizeof warps);
     for (size_t k = n; k < MCSI_ENV_BLOCK; k++) warps.value[k] = 1.0f;
@@ -6755,11 +6997,10 @@ MCS_API void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u
             mcsi_tile_prefetch(p->e, window[k], U2[k]);
         }
         for (size_t k = 0; k < m; k++) {
-            const mcsi_env_view v = mcsi_env_part(p->e, window[k]);
-            mcsi_env_block_aim(p->e, &v, &b, k, U1[k], U2[k], part[k], ok[k]);
+            const mcsi_window v = mcsi_window_of(p->e, window[k]);
+            mcsi_block_row(p->e, &v, mcsi_draw_make(U1[k], U2[k], ok[k] ? part[k] : 0.0), &b, k);
         }
-        mcsi_env_block_land(p->e, &b, m, x ? x + i : NULL, y ? y + i : NULL, z ? z + i : NULL, pdf ? pdf + i : NULL,
-                            col ? col + i : NULL, row ? row + i : NULL);
+        mcsi_block_columns(p->e, &b, m, &out, i);
     }
 }
 #endif
@@ -6864,8 +7105,7 @@ MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcsi
     return 1;
 }
 /* Density of the tiles alone. */
-MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s,
-                                  const mcsi_env_place_of *at) {
+MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s, const mcsi_spot *at) {
     double part = 1.0;
     double U1 = -1.0;
     double U2 = -1.0;
@@ -6892,7 +7132,7 @@ MCS_API mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const
     mcs_texel x;
     mcs_vec3 w;
     if (mcsi_own_draw(&own, share, &u1, u2, &w, &ok)) {
-        mcsi_env_place_of at;
+        mcsi_spot at;
         if (!mcsi_env_find(e, w, &at)) return mcsi_nothing(e);
         x.w = w;
         x.row = at.row;
@@ -6910,7 +7150,7 @@ MCS_API mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const
     return x;
 }
 MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w) {
-    mcsi_env_place_of at;
+    mcsi_spot at;
     mcsi_facing s;
     if (!mcsi_env_find(e, w, &at) || !mcsi_facing_make(e, r, &s)) return 0.0f;
     const float share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f);
@@ -7142,6 +7382,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_always MCSI_(always)
 #define mcsi_angle MCSI_(angle)
 #define mcsi_angle_of_turns MCSI_(angle_of_turns)
+#define mcsi_angles MCSI_(angles)
 #define mcsi_any MCSI_(any)
 #define mcsi_anywhere MCSI_(anywhere)
 #define mcsi_around_z MCSI_(around_z)
@@ -7180,10 +7421,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_disk_loop MCSI_(disk_loop)
 #define mcsi_disk_pdf MCSI_(disk_pdf)
 #define mcsi_dot MCSI_(dot)
+#define mcsi_env_angles MCSI_(env_angles)
+#define mcsi_env_angles_loop MCSI_(env_angles_loop)
 #define mcsi_env_direction MCSI_(env_direction)
 #define mcsi_env_directions_loop MCSI_(env_directions_loop)
-#define mcsi_env_locate MCSI_(env_locate)
-#define mcsi_env_locate_loop MCSI_(env_locate_loop)
 #define mcsi_env_point MCSI_(env_point)
 #define mcsi_evenpower_loop MCSI_(evenpower_loop)
 #define mcsi_exact_dot MCSI_(exact_dot)
@@ -7579,6 +7820,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_always
 #undef mcsi_angle
 #undef mcsi_angle_of_turns
+#undef mcsi_angles
 #undef mcsi_any
 #undef mcsi_anywhere
 #undef mcsi_around_z
@@ -7617,10 +7859,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_disk_loop
 #undef mcsi_disk_pdf
 #undef mcsi_dot
+#undef mcsi_env_angles
+#undef mcsi_env_angles_loop
 #undef mcsi_env_direction
 #undef mcsi_env_directions_loop
-#undef mcsi_env_locate
-#undef mcsi_env_locate_loop
 #undef mcsi_env_point
 #undef mcsi_evenpower_loop
 #undef mcsi_exact_dot
@@ -7813,9 +8055,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner) {
     MCSI_WIDEST(env_directions_loop, (f, n, b, turn, inner));
 }
-MCS_FN void mcsi_env_locate_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z,
-                              float *off_pole, float *polar, float *turns) {
-    MCSI_WIDEST(env_locate_loop, (f, n, x, y, z, off_pole, polar, turns));
+MCS_FN void mcsi_env_angles_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z,
+                              mcsi_angles_block *angles) {
+    MCSI_WIDEST(env_angles_loop, (f, n, x, y, z, angles));
 }
 #ifndef MCS_NO_LOBES
 MCS_FN void mcsi_tile_values_n(const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value) {

@@ -563,10 +563,10 @@ FN(env_check) {
     case 1: e->version++; break;
     case 2: e->h++; break;
     case 3: e->uniform = 2; break;
-    case 4: e->at.cdf += 8; break;
+    case 4: e->offset.col_sums += 8; break;
     case 5: e->incomplete = 2; break;
     default:
-        list = (uint32_t *)(void *)((char *)e + (WORD(12) >> 8 & 1 ? e->at.cdf : e->at.rows));
+        list = (uint32_t *)(void *)((char *)e + (WORD(12) >> 8 & 1 ? e->offset.col_sums : e->offset.row_sums));
         list[WORD(12) % (c.image.h + 1)] ^= 1u << (WORD(13) & 31);
     }
     PUT_WORD(5, (uint32_t)mcs_env_check(e, c.bytes));

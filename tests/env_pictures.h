@@ -117,12 +117,12 @@ static inline picture make(const char *name, uint32_t w, uint32_t h, shade value
 }
 
 static inline mcs_env *env_in(const arena *a) { return (mcs_env *)(void *)a->at; }
-static inline uint32_t *rows_of(const arena *a) { return (uint32_t *)(void *)(a->at + env_in(a)->at.rows); }
+static inline uint32_t *rows_of(const arena *a) { return (uint32_t *)(void *)(a->at + env_in(a)->offset.row_sums); }
 static inline uint32_t *cdf_of(const arena *a, uint32_t row) {
-    return (uint32_t *)(void *)(a->at + env_in(a)->at.cdf) + (size_t)row * (env_in(a)->w + 1);
+    return (uint32_t *)(void *)(a->at + env_in(a)->offset.col_sums) + (size_t)row * (env_in(a)->w + 1);
 }
 static inline unsigned char *guide_of(const arena *a, uint32_t row) {
-    return a->at + env_in(a)->at.col_guide + (size_t)row * env_in(a)->at.guides * 2;
+    return a->at + env_in(a)->offset.col_guide + (size_t)row * env_in(a)->offset.guide_length * 2;
 }
 
 static inline arena build(const picture *p, mcs_status want) {

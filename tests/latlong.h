@@ -39,9 +39,11 @@ static inline void texel_of(uint32_t w, uint32_t h, mcs_vec3 v, double *col, dou
 /* Checksums that fit a damaged table, as a forger would compute them: what mcs_env_check knows without them is then all that is
  * left. Size and layout must be those of the memory. */
 static inline void seal(mcs_env *e) {
-    mcsi_env_info *info = (mcsi_env_info *)(void *)((char *)e + e->at.info);
-    for (uint32_t y = 0; y < e->h; y++)
-        info[y].sum = mcsi_env_row_sum(mcsi_env_cdf(e, y), e->w, mcsi_env_guide(e, y), e->at.guides);
-    e->sum = mcsi_env_sum(e);
+    mcsi_row_light *light = MCSI_WRITE(mcsi_row_light, e, e->offset.row_light);
+    for (uint32_t y = 0; y < e->h; y++) {
+        const mcsi_cdf columns = mcsi_env_columns(e, y);
+        light[y].checksum = mcsi_row_checksum(&columns);
+    }
+    e->checksum = mcsi_env_checksum(e);
 }
 #endif

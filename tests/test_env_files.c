@@ -52,7 +52,7 @@ static int check_damaged(mcs_env *e, const arena *was, const char *what, size_t 
     const mcs_env *good = env_in(was);
     mcs_status rc = mcs_env_check(e, was->bytes);
     CHECK(rc == MCS_ERR_FORMAT || rc == MCS_ERR_MEMORY || (rc == MCS_OK && in_frame(at)), "%s %zu changed: %d", what, at, rc);
-    if (e->w == good->w && e->h == good->h && memcmp(&e->at, &good->at, sizeof e->at) == 0) {
+    if (e->w == good->w && e->h == good->h && memcmp(&e->offset, &good->offset, sizeof e->offset) == 0) {
         seal(e);
         rc = mcs_env_check(e, was->bytes);
         CHECK(rc == MCS_OK || rc == MCS_ERR_FORMAT, "%s %zu forged: %d", what, at, rc);
@@ -105,11 +105,11 @@ static void check_sums(const picture *p, mcs_env *e, const arena *a, mcs_pcg32 *
         const size_t at = sizeof *e + mcs_pcg32_next(rng) % (bytes - sizeof *e);
         const size_t n = 1 + mcs_pcg32_next(rng) % 8;
         for (size_t k = at; k < at + n && k < bytes; k++) byte[k] = (unsigned char)(i % 3 ? mcs_pcg32_next(rng) : i % 2 ? 0xff : 0);
-        const size_t guides = env_in(a)->at.col_guide;
+        const size_t guides = env_in(a)->offset.col_guide;
         const int changed = memcmp(e, a->at, bytes) != 0;
         const int no = changed && check_damaged(e, a, "table byte", at);
         /* guides follow from the sums: none but the right one passes, forged or not */
-        if (all_lit && changed && at >= guides && at + n <= guides + (size_t)p->h * env_in(a)->at.guides * 2) {
+        if (all_lit && changed && at >= guides && at + n <= guides + (size_t)p->h * env_in(a)->offset.guide_length * 2) {
             guides_tried++;
             CHECK(no, "guide byte %zu changed, accepted", at);
         }
@@ -235,7 +235,7 @@ static void test_random_damage(void) {
                 byte[bit / 8] ^= (unsigned char)(1u << bit % 8);
             }
         } else if (kind > 5) {
-            unsigned char *const row = byte + e->at.cdf + mcs_pcg32_next(&rng) % 32 * (65 * sizeof(uint32_t));
+            unsigned char *const row = byte + e->offset.col_sums + mcs_pcg32_next(&rng) % 32 * (65 * sizeof(uint32_t));
             const size_t lane = mcs_pcg32_next(&rng) % 8 * 8;
             const uint32_t first = mcs_pcg32_next(&rng) % 4;
             const uint32_t second = mcs_pcg32_next(&rng) % 4;

@@ -1,5 +1,5 @@
 /* What the environment map keeps in memory: probabilities that are integers, places that are skipped, the same bytes whatever was
- * there before. The truth is the picture; the layout is the one documented at mcsi_env_parts. MCS_TEST_BIG adds a map of
+ * there before. The truth is the picture; the layout is the one documented at mcsi_env_offsets. MCS_TEST_BIG adds a map of
  * 16384 x 8192, in 1.2 GB. */
 #include "env_pictures.h"
 
@@ -238,14 +238,14 @@ static void test_refused_parts(void) {
 /* Overwrites the columns' sums and guides of row r. */
 static void poison(const arena *a, uint32_t r) {
     memset(cdf_of(a, r), 0xff, (env_in(a)->w + 1) * sizeof(uint32_t));
-    memset(guide_of(a, r), 0xff, env_in(a)->at.guides * 2);
+    memset(guide_of(a, r), 0xff, env_in(a)->offset.guide_length * 2);
 }
 static size_t zeros(const unsigned char *p, size_t n) {
     size_t count = 0;
     for (size_t i = 0; i < n; i++) count += p[i] == 0;
     return count;
 }
-static size_t row_bytes(const mcs_env *e) { return (e->w + (size_t)1) * sizeof(uint32_t) + e->at.guides * (size_t)2; }
+static size_t row_bytes(const mcs_env *e) { return (e->w + (size_t)1) * sizeof(uint32_t) + e->offset.guide_length * (size_t)2; }
 
 enum { DRAWS = 4096 };
 static float u1[DRAWS], u2[DRAWS], x[4][DRAWS], again[4][DRAWS];
@@ -291,7 +291,7 @@ static void check_skips(picture p, mcs_status status, uint32_t lit, int uniform)
         int black = 1;
         for (uint32_t c = 0; c < p.w; c++) black &= p.lum[(size_t)r * p.w + c] == 0;
         const size_t none =
-            zeros((unsigned char *)cdf_of(&a, r), (p.w + (size_t)1) * 4) + zeros(guide_of(&a, r), e->at.guides * (size_t)2);
+            zeros((unsigned char *)cdf_of(&a, r), (p.w + (size_t)1) * 4) + zeros(guide_of(&a, r), e->offset.guide_length * (size_t)2);
         CHECK(!black || none == row_bytes(e), "%s: %zu of %zu bytes of black row %u are not 0", p.name, row_bytes(e) - none,
               row_bytes(e), r);
         if (black || uniform) {
@@ -300,7 +300,7 @@ static void check_skips(picture p, mcs_status status, uint32_t lit, int uniform)
         }
     }
     CHECK(unread == (uniform ? p.h : p.h - lit), "%s: %u rows spoilt", p.name, unread);
-    if (uniform) memset(rows_of(&a), 0xff, e->at.cdf - e->at.rows);
+    if (uniform) memset(rows_of(&a), 0xff, e->offset.col_sums - e->offset.row_sums);
     const double second = record(e, after);
     CHECK(first == second && memcmp(before, after, texels * sizeof *before) == 0, "%s: draws or densities read what was spoilt",
           p.name);

@@ -544,14 +544,14 @@ static void borders_of_texels(void) {
     for (uint32_t c = 0; c < W * H; c++) light[c] = mcst_mix(&seed) % 3 ? (float)(1 + mcst_mix(&seed) % 1000) : 0.0f;
     arena a;
     mcs_env *e = map_of(&a, light, W, H);
-    const mcsi_env_view v = mcsi_env_whole(e);
+    const mcsi_window all = mcsi_env_whole(e);
     for (uint32_t r = 0; r < H; r++) {
-        const uint32_t *cdf = mcsi_env_cdf(e, r);
+        const uint32_t *cdf = mcsi_env_sums(e, r);
         for (uint32_t c = 0; c < W; c++) {
             if (cdf[c] == cdf[c + 1]) continue;
-            mcs_texel t = mcs_env_sample_bits(e, 2 * cdf[c], v.rows[r] + v.rows[r + 1]);
+            mcs_texel t = mcs_env_sample_bits(e, 2 * cdf[c], all.rows.sums[r] + all.rows.sums[r + 1]);
             CHECK(t.col == c && t.row == r, "border %u of row %u: %u, %u", c, r, t.col, t.row);
-            t = mcs_env_sample_bits(e, 2 * cdf[c + 1] - 1, 2 * v.rows[r]);
+            t = mcs_env_sample_bits(e, 2 * cdf[c + 1] - 1, 2 * all.rows.sums[r]);
             CHECK(t.col == c && t.row == r, "before border %u of row %u: %u, %u", c + 1, r, t.col, t.row);
         }
     }

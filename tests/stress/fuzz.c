@@ -568,8 +568,8 @@ static void fuzz_file(bytes *b) {
         }
     }
     if (forged && size >= sizeof *e && mcs_env_bytes(e->w, e->h) == size) {
-        const mcsi_env_parts at = mcsi_env_layout(e->w, e->h);
-        if (!memcmp(&at, &e->at, sizeof at)) seal(e);
+        const mcsi_env_offsets offset = mcsi_env_layout(e->w, e->h);
+        if (!memcmp(&offset, &e->offset, sizeof offset)) seal(e);
     }
     mcs_env *cut = (mcs_env *)room(size ? less % size : 0);
     memcpy(cut, e, size ? less % size : 0);
