@@ -1251,7 +1251,7 @@ MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float 
  *                                texels than a float u can tell apart
  *   mcs_env_pdf(e, w); mcs_env_texel(e, w) -> the same struct, for radiance and density in one look-up
  *   mcs_env_invert(e, w) -> (u1, u2)
- *   mcs_env_sample_n(e, n, u1, u2, x, y, z, pdf, col, row), _texel_n(e, n, x, y, z, col, row, pdf), _pdf_n(e, n, x, y, z, pdf)
+ *   mcs_env_sample_n(e, n, u1, u2, x, y, z, pdf, col, row), _texel_n(e, n, x, y, z, pdf, col, row), _pdf_n(e, n, x, y, z, pdf)
  *                                arrays, of which results may be NULL; memory is fetched ahead, so these are the fast forms for
  *                                large maps
  *   mcs_env_check(e, bytes)      whether memory (a file read or mapped) is a table: MCS_OK, else MCS_ERR_MEMORY when cut short, or
@@ -1335,8 +1335,8 @@ MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y,
                               float *z, float *pdf, uint32_t *col, uint32_t *row);
-MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
-                             uint32_t *row, float *pdf);
+MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf,
+                             uint32_t *col, uint32_t *row);
 MCS_API void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf);
 MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1,
                                      const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
@@ -5912,8 +5912,8 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
     const mcsi_texels out = {x, y, z, pdf, col, row};
     mcsi_window_draw_n(e, &window, n, u1, u2, &out);
 }
-MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, uint32_t *col,
-                             uint32_t *row, float *pdf) {
+MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf,
+                             uint32_t *col, uint32_t *row) {
     const mcsi_window all = mcsi_env_whole(e);
     uint32_t in_row[MCSI_ENV_BLOCK], in_col[MCSI_ENV_BLOCK];
     size_t m;
@@ -5933,7 +5933,7 @@ MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const f
     }
 }
 MCS_API void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
-    mcs_env_texel_n(e, n, x, y, z, NULL, NULL, pdf);
+    mcs_env_texel_n(e, n, x, y, z, pdf, NULL, NULL);
 }
 #endif
 

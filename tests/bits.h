@@ -731,7 +731,7 @@ HOST(env_texel_n) {
 }
 ARRAY(env_texel_n) {
     static uint32_t col[CASES], row[CASES];
-    mcs_env_texel_n(bits_map_at(k)->env, n, in[2], in[3], in[4], col, row, out[2]);
+    mcs_env_texel_n(bits_map_at(k)->env, n, in[2], in[3], in[4], out[2], col, row);
     memcpy(out[0], col, n * sizeof *col);
     memcpy(out[1], row, n * sizeof *row);
 }

@@ -176,7 +176,7 @@ static void check_texels(const mcs_env *e, size_t n, float *x, const float *y, c
     if (n) x[n - 1] = NAN;
     for (size_t skip = 0; skip < 8; skip++) {
         int same = 1;
-        mcs_env_texel_n(e, n, x, y, z, skip & 1 ? NULL : col, skip & 2 ? NULL : row, skip & 4 ? NULL : pdf);
+        mcs_env_texel_n(e, n, x, y, z, skip & 4 ? NULL : pdf, skip & 1 ? NULL : col, skip & 2 ? NULL : row);
         for (size_t i = 0; i < n; i++) {
             const mcs_vec3 w = {x[i], y[i], z[i]};
             const mcs_texel t = mcs_env_texel(e, w);
