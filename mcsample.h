@@ -1198,6 +1198,7 @@ typedef struct {
     double total;
     uint32_t n, bad, shift, unused;
 } mcs_pwc; /* then cdf[n + 1], guide[] */
+typedef mcs_pwc mcs_discrete;
 typedef struct {
     mcs_pwc cells;
 } mcs_pwl; /* then cdf[n + 1], guide[], vertex[n + 1] */
@@ -1213,9 +1214,11 @@ MCS_API mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u);
 MCS_API mcs_cell mcs_pwc_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2);
 MCS_API float mcs_pwc_pdf(const mcs_pwc *t, float x);
 MCS_API float mcs_pwc_invert(const mcs_pwc *t, float x);
-MCS_API mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u);
-MCS_API mcs_pick mcs_discrete_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2);
-MCS_API float mcs_discrete_pmf(const mcs_pwc *t, uint32_t i);
+MCS_API size_t mcs_discrete_bytes(uint32_t n);
+MCS_API mcs_status mcs_discrete_build(mcs_discrete *t, size_t bytes, const float *w, uint32_t n);
+MCS_API mcs_pick mcs_discrete_sample(const mcs_discrete *t, float u);
+MCS_API mcs_pick mcs_discrete_sample_bits(const mcs_discrete *t, uint32_t b1, uint32_t b2);
+MCS_API float mcs_discrete_pmf(const mcs_discrete *t, uint32_t i);
 MCS_API size_t mcs_pwl_bytes(uint32_t n);
 MCS_API mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n);
 MCS_API mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u);
@@ -4710,6 +4713,10 @@ MCS_API void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float 
     }
 }
 #endif
+MCS_API size_t mcs_discrete_bytes(uint32_t n) { return mcs_pwc_bytes(n); }
+MCS_API mcs_status mcs_discrete_build(mcs_discrete *t, size_t bytes, const float *w, uint32_t n) {
+    return mcs_pwc_build(t, bytes, w, n);
+}
 MCSI_CORE mcs_pick mcsi_discrete_pick(mcsi_entry p, int ok) {
     mcs_pick c;
     c.i = p.i;
@@ -4717,15 +4724,15 @@ MCSI_CORE mcs_pick mcsi_discrete_pick(mcsi_entry p, int ok) {
     c.pmf = ok ? (float)((double)p.mass / MCSI_ONE) : 0.0f;
     return c;
 }
-MCS_API mcs_pick mcs_discrete_sample(const mcs_pwc *t, float u) {
+MCS_API mcs_pick mcs_discrete_sample(const mcs_discrete *t, float u) {
     int32_t ok = 1;
     u = mcsi_sane_u(u, &ok);
     return mcsi_discrete_pick(mcsi_entry_of_u(t, u), ok);
 }
-MCS_API mcs_pick mcs_discrete_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
+MCS_API mcs_pick mcs_discrete_sample_bits(const mcs_discrete *t, uint32_t b1, uint32_t b2) {
     return mcsi_discrete_pick(mcsi_entry_of_bits(t, b1, b2), 1);
 }
-MCS_API float mcs_discrete_pmf(const mcs_pwc *t, uint32_t i) {
+MCS_API float mcs_discrete_pmf(const mcs_discrete *t, uint32_t i) {
     if (i >= t->n) return 0.0f;
     const mcsi_cdf c = mcsi_pwc_cdf(t);
     return (float)((double)mcsi_cdf_mass(&c, i) / MCSI_ONE);

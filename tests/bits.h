@@ -21,7 +21,8 @@
 #define BITS_SCALAR(X) \
     X(pcg32_for) X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n) \
     X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) \
-    X(pwc_invert) X(pwc_sample_n) X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(pwl_bytes) X(pwl_build) \
+    X(pwc_invert) X(pwc_sample_n) X(discrete_bytes) X(discrete_build) X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) \
+    X(pwl_bytes) X(pwl_build) \
     X(pwl_sample) X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) \
     X(alias_bytes) X(alias_build) X(alias_sample) X(alias_sample_bits) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) \
     X(stat_error) X(stat_ci)
@@ -296,17 +297,22 @@ FN(pwc_build_fn) {
 TABLE_DENSITY(pwc)
 TABLE_DENSITY(pwl)
 #undef TABLE_DENSITY
+FN(discrete_bytes) { PUT_WORD(0, (uint32_t)mcs_discrete_bytes(WORD(11) >> (WORD(12) & 31))); }
+FN(discrete_build) {
+    TABLE(discrete);
+    PUT_WORD(0, (uint32_t)status), PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total);
+}
 FN(discrete_sample) {
-    TABLE(pwc);
+    TABLE(discrete);
     const mcs_pick c = mcs_discrete_sample(t, IN(6));
     PUT_WORD(0, c.i), PUT(1, c.pmf), PUT(2, c.u);
 }
 FN(discrete_pmf) {
-    TABLE(pwc);
+    TABLE(discrete);
     PUT(0, mcs_discrete_pmf(t, WORD(13) % BITS_CELLS));
 }
 FN(discrete_sample_bits) {
-    TABLE(pwc);
+    TABLE(discrete);
     const mcs_pick c = mcs_discrete_sample_bits(t, WORD(11), WORD(12));
     PUT_WORD(0, c.i), PUT(1, c.pmf), PUT(2, c.u);
 }

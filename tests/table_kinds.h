@@ -45,8 +45,12 @@ static inline draw pwc_sample(const void *t, float u) {
 static inline double pwc_total(const void *t) { return ((const mcs_pwc *)t)->total; }
 static inline unsigned long long pwc_bad(const void *t) { return ((const mcs_pwc *)t)->bad; }
 
+static inline size_t discrete_bytes(uint32_t n) { return mcs_discrete_bytes(n); }
+static inline int discrete_build(void *t, size_t bytes, const float *w, uint32_t n) {
+    return mcs_discrete_build((mcs_discrete *)t, bytes, w, n);
+}
 static inline draw discrete_sample(const void *t, float u) {
-    const mcs_pick c = mcs_discrete_sample((const mcs_pwc *)t, u);
+    const mcs_pick c = mcs_discrete_sample((const mcs_discrete *)t, u);
     draw d;
     d.x = 0;
     d.pdf = c.pmf;
@@ -86,7 +90,7 @@ static inline double alias_total(const void *t) { return ((const mcs_alias *)t)-
 static inline unsigned long long alias_bad(const void *t) { return ((const mcs_alias *)t)->bad; }
 
 static const kind kinds[4] = {{"pwc", 0, pwc_bytes, pwc_build, pwc_sample, pwc_total, pwc_bad},
-                              {"discrete", 0, pwc_bytes, pwc_build, discrete_sample, pwc_total, pwc_bad},
+                              {"discrete", 0, discrete_bytes, discrete_build, discrete_sample, pwc_total, pwc_bad},
                               {"pwl", 1, pwl_bytes, pwl_build, pwl_sample, pwl_total, pwl_bad},
                               {"alias", 0, alias_bytes, alias_build, alias_sample, alias_total, alias_bad}};
 enum { PWC, DISCRETE, PWL, ALIAS };
