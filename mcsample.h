@@ -1196,7 +1196,7 @@ typedef struct {
 } mcs_pick;
 typedef struct {
     double total;
-    uint32_t n, bad, shift, unused;
+    uint32_t n, bad, shift, uniform;
 } mcs_pwc; /* then cdf[n + 1], guide[] */
 typedef mcs_pwc mcs_discrete;
 typedef struct {
@@ -1204,7 +1204,7 @@ typedef struct {
 } mcs_pwl; /* then cdf[n + 1], guide[], vertex[n + 1] */
 typedef struct {
     double total;
-    uint32_t n, bad;
+    uint32_t n, bad, uniform, unused;
 } mcs_alias; /* then column[n] */
 MCS_API size_t mcs_pwc_bytes(uint32_t n);
 MCS_API mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n);
@@ -4639,16 +4639,15 @@ MCS_API size_t mcs_pwc_bytes(uint32_t n) {
     return n && n <= MCSI_CELLS_MAX ? mcsi_pwc_layout(n, mcsi_guide_shift(n, 1)).pwc_bytes : 0;
 }
 /* Header, sums and guide of n weights that stand in the place of the sums. */
-MCS_FN mcs_status mcsi_pwc_fill(mcs_pwc *t, uint32_t n, uint32_t bad) {
+MCS_FN void mcsi_pwc_fill(mcs_pwc *t, uint32_t n, uint32_t bad) {
     t->n = n;
     t->bad = bad;
-    t->unused = 0;
     t->shift = mcsi_guide_shift(n, 1);
     const mcsi_pwc_offsets o = mcsi_pwc_layout(n, t->shift);
     uint32_t *sums = MCSI_WRITE(uint32_t, t, o.sums);
     t->total = mcsi_sums_build(sums, n);
+    t->uniform = !(t->total > 0.0);
     mcsi_guide_build(MCSI_WRITE(uint32_t, t, o.guide), sizeof(uint32_t), t->shift, sums, n);
-    return t->total > 0.0 ? MCS_OK : MCS_UNIFORM;
 }
 /* Tables end at a multiple of 8 bytes: what the lists leave of it is 0. */
 MCSI_CORE void mcsi_pwc_pad(mcs_pwc *t, size_t used, size_t bytes) {
@@ -4660,7 +4659,8 @@ MCS_API mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint3
     const mcsi_pwc_offsets o = mcsi_pwc_layout(n, mcsi_guide_shift(n, 1));
     const uint32_t bad = mcsi_weights_in(MCSI_WRITE(uint32_t, t, o.sums), f, n);
     mcsi_pwc_pad(t, o.vertices, o.pwc_bytes);
-    return mcsi_pwc_fill(t, n, bad);
+    mcsi_pwc_fill(t, n, bad);
+    return MCS_OK;
 }
 /* The mean of f over cell i of n, by Gauss's rule with 4 points. */
 MCS_FN float mcsi_cell_mean(float (*f)(float x, void *context), void *context, uint32_t i, uint32_t n) {
@@ -4679,7 +4679,8 @@ MCS_API mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x
     uint32_t bad = 0;
     for (uint32_t i = 0; i < n; i++) mcsi_put_weight(words + i, mcsi_clean(mcsi_cell_mean(f, context, i, n), &bad));
     mcsi_pwc_pad(t, o.vertices, o.pwc_bytes);
-    return mcsi_pwc_fill(t, n, bad);
+    mcsi_pwc_fill(t, n, bad);
+    return MCS_OK;
 }
 
 MCSI_CORE mcs_cell mcsi_pwc_cell(const mcs_pwc *t, mcsi_entry p, int ok) {
@@ -4758,17 +4759,17 @@ MCS_FN double mcsi_pwl_weights(uint32_t *words, const uint32_t *vertex, uint32_t
     return total;
 }
 MCS_API mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n) {
-    mcs_status status = mcsi_table_check(t, bytes, f, mcs_pwl_bytes(n));
+    const mcs_status status = mcsi_table_check(t, bytes, f, mcs_pwl_bytes(n));
     if (status) return status;
     const mcsi_pwc_offsets o = mcsi_pwc_layout(n, mcsi_guide_shift(n, 1));
     uint32_t *vertex = MCSI_WRITE(uint32_t, t, o.vertices);
     const uint32_t bad = mcsi_weights_in(vertex, f, n + 1);
     mcsi_pwc_pad(&t->cells, o.vertices + ((size_t)n + 1) * sizeof *vertex, o.pwl_bytes);
     const double total = mcsi_pwl_weights(MCSI_WRITE(uint32_t, t, o.sums), vertex, n);
-    status = mcsi_pwc_fill(&t->cells, n, bad);
+    mcsi_pwc_fill(&t->cells, n, bad);
     t->cells.total = total;
-    for (uint32_t i = 0; status == MCS_UNIFORM && i <= n; i++) mcsi_put_weight(vertex + i, 1.0f);
-    return status;
+    for (uint32_t i = 0; t->cells.uniform && i <= n; i++) mcsi_put_weight(vertex + i, 1.0f);
+    return MCS_OK;
 }
 MCSI_CORE const float *mcsi_pwl_vertices(const mcs_pwl *t) {
     return MCSI_READ(float, t, mcsi_pwc_layout(t->cells.n, t->cells.shift).vertices);
@@ -4895,9 +4896,11 @@ MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, u
     t->n = n;
     t->bad = bad;
     t->total = total;
+    t->uniform = some == 0;
+    t->unused = 0;
     mcsi_alias_weights(c, w, n, total, some);
     mcsi_alias_fill(c, n);
-    return some ? MCS_OK : MCS_UNIFORM;
+    return MCS_OK;
 }
 MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
     return i < t->n ? (float)((double)mcsi_columns(t)[i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
@@ -5396,12 +5399,11 @@ MCS_API mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im)
     MCSI_FILL(MCSI_WRITE(char, e, o->bytes - mcsi_env_padding(e)), 0, mcsi_env_padding(e));
     double *edge = MCSI_WRITE(double, e, o->edge);
     for (uint32_t y = 0; y <= (e->h + 1) / 2; y++) edge[y] = mcsi_one_minus_cos_pi((double)y / e->h);
-    const double top = mcsi_env_add_rows(e);
-    mcsi_env_build_row_sums(e, top);
+    mcsi_env_build_row_sums(e, mcsi_env_add_rows(e));
     mcsi_row *row = MCSI_WRITE(mcsi_row, e, o->row);
     for (uint32_t y = 0; y < e->h; y++) row[y] = mcsi_row_make(y, e->w, e->h);
     e->checksum = mcsi_env_checksum(e);
-    return top > 0.0 ? MCS_OK : MCS_UNIFORM;
+    return MCS_OK;
 }
 MCS_API mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im) {
     const mcs_status status = mcs_env_build_rows(e, bytes, im, 0, im ? im->h : 0);
@@ -5501,7 +5503,7 @@ MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const m
     }
     m->uniform = !(mcsi_sums_build(sums, rows) > 0.0);
     mcsi_guide_build(MCSI_WRITE(uint16_t, m, o.guide), sizeof(uint16_t), shift, sums, rows);
-    return m->uniform && !(e->uniform && e->total > 0.0) ? MCS_UNIFORM : MCS_OK;
+    return MCS_OK;
 }
 
 /* ---- map: check ---- */

@@ -172,8 +172,8 @@ static int environment_make(environment *e, const char *map) {
     const mcs_image image = mcs_image_make(pixel, w, h, 1);
     int status = mcs_env_build(e->table, bytes, &image);
     free(pixel);
-    if (status == MCS_UNIFORM) return complain(name, "the map is black: there is nothing to light the scene with");
     if (status != MCS_OK) return complain(name, "no sampling table (status %d)", status);
+    if (!(e->table->total > 0)) return complain(name, "the map is black: there is nothing to light the scene with");
     if (map) e->table->frame.t = vec(0, -1, 0); /* columns of a panorama run clockwise seen from above, azimuth the other way */
     map_survey(e);
     bytes = mcs_tiles_bytes(e->table, TILES);

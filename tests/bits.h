@@ -255,6 +255,8 @@ MCST_HD static uint32_t bits_entries(const float *in, float *f) {
     }
     return n;
 }
+/* What a builder says: an error, or whether all was zero. */
+MCST_HD static uint32_t bits_said(mcs_status status, uint32_t black) { return status < 0 ? (uint32_t)status : black != 0; }
 #define TABLE(kind)                                                     \
     uint64_t room[4 * BITS_CELLS] = {0};                                \
     float f[BITS_CELLS + 1];                                            \
@@ -266,14 +268,15 @@ MCST_HD static uint32_t bits_entries(const float *in, float *f) {
 FN(pwc_bytes) { PUT_WORD(0, (uint32_t)mcs_pwc_bytes(WORD(11) >> (WORD(12) & 31))); }
 FN(pwc_build) {
     TABLE(pwc);
-    PUT_WORD(0, (uint32_t)status), PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total);
+    PUT_WORD(0, bits_said(status, t->uniform)), PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total);
 }
 MCST_HD static float bits_curve(float x, void *k) { return *(const float *)k * (1.0f + x * x); }
 FN(pwc_build_fn) {
     uint64_t room[4 * BITS_CELLS] = {0};
     mcs_pwc *t = (mcs_pwc *)(void *)room;
     float k = IN(0);
-    PUT_WORD(0, (uint32_t)mcs_pwc_build_fn(t, sizeof room, bits_curve, &k, 1 + WORD(11) % BITS_CELLS));
+    const mcs_status status = mcs_pwc_build_fn(t, sizeof room, bits_curve, &k, 1 + WORD(11) % BITS_CELLS);
+    PUT_WORD(0, bits_said(status, t->uniform));
     PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total), PUT(4, mcs_pwc_pdf(t, 0.3f)), PUT(5, mcs_pwc_pdf(t, 0.7f));
 }
 #define TABLE_DENSITY(kind)                                \
@@ -300,7 +303,7 @@ TABLE_DENSITY(pwl)
 FN(discrete_bytes) { PUT_WORD(0, (uint32_t)mcs_discrete_bytes(WORD(11) >> (WORD(12) & 31))); }
 FN(discrete_build) {
     TABLE(discrete);
-    PUT_WORD(0, (uint32_t)status), PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total);
+    PUT_WORD(0, bits_said(status, t->uniform)), PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total);
 }
 FN(discrete_sample) {
     TABLE(discrete);
@@ -328,12 +331,16 @@ TABLE_BITS(pwl)
 FN(pwl_bytes) { PUT_WORD(0, (uint32_t)mcs_pwl_bytes(WORD(11) >> (WORD(12) & 31))); }
 FN(pwl_build) {
     TABLE(pwl);
-    PUT_WORD(0, (uint32_t)status), PUT_WORD(1, t->cells.bad), bits_put_double(out, 2, t->cells.total);
+    PUT_WORD(0, bits_said(status, t->cells.uniform)), PUT_WORD(1, t->cells.bad),
+        bits_put_double(out, 2, t->cells.total);
 }
-FN(alias_bytes) { PUT_WORD(0, (uint32_t)mcs_alias_bytes(WORD(11) >> (WORD(12) & 31))); }
+FN(alias_bytes) { /* beyond the header */
+    const size_t bytes = mcs_alias_bytes(WORD(11) >> (WORD(12) & 31));
+    PUT_WORD(0, (uint32_t)(bytes ? bytes - sizeof(mcs_alias) + 16 : 0));
+}
 FN(alias_build) {
     TABLE(alias);
-    PUT_WORD(0, (uint32_t)status), PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total);
+    PUT_WORD(0, bits_said(status, t->uniform)), PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total);
 }
 FN(alias_sample) {
     TABLE(alias);
@@ -520,7 +527,7 @@ MCST_HD static void bits_put_env(const float *in, float *out, const bits_case *c
     const uint32_t words[] = {e->magic, e->version, e->w,    e->h,       e->bad,       e->row0,
                               e->row1,  e->col0,    e->col1, e->uniform, e->incomplete};
     float drawn[12] = {0};
-    PUT_WORD(0, (uint32_t)status);
+    PUT_WORD(0, bits_said(status, !(e->total > 0)));
     if (status < 0) return;
     bits_put_double(out, 1, e->total), bits_put_array(out, 3, words, MCST_COUNT(words));
     bits_put_texel(drawn, 0, mcs_env_sample(e, IN(6), IN(7))), bits_put_texel(drawn, 6, mcs_env_texel(e, IN3(8)));
@@ -611,6 +618,9 @@ FN(env_weight) {
 }
 FN(env_window_bytes) { PUT_WORD(0, (uint32_t)mcs_env_window_bytes(WORD(11) >> (WORD(12) & 31))); }
 
+MCST_HD static uint32_t bits_black(const mcs_env *e, const mcs_env_window *m) {
+    return m->uniform && !(e->uniform && e->total > 0);
+}
 /* A window of its own for each case: some are refused, some go across the seam, some are black. */
 #define WINDOW                                                                                        \
     MAP;                                                                                              \
@@ -623,11 +633,12 @@ FN(env_window_bytes) { PUT_WORD(0, (uint32_t)mcs_env_window_bytes(WORD(11) >> (W
     const mcs_texel t = mcs_env_window_sample(status < 0 ? m->window : v, m->env, IN(6), IN(7))
 FN(env_window_build) {
     WINDOW;
-    PUT_WORD(0, (uint32_t)status), bits_put_texel(out, 1, t);
+    PUT_WORD(0, bits_said(status, bits_black(m->env, v))), bits_put_texel(out, 1, t);
 }
 FN(env_window_sample) {
     MAP;
-    bits_put_texel(out, 0, mcs_env_window_sample(m->window, m->env, IN(6), IN(7))), PUT_WORD(6, (uint32_t)m->status[1]);
+    bits_put_texel(out, 0, mcs_env_window_sample(m->window, m->env, IN(6), IN(7))),
+        PUT_WORD(6, bits_said(m->status[1], bits_black(m->env, m->window)));
 }
 FN(env_window_pdf) {
     WINDOW;

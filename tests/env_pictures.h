@@ -125,11 +125,12 @@ static inline unsigned char *guide_of(const arena *a, uint32_t row) {
     return a->at + env_in(a)->offset.col_guide + (size_t)row * env_in(a)->offset.guide_length * 2;
 }
 
-static inline arena build(const picture *p, mcs_status want) {
+static inline arena build(const picture *p, brightness want) {
     const arena a = arena_make(mcs_env_bytes(p->w, p->h));
     const mcs_image image = mcs_image_make(p->lum, p->w, p->h, 1);
     const mcs_status rc = mcs_env_build(env_in(&a), a.bytes, &image);
-    CHECK(rc == want && arena_intact(&a), "%s: build returns %d", p->name, rc);
+    CHECK(rc == MCS_OK && arena_intact(&a), "%s: build returns %d", p->name, rc);
+    CHECK(brightness_of(env_in(&a)) == want, "%s: total %g, uniform %u", p->name, env_in(&a)->total, env_in(&a)->uniform);
     return a;
 }
 

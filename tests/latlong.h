@@ -36,6 +36,10 @@ static inline void texel_of(uint32_t w, uint32_t h, mcs_vec3 v, double *col, dou
     *row = atan2(sqrt((double)v.x * v.x + (double)v.y * v.y), v.z) / pi * h;
 }
 
+/* What a table says of its picture: black ones are drawn as even light. */
+typedef enum { LIT, BLACK, NEITHER } brightness;
+static inline brightness brightness_of(const mcs_env *e) { return e->total > 0 ? LIT : e->total == 0 && e->uniform ? BLACK : NEITHER; }
+
 /* Checksums that fit a damaged table, as a forger would compute them: what mcs_env_check knows without them is then all that is
  * left. Size and layout must be those of the memory. */
 static inline void seal(mcs_env *e) {

@@ -29,6 +29,7 @@ typedef struct {
     draw (*sample)(const void *t, float u);
     double (*total)(const void *t);
     unsigned long long (*bad)(const void *t);
+    uint32_t (*uniform)(const void *t);
 } kind;
 
 static inline size_t pwc_bytes(uint32_t n) { return mcs_pwc_bytes(n); }
@@ -44,6 +45,7 @@ static inline draw pwc_sample(const void *t, float u) {
 }
 static inline double pwc_total(const void *t) { return ((const mcs_pwc *)t)->total; }
 static inline unsigned long long pwc_bad(const void *t) { return ((const mcs_pwc *)t)->bad; }
+static inline uint32_t pwc_uniform(const void *t) { return ((const mcs_pwc *)t)->uniform; }
 
 static inline size_t discrete_bytes(uint32_t n) { return mcs_discrete_bytes(n); }
 static inline int discrete_build(void *t, size_t bytes, const float *w, uint32_t n) {
@@ -72,6 +74,7 @@ static inline draw pwl_sample(const void *t, float u) {
 }
 static inline double pwl_total(const void *t) { return ((const mcs_pwl *)t)->cells.total; }
 static inline unsigned long long pwl_bad(const void *t) { return ((const mcs_pwl *)t)->cells.bad; }
+static inline uint32_t pwl_uniform(const void *t) { return ((const mcs_pwl *)t)->cells.uniform; }
 
 static inline size_t alias_bytes(uint32_t n) { return mcs_alias_bytes(n); }
 static inline int alias_build(void *t, size_t bytes, const float *w, uint32_t n) {
@@ -88,11 +91,12 @@ static inline draw alias_sample(const void *t, float u) {
 }
 static inline double alias_total(const void *t) { return ((const mcs_alias *)t)->total; }
 static inline unsigned long long alias_bad(const void *t) { return ((const mcs_alias *)t)->bad; }
+static inline uint32_t alias_uniform(const void *t) { return ((const mcs_alias *)t)->uniform; }
 
-static const kind kinds[4] = {{"pwc", 0, pwc_bytes, pwc_build, pwc_sample, pwc_total, pwc_bad},
-                              {"discrete", 0, discrete_bytes, discrete_build, discrete_sample, pwc_total, pwc_bad},
-                              {"pwl", 1, pwl_bytes, pwl_build, pwl_sample, pwl_total, pwl_bad},
-                              {"alias", 0, alias_bytes, alias_build, alias_sample, alias_total, alias_bad}};
+static const kind kinds[4] = {{"pwc", 0, pwc_bytes, pwc_build, pwc_sample, pwc_total, pwc_bad, pwc_uniform},
+                              {"discrete", 0, discrete_bytes, discrete_build, discrete_sample, pwc_total, pwc_bad, pwc_uniform},
+                              {"pwl", 1, pwl_bytes, pwl_build, pwl_sample, pwl_total, pwl_bad, pwl_uniform},
+                              {"alias", 0, alias_bytes, alias_build, alias_sample, alias_total, alias_bad, alias_uniform}};
 enum { PWC, DISCRETE, PWL, ALIAS };
 
 /* ---- weights to build from ---- */

@@ -154,8 +154,8 @@ static void check_other_formats(mcs_env *e, const arena *a, mcs_pcg32 *rng) {
         CHECK(mcs_env_check((const mcs_env *)(const void *)(a->at + i), bytes - 8) == MCS_ERR_ARG, "off by %zu", i);
 }
 
-static void check_file(picture p, mcs_status status) {
-    arena a = build(&p, status);
+static void check_file(picture p, brightness want) {
+    arena a = build(&p, want);
     mcs_env *e = copy_of(a.at, a.bytes);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 127);
     CHECK(mcs_env_check(e, a.bytes) == MCS_OK && mcs_env_check(e, a.bytes + 8) == MCS_OK, "a good table");
@@ -170,12 +170,12 @@ static void check_file(picture p, mcs_status status) {
 }
 
 static void test_damage(void) {
-    check_file(make("random", 40, 14, v_random), MCS_OK);
-    check_file(make("every third row", 13, 9, v_thirds), MCS_OK);
-    check_file(make("sky", 64, 32, v_sky), MCS_OK);
-    check_file(make("one texel", 1, 1, v_random), MCS_OK);
-    check_file(make("constant", 9, 5, v_constant), MCS_OK);
-    check_file(make("black", 9, 5, v_black), MCS_UNIFORM);
+    check_file(make("random", 40, 14, v_random), LIT);
+    check_file(make("every third row", 13, 9, v_thirds), LIT);
+    check_file(make("sky", 64, 32, v_sky), LIT);
+    check_file(make("one texel", 1, 1, v_random), LIT);
+    check_file(make("constant", 9, 5, v_constant), LIT);
+    check_file(make("black", 9, 5, v_black), BLACK);
 }
 
 /* ---- what no damage passes ---- */
@@ -192,8 +192,8 @@ static int orthonormal(const mcs_frame *f) {
 }
 
 /* Every bit of a table: none but those of the frame may be another, and the frame only as long as it is orthonormal. */
-static void check_every_bit(picture p, mcs_status status) {
-    arena a = build(&p, status);
+static void check_every_bit(picture p, brightness want) {
+    arena a = build(&p, want);
     size_t passed = 0;
     for (size_t bit = 0; bit < 8 * a.bytes; bit++) {
         a.at[bit / 8] ^= (unsigned char)(1u << bit % 8);
@@ -208,20 +208,20 @@ static void check_every_bit(picture p, mcs_status status) {
     free(p.lum);
 }
 static void test_every_bit(void) {
-    check_every_bit(make("7 x 5", 7, 5, v_random), MCS_OK);
-    check_every_bit(make("7 x 5, every third row", 7, 5, v_thirds), MCS_OK);
-    check_every_bit(make("7 x 5, region", 7, 5, v_region), MCS_OK);
-    check_every_bit(make("7 x 5, constant", 7, 5, v_constant), MCS_OK);
-    check_every_bit(make("7 x 5, black", 7, 5, v_black), MCS_UNIFORM);
-    check_every_bit(make("1 x 1", 1, 1, v_random), MCS_OK);
-    check_every_bit(make("16 x 2", 16, 2, v_random), MCS_OK);
+    check_every_bit(make("7 x 5", 7, 5, v_random), LIT);
+    check_every_bit(make("7 x 5, every third row", 7, 5, v_thirds), LIT);
+    check_every_bit(make("7 x 5, region", 7, 5, v_region), LIT);
+    check_every_bit(make("7 x 5, constant", 7, 5, v_constant), LIT);
+    check_every_bit(make("7 x 5, black", 7, 5, v_black), BLACK);
+    check_every_bit(make("1 x 1", 1, 1, v_random), LIT);
+    check_every_bit(make("16 x 2", 16, 2, v_random), LIT);
 }
 
 /* Damage of any kind outside the frame: single bits, two and three of them, runs of bytes, zeroed or exchanged blocks; of a row,
  * two words exchanged, or one bit of both changed, 64 bytes or a multiple apart as sums take words together that are. */
 static void test_random_damage(void) {
     const picture p = make("sky", 64, 32, v_sky);
-    arena a = build(&p, MCS_OK);
+    arena a = build(&p, LIT);
     mcs_env *e = copy_of(a.at, a.bytes);
     unsigned char *byte = (unsigned char *)e;
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 137);
@@ -283,7 +283,7 @@ static mcs_frame turned(const mcs_frame *f, const mcs_frame *by) { /* in float, 
 /* Frames that a user may set: those of mcs_frame_make, mirrored, and products of 100 rotations; and that are none. */
 static void test_frames(void) {
     const picture p = make("7 x 5", 7, 5, v_random);
-    arena a = build(&p, MCS_OK);
+    arena a = build(&p, LIT);
     mcs_env *e = env_in(&a);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 139);
     for (int i = 0; i < 2000; i++) {
@@ -331,7 +331,7 @@ static void test_frames(void) {
 
 static void test_file(void) {
     const picture p = make("sky", 256, 128, v_sky);
-    arena a = build(&p, MCS_OK);
+    arena a = build(&p, LIT);
     arena b = arena_make(a.bytes);
     arena m = arena_make(mcs_env_window_bytes(20));
     mcs_env_window *window = (mcs_env_window *)(void *)m.at;

@@ -112,7 +112,7 @@ static void test_integers(void) {
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         picture p = all[k];
         draw(&p);
-        arena a = build(&p, MCS_OK);
+        arena a = build(&p, LIT);
         check_integers(&p, &a);
         check_lit(&p, &a);
         arena_free(&a);
@@ -121,7 +121,7 @@ static void test_integers(void) {
     for (int i = 0; i < 12; i++) {
         const uint32_t w = 15 + mcs_pcg32_next(&rng) % 200;
         const picture p = make("random shape", w, 12 + mcs_pcg32_next(&rng) % 100, any[i % 4]);
-        arena a = build(&p, MCS_OK);
+        arena a = build(&p, LIT);
         check_integers(&p, &a);
         check_lit(&p, &a);
         arena_free(&a);
@@ -129,7 +129,7 @@ static void test_integers(void) {
     }
     {
         const picture p = make("suns", 64, 32, v_suns);
-        arena a = build(&p, MCS_OK);
+        arena a = build(&p, LIT);
         const size_t small = check_integers(&p, &a);
         CHECK(small >= p.w - 1, "%zu texels of a few 2^-62", small);
         check_lit(&p, &a);
@@ -141,7 +141,7 @@ static void test_integers(void) {
 /* Texels 1e8 times darker than one of their row: 15 to 30 integers each, to within 2, and bits that reach each of them. */
 static void test_contrast(void) {
     const picture p = make("sun in every row", 4096, 16, v_sun_rows);
-    arena a = build(&p, MCS_OK);
+    arena a = build(&p, LIT);
     const mcs_env *e = env_in(&a);
     ld total = 0;
     for (uint32_t r = 0; r < p.h; r++)
@@ -277,8 +277,8 @@ static double record(const mcs_env *e, float *pdf) {
 }
 
 /* Draws, densities and inverse without the memory of rows that hold nothing to know. `lit`: rows of light that the map has. */
-static void check_skips(picture p, mcs_status status, uint32_t lit, int uniform) {
-    arena a = build(&p, status);
+static void check_skips(picture p, brightness want, uint32_t lit, int uniform) {
+    arena a = build(&p, want);
     const mcs_env *e = env_in(&a);
     const size_t texels = (size_t)p.w * p.h;
     float *before = (float *)malloc(2 * texels * sizeof *before);
@@ -314,18 +314,18 @@ static void check_skips(picture p, mcs_status status, uint32_t lit, int uniform)
 }
 
 static void test_skips(void) {
-    check_skips(make("constant", 128, 64, v_constant), MCS_OK, 64, 1);
-    check_skips(make("constant, odd", 31, 17, v_constant), MCS_OK, 17, 1);
-    check_skips(make("black", 128, 64, v_black), MCS_UNIFORM, 0, 1);
-    check_skips(make("every third row", 128, 66, v_thirds), MCS_OK, 22, 0);
-    check_skips(make("dark ground", 256, 128, v_sky), MCS_OK, 64, 0);
-    check_skips(make("region", 200, 96, v_region), MCS_OK, 32, 0);
+    check_skips(make("constant", 128, 64, v_constant), LIT, 64, 1);
+    check_skips(make("constant, odd", 31, 17, v_constant), LIT, 17, 1);
+    check_skips(make("black", 128, 64, v_black), BLACK, 0, 1);
+    check_skips(make("every third row", 128, 66, v_thirds), LIT, 22, 0);
+    check_skips(make("dark ground", 256, 128, v_sky), LIT, 64, 0);
+    check_skips(make("region", 200, 96, v_region), LIT, 32, 0);
 }
 
 /* Outside [row0, row1) x [col0, col1), the smallest rectangle of light, densities are found without reading the sums. */
 static void test_region(void) {
     const picture p = make("region", 200, 96, v_region);
-    arena a = build(&p, MCS_OK);
+    arena a = build(&p, LIT);
     const mcs_env *e = env_in(&a);
     uint32_t row0 = p.h;
     uint32_t row1 = 0;
@@ -465,7 +465,7 @@ static void check_found(const picture *p, const mcs_env *e) {
 
 static void test_long(uint32_t w, uint32_t h, shade value) {
     const picture p = make(w > h ? "wide" : "tall", w, h, value);
-    arena a = build(&p, MCS_OK);
+    arena a = build(&p, LIT);
     check_every(&p, &a, 9);
     check_bits(&p, env_in(&a));
     check_found(&p, env_in(&a));
@@ -538,7 +538,7 @@ static void test_same_windows(void) {
     const shade any[4] = {v_random, v_thirds, v_black, v_constant};
     for (uint32_t i = 0; i < 4; i++) {
         const picture p = make("window", 19, 23, any[i]);
-        arena a = build(&p, i == 2 ? MCS_UNIFORM : MCS_OK);
+        arena a = build(&p, i == 2 ? BLACK : LIT);
         source s;
         memset(&s, 0, sizeof s);
         s.e = env_in(&a);
@@ -563,7 +563,7 @@ static void test_same_products(void) {
     for (size_t k = 0; k < sizeof maps / sizeof *maps; k++)
         for (uint32_t rows = 16; rows <= 32; rows *= 2) {
             const picture p = make("product", maps[k].w, maps[k].h, maps[k].value);
-            arena a = build(&p, maps[k].value == v_black ? MCS_UNIFORM : MCS_OK);
+            arena a = build(&p, maps[k].value == v_black ? BLACK : LIT);
             arena b = arena_make(mcs_tiles_bytes(env_in(&a), rows));
             source s;
             memset(&s, 0, sizeof s);
@@ -612,7 +612,7 @@ int main(int argc, char **argv) {
     if (mcst_case("4 x 65536, 1e-38 to 1e38")) test_long(4, 65536, v_wide);
     if (getenv("MCS_TEST_BIG") && mcst_case("16384 x 8192")) {
         const picture p = make("16384 x 8192", 16384, 8192, v_random);
-        arena a = build(&p, MCS_OK);
+        arena a = build(&p, LIT);
         check_every(&p, &a, 1);
         arena_free(&a);
         free(p.lum);

@@ -239,12 +239,13 @@ static void check_window(const picture *p, const mcs_env *e, uint64_t *state, ta
             some |= lit == 1;
             none &= lit == 0;
         }
-    CHECK((!some || s == MCS_OK) && (!none || s == MCS_UNIFORM) && (s == MCS_OK || s == MCS_UNIFORM),
+    const int black = at->uniform && !(e->uniform && e->total > 0);
+    CHECK(s == MCS_OK && (!some || !black) && (!none || black),
           "window %u + %u, %u + %u of %u x %u: status %d", (unsigned)col, (unsigned)cols, (unsigned)row, (unsigned)rows,
           (unsigned)e->w, (unsigned)e->h, (int)s);
     part_of q;
     q.e = e;
-    q.p = s == MCS_UNIFORM ? NULL : p;
+    q.p = black ? NULL : p;
     q.row = row;
     q.rows = rows;
     q.col = col;
@@ -464,7 +465,8 @@ static void check_env(int tiled, uint64_t *state, tally *t) {
             some |= lit == 1;
             none &= lit == 0;
         }
-    CHECK((!some || s == MCS_OK) && (!none || s == MCS_UNIFORM) && (s == MCS_OK || s == MCS_UNIFORM), "%u x %u: status %d",
+    const int black = !(e->total > 0);
+    CHECK(s == MCS_OK && (!some || !black) && (!none || black), "%u x %u: status %d",
           (unsigned)p.im.w, (unsigned)p.im.h, (int)s);
     CHECK(e->bad == p.bad, "%u bad texels, counted %u", (unsigned)p.bad, (unsigned)e->bad);
     CHECK(e->total >= 0 && e->total <= 1e300, "total %g", e->total);
@@ -478,7 +480,7 @@ static void check_env(int tiled, uint64_t *state, tally *t) {
           (unsigned)p.im.w, (unsigned)p.im.h, (unsigned)cut);
     part_of q;
     q.e = e;
-    q.p = s == MCS_UNIFORM ? NULL : &p;
+    q.p = black ? NULL : &p;
     q.row = q.col = 0;
     q.rows = e->h;
     q.cols = e->w;

@@ -597,8 +597,8 @@ static void check_windows(const source *map, const row_of_texels *t, long n, tal
         s.cols = part[i][3];
         const int due = any_lit(&s);
         const mcs_status rc = mcs_env_window_build(m, a.bytes, s.e, s.row, s.rows, s.col, s.cols);
-        CHECK(rc == MCS_OK ? due != 0 : rc == MCS_UNIFORM && due <= 0, "%s, window %d: status %d", p->name, i, (int)rc);
-        s.lit = rc == MCS_OK;
+        s.lit = !m->uniform || (s.e->uniform && s.e->total > 0);
+        CHECK(rc == MCS_OK && (s.lit ? due != 0 : due <= 0), "%s, window %d: status %d", p->name, i, (int)rc);
         check_window_texels(&s, t, to);
         check_draws(&s, n, "window", to);
         CHECK(arena_intact(&a), "%s, window %d: written outside", p->name, i);
@@ -661,10 +661,10 @@ static void check_image(const struct subject *subject, enum mode mode) {
     map.e = e;
     map.rows = h;
     map.cols = w;
-    map.lit = rc == MCS_OK;
+    map.lit = e->total > 0;
     {
         const int due = any_lit(&map);
-        CHECK(rc == MCS_OK ? due != 0 : rc == MCS_UNIFORM && due <= 0, "%s: status %d", p.name, (int)rc);
+        CHECK(rc == MCS_OK && (map.lit ? due != 0 : due <= 0), "%s: status %d", p.name, (int)rc);
     }
     CHECK(arena_intact(&a) && e->bad == p.bad, "%s: written outside, or %u bad, not %u", p.name, (unsigned)e->bad, (unsigned)p.bad);
     /* borders of rows are doubles below 2, and no row is lower than the first; sums in double */
