@@ -4503,7 +4503,7 @@ MCS_FN uint32_t mcsi_guide_shift(uint32_t n, uint32_t per_guide) {
 }
 /* Entries of a guide, the last one included. */
 MCSI_CORE uint32_t mcsi_guide_length(uint32_t shift) { return (MCSI_ONE >> shift) + 1; }
-MCSI_CORE uint32_t mcsi_guide_get(const void *guide, uint32_t bytes, uint32_t g) {
+MCSI_CORE uint32_t mcsi_guide_get(const void *guide, uint32_t bytes, size_t g) {
     return bytes == 2 ? ((const uint16_t *)guide)[g] : ((const uint32_t *)guide)[g];
 }
 MCSI_CORE void mcsi_guide_put(void *guide, uint32_t bytes, uint32_t g, uint32_t i) {
@@ -4539,14 +4539,16 @@ MCSI_CORE uint32_t mcsi_cdf_search(const uint32_t *sums, uint32_t n, uint32_t lo
 }
 /* The entry that holds U, U < 2^31. */
 MCSI_CORE uint32_t mcsi_cdf_find(const mcsi_cdf *c, uint32_t U) {
-    const uint32_t g = U >> c->shift;
+    const size_t g = U >> c->shift;
     const uint32_t lo = mcsi_guide_get(c->guide, c->guide_bytes, g);
     const uint32_t hi = mcsi_guide_get(c->guide, c->guide_bytes, g + 1);
     return mcsi_cdf_search(c->sums, c->n, lo, hi, U);
 }
-MCSI_CORE uint32_t mcsi_cdf_mass(const mcsi_cdf *c, uint32_t i) { return c->sums[i + 1] - c->sums[i]; }
-/* Whether sums and guide are as the builders leave them. */
-MCS_FN int mcsi_cdf_ok(const mcsi_cdf *c) {
+/* The share of entry i. (size_t: i + 1 in 32 bits, which may wrap, would be an instruction more.) */
+MCSI_CORE uint32_t mcsi_cdf_mass(const mcsi_cdf *c, size_t i) { return c->sums[i + 1] - c->sums[i]; }
+/* Whether sums and guide are as the builders leave them. Apart: clang runs out of registers in what calls it. */
+MCSI_QUIET
+MCSI_APART int mcsi_cdf_ok(const mcsi_cdf *c) {
     const uint32_t *sums = c->sums;
     const uint32_t n = c->n;
     const uint32_t end = MCSI_ONE >> c->shift;
@@ -4560,6 +4562,7 @@ MCS_FN int mcsi_cdf_ok(const mcsi_cdf *c) {
     const uint32_t last = mcsi_guide_get(c->guide, c->guide_bytes, end);
     return last < n && sums[last] < MCSI_ONE && sums[last + 1] == MCSI_ONE;
 }
+MCSI_LOUD
 
 /* ---- entries of a pwc table: of a random number, of random bits, of x ---- */
 
@@ -5661,9 +5664,10 @@ typedef struct {
 MCSI_CORE mcsi_candidates mcsi_candidate_columns(const mcsi_cdf *columns, uint32_t U) {
     const uint32_t w = columns->n;
     const uint32_t shift = columns->shift;
+    const size_t g = U >> shift;
     mcsi_candidates c;
-    c.lo = mcsi_guide_get(columns->guide, sizeof(uint16_t), U >> shift);
-    c.hi = mcsi_guide_get(columns->guide, sizeof(uint16_t), (U >> shift) + 1);
+    c.lo = mcsi_guide_get(columns->guide, sizeof(uint16_t), g);
+    c.hi = mcsi_guide_get(columns->guide, sizeof(uint16_t), g + 1);
     const uint32_t rest = U & ((1u << shift) - 1);
     const uint32_t expected = c.lo + (uint32_t)((uint64_t)rest * (c.hi - c.lo) >> shift);
     const uint32_t first = expected < 4 ? 0 : expected - 4;
