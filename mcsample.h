@@ -1406,28 +1406,43 @@ typedef struct {
     float alpha_x, alpha_y, matte;
     mcs_profile profile;
 } mcs_reflection;
+/* A lobe to draw from. Private. */
 typedef struct {
     mcs_frame frame;
     mcs_vec3 wo;
     mcs_profile profile;
-    mcs_ggx ggx;
+    mcs_ggx ggx; /* by the profile, one of these three */
     mcs_ward gauss;
     mcs_phong phong;
-} mcsi_own_lobe;
+} mcsi_lobe;
+/* What follows an mcs_product, for R rows of tiles: LIST(type, name, length). Private. */
+#define MCSI_PRODUCT_LISTS(LIST, R)                                                                               \
+    LIST(double, per_share, (R))                   /* of each row: probability of one of its shares */            \
+    LIST(uint32_t, row_sums, (R) + 2)              /* cumulative shares of rows, and a word that aligns */        \
+    LIST(uint32_t, tile_sums, (2 * (R) + 1) * (R)) /* [cols + 1][rows]: cumulative shares of tiles within rows */ \
+    LIST(float, value, 2 * (R) * (R))              /* [cols][rows]: reflection towards tiles */                   \
+    LIST(float, corner, 2 * (R) * ((R) + 1))       /* [cols][rows + 1]: reflection towards their corners */       \
+    LIST(float, row_weight, (R))                   /* weights of rows */                                          \
+    LIST(float, grid,                                                                                             \
+         MCSI_GRIDS *(MCSI_GRID + MCSI_NODES)) /* of each heavy tile of a narrow lobe: as in mcsi_grid_build */   \
+    LIST(uint8_t, grid_of, 2 * (R) * (R))      /* [cols][rows]: 1 + number of the tile's grid, 0: none */
+/* Where these lists begin, in bytes, and where the last one ends. Private. */
 typedef struct {
-    mcs_frame axes;
-    mcs_vec3 wo;
-    float ax2, ay2, matte;
-    mcs_profile profile;
-} mcsi_facing;
+#define MCSI_PRODUCT_OFFSET(type, name, n) uint32_t name;
+    MCSI_PRODUCT_LISTS(MCSI_PRODUCT_OFFSET, 0)
+#undef MCSI_PRODUCT_OFFSET
+    uint32_t bytes;
+} mcsi_product_offsets;
 typedef struct {
-    const mcs_tiles *t;
-    const mcs_env *e;
-    mcsi_own_lobe own;
-    double lit; /* shares of the rows over 2^31: 0 where no light is reflected */
     float brdf_share;
-    uint32_t warped;
-} mcs_product; /* the rest: mcsi_product_units and below */
+    uint32_t dark; /* 1: no light reaches wo by this surface */
+    uint32_t rows, cols, warped;
+    mcsi_product_offsets at;
+    double row_total; /* shares of all rows over 2^31 */
+    mcsi_lobe lobe;
+} mcs_product;
+#define MCSI_PRODUCT_AND(type, name, length) +(length) * sizeof(type)
+#define MCS_PRODUCT_BYTES(rows) (sizeof(mcs_product) MCSI_PRODUCT_LISTS(MCSI_PRODUCT_AND, rows))
 MCS_API size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows);
 MCS_API mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows);
 MCS_API mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k);
@@ -1436,13 +1451,14 @@ MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_til
                                      const mcs_reflection *r);
 MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                              const float *weight);
-MCS_API mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2);
-MCS_API float mcs_product_pdf(const mcs_product *p, mcs_vec3 w);
+MCS_API mcs_texel mcs_product_sample(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, float u1, float u2);
+MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w);
 MCS_API mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2);
 MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
-MCS_API void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                  float *z, float *pdf, uint32_t *col, uint32_t *row);
+MCS_API void mcs_product_sample_n(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t n, const float *u1,
+                                  const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
+                                  uint32_t *row);
 #endif
 #endif
 
@@ -5998,462 +6014,384 @@ MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_
 #if !defined(MCS_NO_TABLES) && !defined(MCS_NO_LOBES)
 /* ==== [product] bodies */
 
-#if MCSI_W == 1
-/* What is known of tiles, column by column: light, mean direction of it and its length's inverse, spread; radius of the tile and of
- * its light about that direction; how far the light reaches towards the corners: 1 when it is even, 0 when it is in one place. */
-enum {
-    MCSI_TILE_E,
-    MCSI_TILE_X,
-    MCSI_TILE_Y,
-    MCSI_TILE_Z,
-    MCSI_TILE_UNIT,
-    MCSI_TILE_SPREAD,
-    MCSI_TILE_RADIUS,
-    MCSI_TILE_REACH,
-    MCSI_TILE_PULL,
-    MCSI_TILE_FIELDS
-};
-#define MCSI_ROW_LEAST 1e-30f /* below it a sum of weights has too few digits left for shares */
-#define MCSI_FINE_BELOW 8.0f  /* tiles, of 4 pi alpha_x alpha_y cos(theta_o): below it a lobe needs a finer grid */
-#define MCSI_TILE_LEAST 3.18309873e-05f /* a ten-thousandth of a white matte surface that faces the light */
-/* The reflection as seen from the map: axes of the surface in its frame. */
-#endif
-/* Nearly exp(-x), x >= 0, and never less. */
-MCSI_CORE mcs_f mcsi_falloff(mcs_f x) {
-    mcs_f p = 1.0f / (1.0f + 0.00390625f * mcsi_min(x, mcs_set(64.0f))); /* subnormal products would be slow */
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    p = p * p;
-    return p;
-}
-/* The lobe times cosine towards the light of a tile whose direction spreads: Ward (MCS_WARD_GMD), Phong, GGX. */
-MCSI_CORE mcs_f mcsi_tile_lobe(const mcsi_facing *s, mcs_vec3 w, mcs_f spread) {
-    const mcs_f ax2 = s->ax2 + 0.25f * spread;
-    const mcs_f ay2 = s->ay2 + 0.25f * spread;
-    const mcs_f aa = ax2 * ay2;
-    const mcs_f root = mcsi_sqrt(aa);
-    const mcs_f hx = w.x + s->wo.x;
-    const mcs_f hy = w.y + s->wo.y;
-    const mcs_f hz = w.z + s->wo.z;
-    const mcs_f hh = hx * hx + hy * hy + hz * hz;
-    const mcs_f least = mcs_set(FLT_MIN);
-    if (s->profile == MCS_PROFILE_GAUSS) {
-        const mcs_f h2 = hz * hz;
-        mcs_f a = hx * hx * ay2 + hy * hy * ax2;
-        const mcs_f b = mcsi_max(aa * h2, least);
-        a = mcsi_falloff(mcsi_min(a, 64.0f * b) / b); /* which is as far as it falls */
-        return mcsi_quotient(MCSI_1_PI * a * hh * w.z, mcsi_max(root * h2 * h2, least));
-    }
-    if (s->profile == MCS_PROFILE_PHONG) {
-        const mcs_f n = mcsi_max(0.5f / root - 2.0f, mcs_set(0.0f));
-        const mcs_f z = w.z - s->wo.z; /* h without its z: w less the mirror's */
-        return (n + 2.0f) * MCSI_1_2PI * mcsi_falloff(0.5f * n * (hx * hx + hy * hy + z * z)) * w.z;
-    }
-    const mcs_f ratio = root * hh / mcsi_max(hx * hx * ay2 + hy * hy * ax2 + hz * hz * aa, least);
-    const mcs_f shadow = s->wo.z * mcsi_sqrt(ax2 * w.x * w.x + ay2 * w.y * w.y + w.z * w.z) +
-                         w.z * mcsi_sqrt(ax2 * (s->wo.x * s->wo.x) + ay2 * (s->wo.y * s->wo.y) + s->wo.z * s->wo.z);
-    return 0.5f * MCSI_1_PI * root * ratio * ratio * w.z / mcsi_max(shadow, least);
-}
-/* Never 0, nor what bad axes make of it. */
-MCSI_CORE mcs_f mcsi_reflected(mcs_f f) {
-    return mcsi_sel(f > 0.0f, mcsi_min(f, mcs_set(1e30f)), mcs_set(0.0f)) + MCSI_TILE_LEAST;
-}
-/* Reflection towards the light of tiles; more than 0 wherever there may be light above the horizon. */
-MCSI_CORE mcs_f mcsi_tile_value(const mcs_frame *axes, const mcsi_facing *s, const float *tile, size_t stride) {
-    const mcs_f r = mcs_load(tile + MCSI_TILE_RADIUS * stride);
-    const mcs_f reach =
-        mcsi_max(mcs_load(tile + MCSI_TILE_REACH * stride), mcs_set(1e-6f)); /* beyond the last tile it is 0 */
-    const mcs_f zero = mcs_set(0.0f);
-    mcs_vec3 m;
-    m.x = mcs_load(tile + MCSI_TILE_X * stride);
-    m.y = mcs_load(tile + MCSI_TILE_Y * stride);
-    m.z = mcs_load(tile + MCSI_TILE_Z * stride);
-    const mcs_f c = mcsi_dot(axes->n, m);
-    const mcs_f crossing = mcsi_max(c + reach, zero);
-    const mcs_f cosine = mcsi_sel(c >= reach, c, crossing * crossing / (4.0f * reach));
-    mcs_f f = MCSI_1_PI * cosine;
-    if (s->matte < 1.0f) {
-        const mcs_f unit = mcs_load(tile + MCSI_TILE_UNIT * stride);
-        const mcs_vec3 w =
-            mcsi_vec3(mcsi_dot(axes->s, m) * unit, mcsi_dot(axes->t, m) * unit, mcsi_max(c * unit, cosine));
-        f = s->matte * f + (1.0f - s->matte) * mcsi_tile_lobe(s, w, mcs_load(tile + MCSI_TILE_SPREAD * stride));
-    }
-    return mcsi_sel(c + r > 0.0f, mcsi_reflected(f), zero);
-}
-/* Reflection towards the corners of tiles. */
-MCSI_CORE mcs_f mcsi_corner_value(const mcs_frame *axes, const mcsi_facing *s, mcs_vec3 w) {
-    const mcs_f z = mcsi_max(mcsi_dot(axes->n, w), mcs_set(0.0f));
-    mcs_f f = MCSI_1_PI * z;
-    if (s->matte < 1.0f) {
-        w = mcsi_vec3(mcsi_dot(axes->s, w), mcsi_dot(axes->t, w), z);
-        f = s->matte * f + (1.0f - s->matte) * mcsi_tile_lobe(s, w, mcs_set(0.0f));
-    }
-    return mcsi_reflected(f);
-}
-/* The density within a tile, relative to that of its light: bilinear in the places t1 of the columns and t2 of the rows among the
- * light, from the reflection v towards the corners (column by column) as far as the light reaches them; its mean is 1. */
-typedef struct {
-    mcs_f v[4];
-} mcsi_warp;
-MCSI_CORE mcsi_warp mcsi_warp_make(mcs_f value, mcs_f pull, mcs_f v00, mcs_f v01, mcs_f v10, mcs_f v11) {
-    value = value * (1.0f - pull); /* so that no difference falls below 0 */
-    mcsi_warp w;
-    w.v[0] = value + pull * v00;
-    w.v[1] = value + pull * v01;
-    w.v[2] = value + pull * v10;
-    w.v[3] = value + pull * v11;
-    mcs_f mean = (w.v[0] + w.v[1]) + (w.v[2] + w.v[3]);
-    const mcs_f least = 0.0075f * mean;
-    mean = 1.0f / (0.25f * mean + least);
-    w.v[0] = (w.v[0] + least) * mean;
-    w.v[1] = (w.v[1] + least) * mean;
-    w.v[2] = (w.v[2] + least) * mean;
-    w.v[3] = (w.v[3] + least) * mean;
-    return w;
-}
-MCSI_CORE mcs_f mcsi_warp_density(const mcsi_warp *w, mcs_f t1, mcs_f t2) {
-    const mcs_f a = w->v[0] + t2 * (w->v[1] - w->v[0]);
-    const mcs_f b = w->v[2] + t2 * (w->v[3] - w->v[2]);
-    return a + t1 * (b - a);
-}
-/* The place of u when a linear density has a and b at its ends. */
-MCSI_CORE mcs_f mcsi_linear_place(mcs_f a, mcs_f b, mcs_f u) {
-    return mcsi_min(u * (a + b) / (a + mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b))), mcs_set(0.99999994f));
-}
-/* u1 and u2 become places; returns the density there. */
-MCSI_CORE mcs_f mcsi_warp_draw(const mcsi_warp *w, mcs_f *u1, mcs_f *u2) {
-    *u2 = mcsi_linear_place(w->v[0] + w->v[2], w->v[1] + w->v[3], *u2);
-    const mcs_f a = w->v[0] + *u2 * (w->v[1] - w->v[0]);
-    const mcs_f b = w->v[2] + *u2 * (w->v[3] - w->v[2]);
-    *u1 = mcsi_linear_place(a, b, *u1);
-    return a + *u1 * (b - a);
-}
-/* A grid of weights, light times value, column by column, as integers: cum[j][i] is the sum of row i's shares before column j,
- * cum[cols][i] that of the whole row. row[i] is the weight of a row. */
-MCSI_CORE void mcsi_grid_rows(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum,
-                              float *row) {
-    for (size_t i = 0; i < rows; i += MCSI_W) {
-        mcs_f sum = mcs_set(0.0f);
-        mcs_i at = mcsi_trunc(sum);
-        for (size_t j = 0; j < cols; j++) sum = sum + mcs_load(light + j * rows + i) * mcs_load(value + j * rows + i);
-        const mcs_f scale = (16777216.0f - (float)cols) / mcsi_max(sum, mcs_set(MCSI_ROW_LEAST));
-        for (size_t j = 0; j < cols; j++) {
-            const mcs_f w = mcs_load(light + j * rows + i) * mcs_load(value + j * rows + i);
-            mcsi_store_int(cum + j * rows + i, at);
-            at = at + mcsi_trunc(mcsi_sel(w > 0.0f, w * scale + 1.0f, mcs_set(0.0f)));
-        }
-        mcsi_store_int(cum + cols * rows + i, at);
-        mcs_store(row + i, sum);
-    }
-}
-/* What tiles weigh at most, by their mean direction or a corner, and the sums of rows. Then values that the mean of their warp is
- * below come three quarters of the way down to it: beside the peak of a narrow lobe the spread of the light says too much. */
-MCSI_CORE void mcsi_grid_bounds(size_t rows, size_t cols, const float *light, const float *pull, const float *corner,
-                                float *value, float *weight, float *row) {
-    for (size_t i = 0; i < rows; i += MCSI_W) {
-        mcs_f sum = mcs_set(0.0f);
-        mcs_f a = mcs_load(corner + i);
-        mcs_f b = mcs_load(corner + i + 1);
-        mcs_f most = mcsi_max(a, b);
-        mcs_f both = a + b;
-        const mcs_f first_most = most;
-        const mcs_f first_both = both;
-        for (size_t j = 0; j < cols; j++) {
-            const float *next = corner + (j + 1) * (rows + 1) + i;
-            mcs_f next_most = first_most;
-            mcs_f next_both = first_both;
-            const mcs_f v = mcs_load(value + j * rows + i);
-            if (j + 1 < cols) {
-                a = mcs_load(next);
-                b = mcs_load(next + 1);
-                next_most = mcsi_max(a, b);
-                next_both = a + b;
-            }
-            mcs_f bound = mcsi_sane_result(v > 0.0f, mcsi_max(v, mcsi_max(most, next_most)));
-            bound = mcs_load(light + j * rows + i) * bound;
-            sum = sum + bound;
-            const mcs_f mean = v + mcs_load(pull + j * rows + i) * (0.25f * (both + next_both) - v);
-            mcs_store(weight + j * rows + i, bound);
-            mcs_store(value + j * rows + i, mcsi_sel(mean < v, 0.25f * v + 0.75f * mean, v));
-            most = next_most;
-            both = next_both;
-        }
-        mcs_store(row + i, sum);
-    }
-}
-#if MCSI_W == 1
-/* What warps are made of, and u1 and u2, which become places, with the density there. */
-typedef struct {
-    float value[MCSI_ENV_BLOCK], pull[MCSI_ENV_BLOCK], v00[MCSI_ENV_BLOCK], v01[MCSI_ENV_BLOCK], v10[MCSI_ENV_BLOCK],
-        v11[MCSI_ENV_BLOCK], u1[MCSI_ENV_BLOCK], u2[MCSI_ENV_BLOCK], density[MCSI_ENV_BLOCK];
-} mcsi_warp_block;
-#endif
-#ifdef MCSI_LOOPS
-MCSI_LOOP void mcsi_tile_values_loop(const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value) {
-    const mcs_frame axes = mcsi_spread_frame(&s->axes);
-    for (size_t i = 0; i < n; i += MCSI_W) mcs_store(value + i, mcsi_tile_value(&axes, s, tile + i, stride));
-}
-MCSI_LOOP void mcsi_patch_weights_loop(const mcsi_facing *s, size_t n, const float *patch, float *value,
-                                       float *weight) {
-    const mcs_frame axes = mcsi_spread_frame(&s->axes);
-    for (size_t i = 0; i < n; i += MCSI_W) {
-        const mcs_f v = mcsi_tile_value(&axes, s, patch + i, n);
-        mcs_store(value + i, v);
-        mcs_store(weight + i, v * mcs_load(patch + i));
-    }
-}
-MCSI_LOOP void mcsi_corner_values_loop(const mcsi_facing *s, size_t n, const float *corner, size_t stride,
-                                       float *value) {
-    const mcs_frame axes = mcsi_spread_frame(&s->axes);
-    for (size_t i = 0; i < n; i += MCSI_W) {
-        const float *c = corner + i;
-        const mcs_vec3 w = mcsi_vec3(mcs_load(c), mcs_load(c + stride), mcs_load(c + 2 * stride));
-        mcs_store(value + i, mcsi_corner_value(&axes, s, w));
-    }
-}
-MCSI_LOOP void mcsi_warps_loop(size_t n, mcsi_warp_block *b) {
-    for (size_t i = 0; i < n; i += MCSI_W) {
-        mcs_f u1 = mcs_load(b->u1 + i);
-        mcs_f u2 = mcs_load(b->u2 + i);
-        const mcsi_warp w = mcsi_warp_make(mcs_load(b->value + i), mcs_load(b->pull + i), mcs_load(b->v00 + i),
-                                           mcs_load(b->v01 + i), mcs_load(b->v10 + i), mcs_load(b->v11 + i));
-        mcs_store(b->density + i, mcsi_warp_draw(&w, &u1, &u2));
-        mcs_store(b->u1 + i, u1);
-        mcs_store(b->u2 + i, u2);
-    }
-}
-MCSI_LOOP void mcsi_grid_rows_loop(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum,
-                                   float *row) {
-    mcsi_grid_rows(rows, cols, light, value, cum, row);
-}
-MCSI_LOOP void mcsi_grid_bounds_loop(size_t rows, size_t cols, const float *light, const float *pull,
-                                     const float *corner, float *value, float *weight, float *row) {
-    mcsi_grid_bounds(rows, cols, light, pull, corner, value, weight, row);
-}
-#endif
-#if MCSI_W == 1
-/* By the widest loop that this processor has; defined behind the passes. */
-MCS_FN void mcsi_tile_values_n(const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value);
-MCS_FN void mcsi_patch_weights_n(const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight);
-MCS_FN void mcsi_corner_values_n(const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value);
-MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b);
-MCS_FN void mcsi_grid_rows_n(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum,
-                             float *row);
-MCS_FN void mcsi_grid_bounds_n(size_t rows, size_t cols, const float *light, const float *pull, const float *corner,
-                               float *value, float *weight, float *row);
-#endif
+/* A product is one step above a map: the draw (mcsi_draw) begins with a tile, whose window the map then draws from. In
+ * between, u1 and u2 are warped, so that the density follows the reflection within the tile, too. */
+
+/* ---- [product] the map, as products draw from it ---- */
 
 #if MCSI_W == 1
-/* A lobe that is drawn from for itself. */
+/* Shares of row y of the map, of 2^31. */
+MCSI_CORE uint32_t mcsi_env_row_mass(const mcs_env *e, uint32_t y) {
+    const mcsi_window all = mcsi_env_whole(e);
+    return mcsi_cdf_mass(&all.rows, y);
+}
+/* The direction of a draw, in the map's own frame. */
+MCSI_CORE mcs_vec3 mcsi_window_direction(const mcs_env *e, const mcsi_window *r, mcsi_draw d) {
+    mcs_texel x;
+    const mcsi_env_point point = r->uniform ? mcsi_window_draw_uniform(e, r, &d) : mcsi_window_draw_point(e, r, &d, &x);
+    mcs_frame axes;
+    MCSI_FILL(&axes, 0, sizeof axes);
+    axes.s.x = axes.t.y = axes.n.z = 1.0f;
+    return mcsi_env_direction(&axes, &point, e->turn, e->inner);
+}
+/* Whether row `row` of the map has light within the window. */
+MCSI_CORE int mcsi_window_row_is_lit(const mcsi_window *r, uint32_t row) {
+    return r->uniform || mcsi_cdf_mass(&r->rows, row - r->row0) != 0;
+}
+/* Density per solid angle at a spot of the window, which lies in a lit row, when the window is drawn from with
+ * `density`. */
+MCSI_CORE float mcsi_window_density_at(const mcs_env *e, const mcsi_window *r, const mcsi_spot *spot, double density) {
+    if (r->uniform) return (float)(density * (double)mcsi_window_uniform_pdf(e, r));
+    const uint32_t *sums = mcsi_env_sums(e, spot->row) + spot->col;
+    return (float)((sums[1] - sums[0]) * (density * mcsi_window_row_density(r, spot->row - r->row0)));
+}
+/* A position among the light of a window: t1 of the row's light comes before it, t2 of all light is in rows above it.
+ * */
+typedef struct {
+    float t1, t2;
+} mcsi_position;
+/* The inverse of a draw from the window: the position of a spot in a lit row. */
+MCSI_CORE mcsi_position mcsi_window_position(const mcs_env *e, const mcsi_window *r, const mcsi_spot *spot) {
+    mcsi_position t;
+    if (r->uniform) {
+        const double top = mcsi_env_top(e, r->row0);
+        const double bottom = mcsi_env_top(e, r->row0 + r->rows.n);
+        const double row_top = mcsi_env_top(e, spot->row);
+        const double height = row_top + spot->down * (mcsi_env_top(e, spot->row + 1) - row_top);
+        t.t1 = (float)((spot->col + spot->across - r->col0) / r->cols);
+        t.t2 = (float)((height - top) / (bottom - top));
+    } else {
+        const uint32_t *rows = r->rows.sums + (spot->row - r->row0);
+        const uint32_t *sums = mcsi_env_sums(e, spot->row) + spot->col;
+        const mcsi_share *share = r->share + (spot->row - r->row0);
+        const double u1 = sums[0] + spot->across * (sums[1] - sums[0]) - share->begin;
+        t.t1 = (float)((u1 < 0.0 ? u1 + MCSI_ONE : u1) / share->mass);
+        t.t2 = (float)((rows[0] + spot->down * (rows[1] - rows[0])) / MCSI_ONE);
+    }
+    t.t1 = mcsi_min(mcsi_max(t.t1, 0.0f), 1.0f);
+    t.t2 = mcsi_min(mcsi_max(t.t2, 0.0f), 1.0f);
+    return t;
+}
+/* Fetches what a draw will read of the window's rows. */
+MCSI_CORE void mcsi_window_prefetch(const mcsi_window *r, double u2) {
+    const uint32_t row = (uint32_t)(u2 * r->rows.n * (1.0 / MCSI_ONE));
+    MCSI_PREFETCH((const uint16_t *)r->rows.guide + row);
+    MCSI_PREFETCH(r->rows.sums + row);
+    MCSI_PREFETCH(r->share + row);
+}
+#endif
+
+/* ---- [product] tiles: what is stored ----
+ * The map is cut into `rows` rows and 2 rows columns of tiles. Lists of tiles go column by column: tile (row, col) has
+ * the number col rows + row. Directions are in the map's frame. */
+
+/* The light of a tile, or of several tiles in the lanes. */
+typedef struct {
+    mcs_f light;        /* radiance integrated over the tile */
+    mcs_vec3 mean;      /* mean direction of the light; its length d <= 1 is the shorter, the more the light spreads */
+    mcs_f inv_length;   /* 1/d */
+    mcs_f spread;       /* 1 - d^2, plus the spread within texels, at most 1 */
+    mcs_f tile_radius;  /* largest distance from the mean direction to a corner */
+    mcs_f light_radius; /* 1.5 sqrt(spread), at most tile_radius */
+    mcs_f evenness; /* 1 where light fills the tile evenly, 0 where it is in one place: root of the ratio of spreads */
+} mcsi_tile_light;
+/* Stored member by member: n values of each, in the order above. */
+MCSI_CORE mcsi_tile_light mcsi_tile_light_load(const float *first, size_t n) {
+    mcsi_tile_light l;
+    l.light = mcs_load(first);
+    l.mean.x = mcs_load(first + n);
+    l.mean.y = mcs_load(first + 2 * n);
+    l.mean.z = mcs_load(first + 3 * n);
+    l.inv_length = mcs_load(first + 4 * n);
+    l.spread = mcs_load(first + 5 * n);
+    l.tile_radius = mcs_load(first + 6 * n);
+    l.light_radius = mcs_load(first + 7 * n);
+    l.evenness = mcs_load(first + 8 * n);
+    return l;
+}
+#if MCSI_W == 1
+MCSI_CORE void mcsi_tile_light_store(const mcsi_tile_light *l, float *first, size_t n) {
+    first[0] = l->light;
+    first[n] = l->mean.x;
+    first[2 * n] = l->mean.y;
+    first[3 * n] = l->mean.z;
+    first[4 * n] = l->inv_length;
+    first[5 * n] = l->spread;
+    first[6 * n] = l->tile_radius;
+    first[7 * n] = l->light_radius;
+    first[8 * n] = l->evenness;
+}
+
 enum {
-    MCSI_PATCH_ROWS = 4,
+    MCSI_TILE_ROWS_MAX = 64,
+    MCSI_TILE_MEMBERS = 9, /* floats of a mcsi_tile_light */
+    MCSI_PATCH_ROWS = 4,   /* patches: the map in 4 x 8 pieces, from which the one-shot form descends */
     MCSI_PATCH_COLS = 8,
     MCSI_PATCHES = 32,
-    MCSI_TILES_MAX = 64,
-    MCSI_NODES = 8,
-    MCSI_GRID = MCSI_NODES * MCSI_NODES,
-    MCSI_FINE = 32
+    MCSI_NODES = 8,                      /* of a grid on the light of a tile, along a side */
+    MCSI_GRID = MCSI_NODES * MCSI_NODES, /* and all of them */
+    MCSI_GRIDS = 32                      /* of a product, at most */
 };
-MCSI_CORE const float *mcsi_tiles_fields(const mcs_tiles *t) { return (const float *)(const void *)(t + 1); }
-MCSI_CORE const float *mcsi_tiles_patches(const mcs_tiles *t) {
-    return mcsi_tiles_fields(t) + MCSI_TILE_FIELDS * (size_t)t->rows * t->cols;
-}
-/* Rows of parts that a patch has, one of `above` rows of patches. */
-MCSI_CORE uint32_t mcsi_patch_side(const mcs_tiles *t, uint32_t above) {
-    return above == MCSI_PATCH_ROWS ? 4 : t->rows / above;
-}
-/* Patches of all levels, for n tiles. */
-MCSI_CORE size_t mcsi_patches(size_t n) { return n == 16 * MCSI_PATCHES ? MCSI_PATCHES + n : 17 * MCSI_PATCHES + n; }
-MCSI_CORE const float *mcsi_tiles_corners(const mcs_tiles *t) {
-    return mcsi_tiles_patches(t) + MCSI_TILE_FIELDS * mcsi_patches((size_t)t->rows * t->cols);
-}
-MCSI_CORE size_t mcsi_corners(const mcs_tiles *t) { return (size_t)t->cols * (t->rows + 1); }
-MCSI_CORE const float *mcsi_tiles_around(const mcs_tiles *t) { return mcsi_tiles_corners(t) + 3 * mcsi_corners(t); }
-MCSI_CORE const float *mcsi_tiles_nodes(const mcs_tiles *t) {
-    return mcsi_tiles_around(t) + 12 * (size_t)t->rows * t->cols;
-}
-MCSI_CORE const mcs_env_window *mcsi_tiles_window(const mcs_tiles *t, uint32_t row, uint32_t col) {
-    const char *p = (const char *)(mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * t->rows * t->cols);
-    return (const mcs_env_window *)(const void *)(p + ((size_t)col * t->rows + row) * t->window_bytes);
-}
-MCS_FN int mcsi_tiles_ok(uint32_t rows) { return rows == 16 || rows == 32 || rows == MCSI_TILES_MAX; }
-MCS_API size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows) {
+/* A tile, or another piece of a map that is cut in the same way. */
+typedef struct {
+    uint32_t row, col;
+} mcsi_tile;
+/* Offsets in an mcs_tiles of n tiles, in bytes. */
+typedef struct {
+    size_t light;    /* float[9][n], a mcsi_tile_light of each tile */
+    size_t evenness; /* float[n], the last of the nine */
+    size_t patch;  /* float[9][32] of the patches; then of each patch float[9][parts] of its parts; and then, unless the
+                        parts are tiles, of each part float[9][tiles] of its tiles */
+    size_t corner; /* float[3][cols][rows + 1]: x, y, z of the corners of all tiles; those on the right are the next
+                        column's */
+    size_t
+        around; /* float[n][3][4]: x, y, z of the corners of each tile: upper left, lower left, upper and lower right */
+    size_t node;   /* float[n][3][8][8]: x, y, z of the nodes of a grid on each tile's light */
+    size_t window; /* an mcs_env_window[n], window_bytes each */
+    size_t bytes;
+} mcsi_tiles_offsets;
+MCSI_CORE mcsi_tiles_offsets mcsi_tiles_layout(uint32_t rows, size_t window_bytes) {
     const size_t n = 2 * (size_t)rows * rows;
-    if (!e || !mcsi_tiles_ok(rows)) return 0;
-    return sizeof(mcs_tiles) +
-           (MCSI_TILE_FIELDS * (n + mcsi_patches(n)) + 3 * (n + 2 * (size_t)rows) + (12 + 3 * MCSI_GRID) * n) *
-               sizeof(float) +
-           n * mcs_env_window_bytes(e->h / rows + 1);
+    const size_t patches = n == 16 * MCSI_PATCHES ? MCSI_PATCHES + n : 17 * MCSI_PATCHES + n; /* of all levels */
+    mcsi_tiles_offsets o;
+    o.light = sizeof(mcs_tiles);
+    o.evenness = o.light + (MCSI_TILE_MEMBERS - 1) * n * sizeof(float);
+    o.patch = o.evenness + n * sizeof(float);
+    o.corner = o.patch + MCSI_TILE_MEMBERS * patches * sizeof(float);
+    o.around = o.corner + 3 * (n + 2 * (size_t)rows) * sizeof(float);
+    o.node = o.around + 3 * 4 * n * sizeof(float);
+    o.window = o.node + 3 * MCSI_GRID * n * sizeof(float);
+    o.bytes = o.window + n * window_bytes;
+    return o;
 }
-/* First texel row or column of a tile, and the tile of a texel. */
+MCSI_CORE mcsi_tiles_offsets mcsi_tiles_offsets_of(const mcs_tiles *t) {
+    return mcsi_tiles_layout(t->rows, t->window_bytes);
+}
+MCSI_CORE size_t mcsi_tiles_count(const mcs_tiles *t) { return (size_t)t->rows * t->cols; }
+MCSI_CORE size_t mcsi_tile_number(uint32_t rows, mcsi_tile tile) { return (size_t)tile.col * rows + tile.row; }
+MCSI_CORE const mcs_env_window *mcsi_tiles_window(const mcs_tiles *t, mcsi_tile tile) {
+    const size_t at = mcsi_tiles_offsets_of(t).window + mcsi_tile_number(t->rows, tile) * t->window_bytes;
+    return MCSI_READ(mcs_env_window, t, at);
+}
+MCS_FN int mcsi_tiles_ok(uint32_t rows) { return rows == 16 || rows == 32 || rows == MCSI_TILE_ROWS_MAX; }
+/* No tile has a higher window than this. */
+MCSI_CORE size_t mcsi_tiles_window_bytes(const mcs_env *e, uint32_t rows) {
+    return mcs_env_window_bytes(e->h / rows + 1);
+}
+MCS_API size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows) {
+    return e && mcsi_tiles_ok(rows) ? mcsi_tiles_layout(rows, mcsi_tiles_window_bytes(e, rows)).bytes : 0;
+}
+/* The first texel row (or column) of a tile, and the tile of a texel. */
 MCSI_CORE uint32_t mcsi_tile_begin(uint32_t tile, uint32_t tiles, uint32_t texels) {
     return (uint32_t)((uint64_t)tile * texels / tiles);
 }
 MCSI_CORE uint32_t mcsi_tile_of(uint32_t texel, uint32_t tiles, uint32_t texels) {
     return (uint32_t)((((uint64_t)texel + 1) * tiles - 1) / texels);
 }
-/* Light, the sum of its directions and of its spread within texels; area, the sum of its directions about the mean azimuth; the
- * rectangle that holds it. */
+MCSI_CORE mcsi_tile mcsi_tile_of_spot(const mcs_tiles *t, const mcs_env *e, const mcsi_spot *spot) {
+    mcsi_tile tile;
+    tile.row = mcsi_tile_of(spot->row, t->rows, e->h);
+    tile.col = mcsi_tile_of(spot->col, t->cols, e->w);
+    return tile;
+}
+/* Parts of a patch along a side, where the map has `rows` rows of such patches. */
+MCSI_CORE uint32_t mcsi_patch_side(const mcs_tiles *t, uint32_t rows) {
+    return rows == MCSI_PATCH_ROWS ? 4 : t->rows / rows;
+}
+/* Floats from the start of a level of patches to that of the next one: `parts` of each of 2 rows^2 patches above. */
+MCSI_CORE size_t mcsi_level_length(uint32_t rows, uint32_t parts) {
+    return MCSI_TILE_MEMBERS * 2 * (size_t)rows * rows * parts;
+}
+
+/* ---- [product] tiles: from texels to the light of a tile ---- */
+
+/* A tile or patch while its texels are added up. */
 typedef struct {
-    double e, x, y, z, within, area, across, up;
+    double light, x, y, z;   /* sums of light, and of light times direction */
+    double within;           /* sum of light times the spread within its texel */
+    double area, across, up; /* sums over rows of their height, and of it times sin(theta) and cos(theta) */
     uint32_t row0, row1, col0, col1;
 } mcsi_patch;
-MCS_FN void mcsi_patch_corner(const mcs_env *e, uint32_t row, uint32_t col, mcs_vec3 *w) {
+MCS_FN mcs_vec3 mcsi_texel_corner(const mcs_env *e, uint32_t row, uint32_t col) {
     const double t = mcsi_env_top(e, row);
     const float sine = mcsi_sqrt((float)(t * (2.0 - t)));
     float s, c;
     mcsi_sincos_turns((float)((double)col / e->w), &s, &c);
-    *w = mcsi_vec3(sine * c, sine * s, (float)(1.0 - t));
+    return mcsi_vec3(sine * c, sine * s, (float)(1.0 - t));
 }
-MCS_FN void mcsi_patch_store(const mcs_env *e, const mcsi_patch *p, float *field, size_t stride) {
-    double d = mcsi_sqrt_d(p->x * p->x + p->y * p->y + p->z * p->z);
-    double r2 = 0.0;
-    double pull = 1.0;
-    mcs_vec3 m;
-    if (d > 0.0) {
-        m = mcsi_vec3((float)(p->x / d), (float)(p->y / d), (float)(p->z / d));
-    } else {
-        mcsi_patch_corner(e, (p->row0 + p->row1) / 2, (p->col0 + p->col1) / 2, &m);
-    }
-    mcs_vec3 corner;
-    for (int k = 0; k < 4; k++) {
-        mcsi_patch_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0, &corner);
-        double x = (double)(corner.x - m.x);
-        const double y = (double)(corner.y - m.y);
-        const double z = (double)(corner.z - m.z);
-        x = x * x + y * y + z * z;
-        r2 = x > r2 ? x : r2;
-    }
-    d = p->e > 0.0 && d > 0.0 ? d / p->e : 1.0;
-    d = d < 1.0 ? d : 1.0;
-    double spread = 1.0 - d * d + (p->e > 0.0 ? p->within / p->e : 0.0);
-    spread = spread < 1.0 ? spread : 1.0;
-    r2 = mcsi_sqrt_d(r2);
-    const double reach = 1.5 * mcsi_sqrt_d(spread);
-    if (p->area > 0.0 && p->col1 > p->col0) {
-        double even = p->up * p->up;
-        const double turns = 0.5 * (p->col1 - p->col0) / e->w;
-        float s, c;
-        mcsi_sincos_turns((float)turns, &s, &c); /* a column's mean lies sin(x)/x from the axis, x half its width */
-        even += p->across * p->across * ((double)s * (double)s / (turns * turns * 39.478417604357432));
-        even = 1.0 - even / (p->area * p->area);
-        pull = even > 1e-12 ? spread / even : 1.0;
-        pull = pull < 1.0 ? mcsi_sqrt_d(pull) : 1.0;
-    }
-    field[MCSI_TILE_PULL * stride] = (float)pull;
-    field[MCSI_TILE_E * stride] = (float)p->e;
-    field[MCSI_TILE_X * stride] = m.x * (float)d;
-    field[MCSI_TILE_Y * stride] = m.y * (float)d;
-    field[MCSI_TILE_Z * stride] = m.z * (float)d;
-    field[MCSI_TILE_UNIT * stride] = (float)(1.0 / d);
-    field[MCSI_TILE_SPREAD * stride] = (float)spread;
-    field[MCSI_TILE_RADIUS * stride] = (float)r2 + 1e-6f;
-    field[MCSI_TILE_REACH * stride] = (float)(reach < r2 ? reach : r2) + 1e-6f;
+/* Corners of a tile: upper left, lower left, upper right, lower right. */
+MCSI_CORE mcs_vec3 mcsi_patch_corner(const mcs_env *e, const mcsi_patch *p, uint32_t k) {
+    return mcsi_texel_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0);
 }
-/* Light of a tile: of row y, the texels of a window's columns. */
-MCS_FN void mcsi_patch_add_row(const mcs_env *e, const mcsi_window *all, uint32_t y, mcsi_patch *p) {
-    const double t = 0.5 * (mcsi_env_top(e, y) + mcsi_env_top(e, y + 1));
+/* Adds a row of texels, those of the patch's columns. */
+MCS_FN void mcsi_patch_add_row(const mcs_env *e, uint32_t row, mcsi_patch *p) {
+    const double t = 0.5 * (mcsi_env_top(e, row) + mcsi_env_top(e, row + 1));
     const double sine = mcsi_sqrt_d(t * (2.0 - t));
-    double row = 0.0;
-    double cx = 0.0;
-    double cy = 0.0;
-    const uint32_t mass = mcsi_cdf_mass(&all->rows, y);
-    const uint32_t *cdf = mcsi_env_sums(e, y);
-    double height = mcsi_env_height(y, e->h);
+    const double height = mcsi_env_height(row, e->h);
     p->area += height;
     p->across += height * sine;
     p->up += height * (1.0 - t);
+    const uint32_t mass = mcsi_env_row_mass(e, row);
     if (!e->uniform && mass == 0) return;
-    for (uint32_t x = p->col0; x < p->col1; x++) {
-        const double w = e->uniform ? (double)MCSI_ONE / e->w : cdf[x + 1] - cdf[x];
+    const uint32_t *sums = mcsi_env_sums(e, row);
+    double light = 0.0;
+    double x = 0.0;
+    double y = 0.0;
+    for (uint32_t col = p->col0; col < p->col1; col++) {
+        const double w = e->uniform ? (double)MCSI_ONE / e->w : sums[col + 1] - sums[col];
         if (!(w > 0.0)) continue;
         float s, c;
-        mcsi_sincos_turns((float)((x + 0.5) / e->w), &s, &c);
-        row += w;
-        cx += w * (double)c;
-        cy += w * (double)s;
+        mcsi_sincos_turns((float)((col + 0.5) / e->w), &s, &c);
+        light += w;
+        x += w * (double)c;
+        y += w * (double)s;
     }
-    height = (e->uniform ? 0.5 * height : mass / (double)MCSI_ONE) / MCSI_ONE;
-    p->e += height * row;
-    p->x += height * sine * cx;
-    p->y += height * sine * cy;
-    p->z += height * row * (1.0 - t);
-    p->within +=
-        height * row * 0.82246703342411322 * (1.0 / ((double)e->h * e->h) + 4.0 * sine * sine / ((double)e->w * e->w));
+    const double scale = (e->uniform ? 0.5 * height : mass / (double)MCSI_ONE) / MCSI_ONE;
+    /* Within a texel, light spreads by (pi/h)^2/12 along its height and by (2 pi sin(theta)/w)^2/12 along its width. */
+    const double texel = 1.0 / ((double)e->h * e->h) + 4.0 * sine * sine / ((double)e->w * e->w);
+    p->light += scale * light;
+    p->x += scale * sine * x;
+    p->y += scale * sine * y;
+    p->z += scale * light * (1.0 - t);
+    p->within += scale * light * 0.82246703342411322 * texel;
 }
-/* Places of nodes: even, but for the outer ones, which keep a hundredth of the light off the border, as what lies there is
- * often far from the rest: beside a sun it is the edge of the tile. */
-MCSI_CORE double mcsi_node_place(uint32_t k) {
-    return k == 0 ? 0.01 * MCSI_ONE : k == MCSI_NODES - 1 ? 0.99 * MCSI_ONE : k * ((double)MCSI_ONE / (MCSI_NODES - 1));
+/* The spread of even light, as evenness is relative to it. A column's mean direction lies sin(x)/x from the axis, x
+ * half its width. */
+MCS_FN float mcsi_patch_evenness(const mcs_env *e, const mcsi_patch *p, double spread) {
+    if (!(p->area > 0.0 && p->col1 > p->col0)) return 1.0f;
+    const double turns = 0.5 * (p->col1 - p->col0) / e->w;
+    float s, c;
+    mcsi_sincos_turns((float)turns, &s, &c);
+    const double length2 =
+        p->up * p->up + p->across * p->across * ((double)s * (double)s / (turns * turns * 39.478417604357432));
+    const double even = 1.0 - length2 / (p->area * p->area);
+    const double ratio = even > 1e-12 ? spread / even : 1.0;
+    return (float)(ratio < 1.0 ? mcsi_sqrt_d(ratio) : 1.0);
 }
-/* Directions, in the map's frame, of a grid of places among a tile's light, from its first to its last; column by column. */
-MCS_FN void mcsi_patch_nodes(const mcs_env *e, const mcs_env_window *m, const mcsi_patch *p, float *node) {
-    if (!(p->e > 0.0)) { /* never asked for */
-        MCSI_FILL(node, 0, 3 * MCSI_GRID * sizeof *node);
-        return;
+/* The largest distance from m to a corner. */
+MCS_FN double mcsi_patch_radius(const mcs_env *e, const mcsi_patch *p, mcs_vec3 m) {
+    double most = 0.0;
+    for (uint32_t k = 0; k < 4; k++) {
+        const mcs_vec3 corner = mcsi_patch_corner(e, p, k);
+        const double x = (double)(corner.x - m.x);
+        const double y = (double)(corner.y - m.y);
+        const double z = (double)(corner.z - m.z);
+        const double r2 = x * x + y * y + z * z;
+        most = r2 > most ? r2 : most;
     }
-    mcs_frame axes;
-    MCSI_FILL(&axes, 0, sizeof axes);
-    axes.s.x = axes.t.y = axes.n.z = 1.0f;
+    return mcsi_sqrt_d(most);
+}
+MCS_FN mcsi_tile_light mcsi_patch_light(const mcs_env *e, const mcsi_patch *p) {
+    const double sum = mcsi_sqrt_d(p->x * p->x + p->y * p->y + p->z * p->z);
+    const mcs_vec3 m = sum > 0.0 ? mcsi_vec3((float)(p->x / sum), (float)(p->y / sum), (float)(p->z / sum))
+                                 : mcsi_texel_corner(e, (p->row0 + p->row1) / 2, (p->col0 + p->col1) / 2);
+    const double mean = p->light > 0.0 && sum > 0.0 ? sum / p->light : 1.0;
+    const double length = mean < 1.0 ? mean : 1.0;
+    const double both = 1.0 - length * length + (p->light > 0.0 ? p->within / p->light : 0.0);
+    const double spread = both < 1.0 ? both : 1.0;
+    const double tile_radius = mcsi_patch_radius(e, p, m);
+    const double light_radius = 1.5 * mcsi_sqrt_d(spread);
+    mcsi_tile_light l;
+    l.light = (float)p->light;
+    l.mean = mcsi_vec3(m.x * (float)length, m.y * (float)length, m.z * (float)length);
+    l.inv_length = (float)(1.0 / length);
+    l.spread = (float)spread;
+    l.tile_radius = (float)tile_radius + 1e-6f;
+    l.light_radius = (float)(light_radius < tile_radius ? light_radius : tile_radius) + 1e-6f;
+    l.evenness = mcsi_patch_evenness(e, p, spread);
+    return l;
+}
+/* ---- [product] tiles: building ---- */
+
+/* Node k of 8 along one axis of a grid, in [0, 2^31]. Evenly spaced, but the first and last are moved inwards by 1 % of
+ * the light: the outermost light of a tile is often far from the rest (beside a sun it is the tile's edge) and would
+ * misrepresent the cell. */
+MCSI_CORE double mcsi_node_position(uint32_t k) {
+    if (k == 0) return 0.01 * MCSI_ONE;
+    if (k == MCSI_NODES - 1) return 0.99 * MCSI_ONE;
+    return k * ((double)MCSI_ONE / (MCSI_NODES - 1));
+}
+/* Directions of the nodes of a grid on the light of a window, column by column. */
+MCS_FN void mcsi_tile_nodes(const mcs_env *e, const mcs_env_window *m, float *node) {
     const mcsi_window window = mcsi_window_of(e, m);
     for (uint32_t k = 0; k < MCSI_GRID; k++) {
-        mcsi_draw d = mcsi_draw_make(mcsi_node_place(k / MCSI_NODES), mcsi_node_place(k % MCSI_NODES), 1.0);
-        mcs_texel x;
-        const mcsi_env_point at =
-            window.uniform ? mcsi_window_draw_uniform(e, &window, &d) : mcsi_window_draw_point(e, &window, &d, &x);
-        const mcs_vec3 w = mcsi_env_direction(&axes, &at, e->turn, e->inner);
+        mcsi_draw d;
+        d.u1 = mcsi_node_position(k / MCSI_NODES);
+        d.u2 = mcsi_node_position(k % MCSI_NODES);
+        d.density = 1.0;
+        const mcs_vec3 w = mcsi_window_direction(e, &window, d);
         node[k] = w.x;
         node[MCSI_GRID + k] = w.y;
         node[2 * MCSI_GRID + k] = w.z;
     }
 }
-/* Patch (i, j) of a map cut into `rows` rows of them: a tile, or the sum of its parts, whose fields are stored from `level` on. */
-MCS_FN void mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, uint32_t i, uint32_t j, float *level,
-                             mcsi_patch *p) {
-    const uint32_t n = t->rows * t->cols;
-    MCSI_FILL(p, 0, sizeof *p);
-    p->row0 = mcsi_tile_begin(i, rows, e->h);
-    p->row1 = mcsi_tile_begin(i + 1, rows, e->h);
-    p->col0 = mcsi_tile_begin(j, 2 * rows, e->w);
-    p->col1 = mcsi_tile_begin(j + 1, 2 * rows, e->w);
-    if (rows == t->rows) {
-        mcs_env_window *m = (mcs_env_window *)(void *)((char *)(uintptr_t)mcsi_tiles_window(t, i, j));
-        const mcsi_window all = mcsi_env_whole(e);
-        const size_t at = (size_t)j * rows + i;
-        float *around = (float *)(uintptr_t)mcsi_tiles_around(t) + 12 * at;
-        for (uint32_t y = p->row0; y < p->row1; y++) mcsi_patch_add_row(e, &all, y, p);
-        MCSI_FILL(m, 0, t->window_bytes); /* where no light is, and where windows of other tiles have one row more */
-        if (p->e > 0.0)
-            mcs_env_window_build(m, t->window_bytes, e, p->row0, p->row1 - p->row0, p->col0, p->col1 - p->col0);
-        mcsi_patch_store(e, p, (float *)(uintptr_t)mcsi_tiles_fields(t) + at, n);
-        mcsi_patch_nodes(e, m, p, (float *)(uintptr_t)mcsi_tiles_nodes(t) + 3 * (size_t)MCSI_GRID * at);
-        for (uint32_t k = 0; k < 4; k++) {
-            mcs_vec3 w;
-            mcsi_patch_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0, &w);
-            around[k] = w.x;
-            around[4 + k] = w.y;
-            around[8 + k] = w.z;
-        }
+/* Stores all there is of a tile, whose texels it adds up. */
+MCS_FN void mcsi_tile_build(const mcs_env *e, mcs_tiles *t, mcsi_tile tile, mcsi_patch *p) {
+    const mcsi_tiles_offsets o = mcsi_tiles_offsets_of(t);
+    const size_t n = mcsi_tiles_count(t);
+    const size_t k = mcsi_tile_number(t->rows, tile);
+    for (uint32_t row = p->row0; row < p->row1; row++) mcsi_patch_add_row(e, row, p);
+    const mcsi_tile_light light = mcsi_patch_light(e, p);
+    mcsi_tile_light_store(&light, MCSI_WRITE(float, t, o.light) + k, n);
+    float *around = MCSI_WRITE(float, t, o.around) + 3 * 4 * k;
+    for (uint32_t c = 0; c < 4; c++) {
+        const mcs_vec3 w = mcsi_patch_corner(e, p, c);
+        around[c] = w.x;
+        around[4 + c] = w.y;
+        around[8 + c] = w.z;
+    }
+    /* Window and nodes of a tile without light are zeros, which nothing reads. So is what a window leaves of its bytes.
+     * */
+    mcs_env_window *m = MCSI_WRITE(mcs_env_window, t, o.window + k * t->window_bytes);
+    float *node = MCSI_WRITE(float, t, o.node) + 3 * (size_t)MCSI_GRID * k;
+    MCSI_FILL(m, 0, t->window_bytes);
+    if (!(p->light > 0.0)) {
+        MCSI_FILL(node, 0, 3 * MCSI_GRID * sizeof *node);
         return;
+    }
+    mcs_env_window_build(m, t->window_bytes, e, p->row0, p->row1 - p->row0, p->col0, p->col1 - p->col0);
+    mcsi_tile_nodes(e, m, node);
+}
+/* A patch of a map that is cut into `rows` rows of patches: a tile, or the sum of its parts, which are built and stored
+ * from `level` on. */
+MCS_FN mcsi_patch mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, mcsi_tile patch, float *level) {
+    mcsi_patch p;
+    MCSI_FILL(&p, 0, sizeof p);
+    p.row0 = mcsi_tile_begin(patch.row, rows, e->h);
+    p.row1 = mcsi_tile_begin(patch.row + 1, rows, e->h);
+    p.col0 = mcsi_tile_begin(patch.col, 2 * rows, e->w);
+    p.col1 = mcsi_tile_begin(patch.col + 1, 2 * rows, e->w);
+    if (rows == t->rows) {
+        mcsi_tile_build(e, t, patch, &p);
+        return p;
     }
     const uint32_t side = mcsi_patch_side(t, rows);
     const uint32_t parts = side * side;
+    float *stored = level + MCSI_TILE_MEMBERS * (size_t)(patch.col * rows + patch.row) * parts;
     for (uint32_t k = 0; k < parts; k++) {
-        mcsi_patch part;
-        mcsi_patch_build(e, t, rows * side, i * side + k % side, j * side + k / side,
-                         level + MCSI_TILE_FIELDS * 2 * (size_t)rows * rows * parts, &part);
-        mcsi_patch_store(e, &part, level + MCSI_TILE_FIELDS * (size_t)(j * rows + i) * parts + k, parts);
-        p->e += part.e;
-        p->x += part.x;
-        p->y += part.y;
-        p->z += part.z;
-        p->within += part.within;
+        const mcsi_tile at = {patch.row * side + k % side, patch.col * side + k / side};
+        const mcsi_patch part = mcsi_patch_build(e, t, rows * side, at, level + mcsi_level_length(rows, parts));
+        const mcsi_tile_light light = mcsi_patch_light(e, &part);
+        mcsi_tile_light_store(&light, stored + k, parts);
+        p.light += part.light;
+        p.x += part.x;
+        p.y += part.y;
+        p.z += part.z;
+        p.within += part.within;
     }
+    return p;
+}
+MCS_FN void mcsi_tiles_corners(const mcs_env *e, mcs_tiles *t) {
+    const size_t corners = (size_t)t->cols * (t->rows + 1);
+    float *corner = MCSI_WRITE(float, t, mcsi_tiles_offsets_of(t).corner);
+    for (uint32_t col = 0; col < t->cols; col++)
+        for (uint32_t row = 0; row <= t->rows; row++, corner++) {
+            const mcs_vec3 w =
+                mcsi_texel_corner(e, mcsi_tile_begin(row, t->rows, e->h), mcsi_tile_begin(col, t->cols, e->w));
+            corner[0] = w.x;
+            corner[corners] = w.y;
+            corner[2 * corners] = w.z;
+        }
 }
 MCS_API mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows) {
     if (!t || !e || ((uintptr_t)t & MCSI_ALIGN)) return MCS_ERR_ARG;
@@ -6461,198 +6399,605 @@ MCS_API mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e,
     if (bytes < mcs_tiles_bytes(e, rows)) return MCS_ERR_MEMORY;
     t->rows = rows;
     t->cols = 2 * rows;
-    t->window_bytes = (uint32_t)mcs_env_window_bytes(e->h / rows + 1);
+    t->window_bytes = (uint32_t)mcsi_tiles_window_bytes(e, rows);
     t->unused = 0;
-    float *level = (float *)(uintptr_t)mcsi_tiles_patches(t);
-    for (uint32_t j = 0; j < MCSI_PATCH_COLS; j++)
-        for (uint32_t i = 0; i < MCSI_PATCH_ROWS; i++) {
-            mcsi_patch p;
-            mcsi_patch_build(e, t, MCSI_PATCH_ROWS, i, j, level + (int)MCSI_TILE_FIELDS * MCSI_PATCHES, &p);
-            mcsi_patch_store(e, &p, level + j * MCSI_PATCH_ROWS + i, MCSI_PATCHES);
-        }
-    float *corner = (float *)(uintptr_t)mcsi_tiles_corners(t);
-    for (uint32_t j = 0; j < t->cols; j++)
-        for (uint32_t i = 0; i <= rows; i++, corner++) {
-            mcs_vec3 w;
-            mcsi_patch_corner(e, mcsi_tile_begin(i, rows, e->h), mcsi_tile_begin(j, t->cols, e->w), &w);
-            corner[0] = w.x;
-            corner[mcsi_corners(t)] = w.y;
-            corner[2 * mcsi_corners(t)] = w.z;
-        }
-    return e->total > 0.0 ? MCS_OK : MCS_UNIFORM;
-}
-/* World direction in which the light of tile k (column by column) lies. */
-MCS_API mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k) {
-    const size_t n = (size_t)t->rows * t->cols;
-    const float *f = mcsi_tiles_fields(t) + (k < n ? k : n - 1);
-    const float unit = f[MCSI_TILE_UNIT * n];
-    return mcsi_to_world(&e->frame,
-                         mcsi_vec3(f[MCSI_TILE_X * n] * unit, f[MCSI_TILE_Y * n] * unit, f[MCSI_TILE_Z * n] * unit));
-}
-
-/* Integer shares of a list, at least 1 unless it is zero. Returns their sum. */
-MCSI_CORE uint32_t mcsi_shares(uint32_t *cum, const float *weight, uint32_t n) {
-    float sum = 0.0f;
-    uint32_t at = 0;
-    for (uint32_t i = 0; i < n; i++) sum += weight[i];
-    const float scale = (16777216.0f - (float)n) / mcsi_max(sum, MCSI_ROW_LEAST);
-    for (uint32_t i = 0; i < n; i++) {
-        cum[i] = at;
-        at += (uint32_t)(int32_t)(weight[i] * scale) + (uint32_t)(weight[i] > 0.0f);
+    float *patches = MCSI_WRITE(float, t, mcsi_tiles_offsets_of(t).patch);
+    float *parts = patches + (int)MCSI_TILE_MEMBERS * MCSI_PATCHES;
+    for (uint32_t k = 0; k < MCSI_PATCHES; k++) {
+        const mcsi_tile at = {k % MCSI_PATCH_ROWS, k / MCSI_PATCH_ROWS};
+        const mcsi_patch p = mcsi_patch_build(e, t, MCSI_PATCH_ROWS, at, parts);
+        const mcsi_tile_light light = mcsi_patch_light(e, &p);
+        mcsi_tile_light_store(&light, patches + k, MCSI_PATCHES);
     }
-    return cum[n] = at;
+    mcsi_tiles_corners(e, t);
+    return MCS_OK;
 }
-/* The last of n (a power of two) cumulative sums, `stride` apart, that is not above U. */
-MCSI_CORE uint32_t mcsi_shares_find(const uint32_t *cum, uint32_t n, uint32_t stride, uint32_t U) {
-    uint32_t i = 0;
-    for (uint32_t step = n / 2; step; step /= 2) i += (uint32_t)(cum[(i + step) * stride] <= U) * step;
-    return i;
+MCS_API mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k) {
+    const size_t n = mcsi_tiles_count(t);
+    const float *first = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light);
+    const mcsi_tile_light l = mcsi_tile_light_load(first + (k < n ? k : n - 1), n);
+    return mcsi_to_world(&e->frame,
+                         mcsi_vec3(l.mean.x * l.inv_length, l.mean.y * l.inv_length, l.mean.z * l.inv_length));
 }
-/* The place of U in [0, 2^31) within a share that begins at `begin` of `total`. */
-MCSI_CORE double mcsi_shares_rest(double V, uint32_t begin, uint32_t share) {
-    const double rest = (V - (int32_t)begin) * ((double)MCSI_ONE / (int32_t)share);
-    return rest < 2147483647.5 ? rest : 2147483647.5;
-}
-/* 0 where nothing is reflected. */
-MCS_FN int mcsi_facing_make(const mcs_env *e, const mcs_reflection *r, mcsi_facing *s) {
-    int32_t ok = 1;
+#endif
+
+/* ---- [product] lobe: the reflection, as tiles are weighed by it ----
+ * Weight of a tile: its light times the reflection towards the light's mean direction.
+ *
+ *   matte part   c/pi, c the cosine of that direction; near the horizon, where c < r, (c + r)^2/(4 pi r), r the light's
+ *                radius, so that a tile which straddles the horizon keeps some weight
+ *   lobe part    the lobe times the cosine, with alpha^2 + spread/4 in place of alpha^2 */
+
+#if MCSI_W == 1
+#define MCSI_VALUE_LEAST 3.18309873e-05f /* a ten-thousandth of a white matte surface that faces the light */
+/* A surface as the map sees it: mcs_reflection with all its numbers brought into range. */
+typedef struct {
+    mcs_frame axes; /* of the surface, in the map's frame */
+    mcs_vec3 wo;
+    float ax2, ay2; /* alpha_x^2, alpha_y^2 */
+    float matte;
+    mcs_profile profile;
+    int32_t reflects; /* 0: wo is below the surface or bad */
+} mcsi_surface;
+MCS_FN mcsi_surface mcsi_surface_make(const mcs_env *e, const mcs_reflection *r) {
     const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-4f, 1e4f);
     const float ay = mcsi_sane_parameter(r->alpha_y >= 0.0f, r->alpha_y, 1e-4f, 1e4f);
-    s->wo = mcsi_sane_upper(r->wo, &ok);
-    s->axes.s = mcsi_to_local(&e->frame, r->frame.s);
-    s->axes.t = mcsi_to_local(&e->frame, r->frame.t);
-    s->axes.n = mcsi_to_local(&e->frame, r->frame.n);
-    s->profile = r->profile;
-    s->ax2 = ax * ax;
-    s->ay2 = ay * ay;
-    s->matte = mcsi_sane_parameter(r->matte >= 0.0f, r->matte, 0.0f, 1.0f);
-    return ok;
+    mcsi_surface s;
+    s.reflects = 1;
+    s.wo = mcsi_sane_upper(r->wo, &s.reflects);
+    s.axes.s = mcsi_to_local(&e->frame, r->frame.s);
+    s.axes.t = mcsi_to_local(&e->frame, r->frame.t);
+    s.axes.n = mcsi_to_local(&e->frame, r->frame.n);
+    s.profile = r->profile;
+    s.ax2 = ax * ax;
+    s.ay2 = ay * ay;
+    s.matte = mcsi_sane_parameter(r->matte >= 0.0f, r->matte, 0.0f, 1.0f);
+    return s;
+}
+#endif
+/* (1 + x/256)^-256: nearly exp(-x), x >= 0, and never less. */
+MCSI_CORE mcs_f mcsi_falloff(mcs_f x) {
+    mcs_f p = 1.0f / (1.0f + 0.00390625f * mcsi_min(x, mcs_set(64.0f))); /* subnormal products would be slow */
+    MCSI_UNROLL
+    for (int k = 0; k < 8; k++) p = p * p;
+    return p;
+}
+/* What lobes are computed from: the half-vector h = wo + w, |h|^2, alpha^2 + spread/4, their product and its root. */
+typedef struct {
+    mcs_vec3 h;
+    mcs_f h2, ax2, ay2, aa, root;
+} mcsi_blurred_lobe;
+MCSI_CORE mcsi_blurred_lobe mcsi_blurred_lobe_make(const mcsi_surface *s, mcs_vec3 w, mcs_f spread) {
+    mcsi_blurred_lobe l;
+    l.ax2 = s->ax2 + 0.25f * spread;
+    l.ay2 = s->ay2 + 0.25f * spread;
+    l.aa = l.ax2 * l.ay2;
+    l.root = mcsi_sqrt(l.aa);
+    l.h = mcsi_vec3(w.x + s->wo.x, w.y + s->wo.y, w.z + s->wo.z);
+    l.h2 = l.h.x * l.h.x + l.h.y * l.h.y + l.h.z * l.h.z;
+    return l;
+}
+/* Ward's lobe (MCS_WARD_GMD), which stands for Beckmann's and Ashikhmin-Shirley's, too. */
+MCSI_CORE mcs_f mcsi_blurred_gauss(const mcsi_blurred_lobe *l, mcs_f cosine) {
+    const mcs_f least = mcs_set(FLT_MIN);
+    const mcs_f z2 = l->h.z * l->h.z;
+    const mcs_f a = l->h.x * l->h.x * l->ay2 + l->h.y * l->h.y * l->ax2;
+    const mcs_f b = mcsi_max(l->aa * z2, least);
+    const mcs_f peak = mcsi_falloff(mcsi_min(a, 64.0f * b) / b); /* it does not fall further */
+    return mcsi_quotient(MCSI_1_PI * peak * l->h2 * cosine, mcsi_max(l->root * z2 * z2, least));
+}
+MCSI_CORE mcs_f mcsi_blurred_phong(const mcsi_blurred_lobe *l, mcs_f cosine, float wo_z) {
+    const mcs_f n = mcsi_max(0.5f / l->root - 2.0f, mcs_set(0.0f));
+    const mcs_f z = cosine - wo_z; /* with it, h is w less the mirror direction */
+    const mcs_f off2 = l->h.x * l->h.x + l->h.y * l->h.y + z * z;
+    return (n + 2.0f) * MCSI_1_2PI * mcsi_falloff(0.5f * n * off2) * cosine;
+}
+MCSI_CORE mcs_f mcsi_blurred_ggx(const mcsi_blurred_lobe *l, mcs_vec3 w, mcsi_scalar_vec3 wo) {
+    const mcs_f least = mcs_set(FLT_MIN);
+    const mcs_f slopes = l->h.x * l->h.x * l->ay2 + l->h.y * l->h.y * l->ax2 + l->h.z * l->h.z * l->aa;
+    const mcs_f ratio = l->root * l->h2 / mcsi_max(slopes, least);
+    const mcs_f g2 = wo.z * mcsi_sqrt(l->ax2 * w.x * w.x + l->ay2 * w.y * w.y + w.z * w.z) +
+                     w.z * mcsi_sqrt(l->ax2 * (wo.x * wo.x) + l->ay2 * (wo.y * wo.y) + wo.z * wo.z);
+    return 0.5f * MCSI_1_PI * l->root * ratio * ratio * w.z / mcsi_max(g2, least);
+}
+/* The lobe times the cosine towards light that spreads about w, which is in the frame of the surface. */
+MCSI_CORE mcs_f mcsi_blurred_value(const mcsi_surface *s, mcs_vec3 w, mcs_f spread) {
+    const mcsi_blurred_lobe l = mcsi_blurred_lobe_make(s, w, spread);
+    if (s->profile == MCS_PROFILE_GAUSS) return mcsi_blurred_gauss(&l, w.z);
+    if (s->profile == MCS_PROFILE_PHONG) return mcsi_blurred_phong(&l, w.z, s->wo.z);
+    return mcsi_blurred_ggx(&l, w, s->wo);
+}
+/* ---- [product] values: the reflection towards tiles and their corners ---- */
+
+/* At least MCSI_VALUE_LEAST, so that no tile above the horizon is lost; at most 1e30; NaN, of bad axes, counts as 0. */
+MCSI_CORE mcs_f mcsi_sane_value(mcs_f f) {
+    return mcsi_sel(f > 0.0f, mcsi_min(f, mcs_set(1e30f)), mcs_set(0.0f)) + MCSI_VALUE_LEAST;
+}
+/* Reflection towards the light of tiles: 0 only where no corner is above the horizon. */
+MCSI_CORE mcs_f mcsi_tile_value(const mcs_frame *axes, const mcsi_surface *s, const mcsi_tile_light *l) {
+    const mcs_f zero = mcs_set(0.0f);
+    const mcs_f radius =
+        mcsi_max(l->light_radius, mcs_set(1e-6f)); /* vectors reach beyond the last tile, where it is 0 */
+    const mcs_f c = mcsi_dot(axes->n, l->mean);
+    const mcs_f above = mcsi_max(c + radius, zero);
+    const mcs_f cosine = mcsi_sel(c >= radius, c, above * above / (4.0f * radius));
+    mcs_f f = MCSI_1_PI * cosine;
+    if (s->matte < 1.0f) {
+        const mcs_f x = mcsi_dot(axes->s, l->mean) * l->inv_length;
+        const mcs_f y = mcsi_dot(axes->t, l->mean) * l->inv_length;
+        const mcs_vec3 w = mcsi_vec3(x, y, mcsi_max(c * l->inv_length, cosine));
+        f = s->matte * f + (1.0f - s->matte) * mcsi_blurred_value(s, w, l->spread);
+    }
+    return mcsi_sel(c + l->tile_radius > 0.0f, mcsi_sane_value(f), zero);
+}
+/* Reflection towards corners or nodes. */
+MCSI_CORE mcs_f mcsi_corner_value(const mcs_frame *axes, const mcsi_surface *s, mcs_vec3 w) {
+    const mcs_f cosine = mcsi_max(mcsi_dot(axes->n, w), mcs_set(0.0f));
+    mcs_f f = MCSI_1_PI * cosine;
+    if (s->matte < 1.0f) {
+        w = mcsi_vec3(mcsi_dot(axes->s, w), mcsi_dot(axes->t, w), cosine);
+        f = s->matte * f + (1.0f - s->matte) * mcsi_blurred_value(s, w, mcs_set(0.0f));
+    }
+    return mcsi_sane_value(f);
+}
+#ifdef MCSI_LOOPS
+/* Reflection towards n tiles. */
+MCSI_LOOP void mcsi_tile_values_loop(const mcsi_surface *s, size_t n, const float *tile, float *value) {
+    const mcs_frame axes = mcsi_spread_frame(&s->axes);
+    for (size_t i = 0; i < n; i += MCSI_W) {
+        const mcsi_tile_light l = mcsi_tile_light_load(tile + i, n);
+        mcs_store(value + i, mcsi_tile_value(&axes, s, &l));
+    }
+}
+/* The same of patches, and their weights. */
+MCSI_LOOP void mcsi_patch_weights_loop(const mcsi_surface *s, size_t n, const float *patch, float *value,
+                                       float *weight) {
+    const mcs_frame axes = mcsi_spread_frame(&s->axes);
+    for (size_t i = 0; i < n; i += MCSI_W) {
+        const mcsi_tile_light l = mcsi_tile_light_load(patch + i, n);
+        const mcs_f v = mcsi_tile_value(&axes, s, &l);
+        mcs_store(value + i, v);
+        mcs_store(weight + i, v * l.light);
+    }
+}
+/* Reflection towards n corners or nodes, n floats each of x, y, z. */
+MCSI_LOOP void mcsi_corner_values_loop(const mcsi_surface *s, size_t n, const float *corner, float *value) {
+    const mcs_frame axes = mcsi_spread_frame(&s->axes);
+    for (size_t i = 0; i < n; i += MCSI_W) {
+        const float *c = corner + i;
+        const mcs_vec3 w = mcsi_vec3(mcs_load(c), mcs_load(c + n), mcs_load(c + 2 * n));
+        mcs_store(value + i, mcsi_corner_value(&axes, s, w));
+    }
+}
+#endif
+#if MCSI_W == 1
+/* By the widest loop that this processor has; defined behind the passes. */
+MCS_FN void mcsi_tile_values_n(const mcsi_surface *s, size_t n, const float *tile, float *value);
+MCS_FN void mcsi_patch_weights_n(const mcsi_surface *s, size_t n, const float *patch, float *value, float *weight);
+MCS_FN void mcsi_corner_values_n(const mcsi_surface *s, size_t n, const float *corner, float *value);
+#endif
+
+/* ---- [product] warp: the density within a tile, relative to that of its light ---- */
+
+/* A bilinear density on the unit square, with mean 1: its values at the corners, (0, 0), (0, 1), (1, 0), (1, 1). The
+ * first number goes along columns, the second along rows. They measure light, not area: at t1 = 0.3, 30 % of the row's
+ * light lies before. The density is continuous within a tile, jumps between tiles, and varies within a texel. */
+typedef struct {
+    mcs_f v00, v01, v10, v11;
+} mcsi_warp;
+/* What it is made from: the reflection towards the tile's light and its corners, and how far the light reaches towards
+ * these. */
+typedef struct {
+    mcs_f value, evenness;
+    mcsi_warp corner;
+} mcsi_warp_source;
+MCSI_CORE mcsi_warp mcsi_warp_make(const mcsi_warp_source *s) {
+    const mcs_f evenness = s->evenness;
+    const mcs_f value = s->value * (1.0f - evenness); /* so that no difference falls below 0 */
+    mcsi_warp w;
+    w.v00 = value + evenness * s->corner.v00;
+    w.v01 = value + evenness * s->corner.v01;
+    w.v10 = value + evenness * s->corner.v10;
+    w.v11 = value + evenness * s->corner.v11;
+    const mcs_f sum = (w.v00 + w.v01) + (w.v10 + w.v11);
+    const mcs_f least = 0.0075f * sum; /* 3 % of the mean: no corner is dark */
+    const mcs_f scale = 1.0f / (0.25f * sum + least);
+    w.v00 = (w.v00 + least) * scale;
+    w.v01 = (w.v01 + least) * scale;
+    w.v10 = (w.v10 + least) * scale;
+    w.v11 = (w.v11 + least) * scale;
+    return w;
+}
+MCSI_CORE mcs_f mcsi_warp_density(const mcsi_warp *w, mcs_f t1, mcs_f t2) {
+    const mcs_f a = w->v00 + t2 * (w->v01 - w->v00);
+    const mcs_f b = w->v10 + t2 * (w->v11 - w->v10);
+    return a + t1 * (b - a);
+}
+/* Draws from a density that goes linearly from a at 0 to b at 1. */
+MCSI_CORE mcs_f mcsi_warp_linear(mcs_f a, mcs_f b, mcs_f u) {
+    return mcsi_min(u * (a + b) / (a + mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b))), mcs_set(0.99999994f));
+}
+/* A point drawn from a warp, and its density. */
+typedef struct {
+    mcs_f t1, t2, density;
+} mcsi_warp_point;
+MCSI_CORE mcsi_warp_point mcsi_warp_draw(const mcsi_warp *w, mcs_f u1, mcs_f u2) {
+    mcsi_warp_point p;
+    p.t2 = mcsi_warp_linear(w->v00 + w->v10, w->v01 + w->v11, u2);
+    const mcs_f a = w->v00 + p.t2 * (w->v01 - w->v00);
+    const mcs_f b = w->v10 + p.t2 * (w->v11 - w->v10);
+    p.t1 = mcsi_warp_linear(a, b, u1);
+    p.density = a + p.t1 * (b - a);
+    return p;
+}
+#if MCSI_W == 1
+/* Warps of a block of draws: what they are made from, u1 and u2, and the points drawn. */
+typedef struct {
+    float value[MCSI_ENV_BLOCK], evenness[MCSI_ENV_BLOCK];
+    float v00[MCSI_ENV_BLOCK], v01[MCSI_ENV_BLOCK], v10[MCSI_ENV_BLOCK], v11[MCSI_ENV_BLOCK];
+    float u1[MCSI_ENV_BLOCK], u2[MCSI_ENV_BLOCK];
+    float t1[MCSI_ENV_BLOCK], t2[MCSI_ENV_BLOCK], density[MCSI_ENV_BLOCK];
+} mcsi_warp_block;
+#endif
+#ifdef MCSI_LOOPS
+MCSI_LOOP void mcsi_warps_loop(size_t n, mcsi_warp_block *b) {
+    for (size_t i = 0; i < n; i += MCSI_W) {
+        mcsi_warp_source s;
+        s.value = mcs_load(b->value + i);
+        s.evenness = mcs_load(b->evenness + i);
+        s.corner.v00 = mcs_load(b->v00 + i);
+        s.corner.v01 = mcs_load(b->v01 + i);
+        s.corner.v10 = mcs_load(b->v10 + i);
+        s.corner.v11 = mcs_load(b->v11 + i);
+        const mcsi_warp w = mcsi_warp_make(&s);
+        const mcsi_warp_point p = mcsi_warp_draw(&w, mcs_load(b->u1 + i), mcs_load(b->u2 + i));
+        mcs_store(b->t1 + i, p.t1);
+        mcs_store(b->t2 + i, p.t2);
+        mcs_store(b->density + i, p.density);
+    }
+}
+#endif
+#if MCSI_W == 1
+MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b); /* by the widest loop */
+
+MCSI_CORE mcsi_draw mcsi_draw_of(float u1, float u2) {
+    mcsi_draw d;
+    d.u1 = (double)u1 * MCSI_ONE;
+    d.u2 = (double)u2 * MCSI_ONE;
+    d.density = 1.0;
+    return d;
+}
+/* A number in [0, 2^31) as one in [0, 1]. */
+MCSI_CORE float mcsi_part_of_one(double u) { return (float)(u * (1.0 / MCSI_ONE)); }
+/* u1 and u2 become the point of the warp. */
+MCSI_CORE void mcsi_draw_warp(const mcsi_warp *w, mcsi_draw *d) {
+    const mcsi_warp_point p = mcsi_warp_draw(w, mcsi_part_of_one(d->u1), mcsi_part_of_one(d->u2));
+    d->density *= (double)p.density;
+    d->u1 = (double)p.t1 * MCSI_ONE;
+    d->u2 = (double)p.t2 * MCSI_ONE;
+}
+#endif
+
+/* ---- [product] product: what is stored, shares of tiles ----
+ * A tile is drawn in two steps, row and column, by integer shares. */
+
+#if MCSI_W == 1
+MCSI_CORE mcsi_product_offsets mcsi_product_layout(uint32_t rows) {
+    mcsi_product_offsets o;
+    o.bytes = (uint32_t)sizeof(mcs_product);
+#define MCSI_PRODUCT_PLACE(type, name, n) \
+    o.name = o.bytes;                     \
+    o.bytes += (n) * (uint32_t)sizeof(type);
+    MCSI_PRODUCT_LISTS(MCSI_PRODUCT_PLACE, rows)
+#undef MCSI_PRODUCT_PLACE
+    return o;
+}
+MCS_API size_t mcs_product_bytes(uint32_t rows) { return mcsi_tiles_ok(rows) ? mcsi_product_layout(rows).bytes : 0; }
+
+/* A product while it is built: what is read of the tiles, and what is written. */
+typedef struct {
+    size_t rows, cols;
+    const float *light, *evenness; /* of the tiles */
+    float *value, *corner, *row_weight;
+    uint32_t *tile_sums;
+    float *bound; /* [cols][rows]: what tiles may weigh; it lies where tile_sums will */
+} mcsi_product_lists;
+MCSI_CORE mcsi_product_lists mcsi_product_lists_of(mcs_product *p, const mcs_tiles *t) {
+    const mcsi_tiles_offsets from = mcsi_tiles_offsets_of(t);
+    mcsi_product_lists l;
+    l.rows = t->rows;
+    l.cols = t->cols;
+    l.light = MCSI_READ(float, t, from.light);
+    l.evenness = MCSI_READ(float, t, from.evenness);
+    l.value = MCSI_WRITE(float, p, p->at.value);
+    l.corner = MCSI_WRITE(float, p, p->at.corner);
+    l.row_weight = MCSI_WRITE(float, p, p->at.row_weight);
+    l.tile_sums = MCSI_WRITE(uint32_t, p, p->at.tile_sums);
+    l.bound = MCSI_WRITE(float, p, p->at.tile_sums);
+    return l;
 }
 
-/* ---- prepared form ---- */
+#define MCSI_SUM_LEAST 1e-30f /* below it a sum of weights has too few digits left for shares */
+/* Cumulative shares of n weights; a share is at least 1 unless its weight is zero. Returns their sum, about 2^24. */
+MCSI_CORE uint32_t mcsi_shares_build(uint32_t *sums, const float *weight, uint32_t n) {
+    float sum = 0.0f;
+    for (uint32_t i = 0; i < n; i++) sum += weight[i];
+    const float scale = (16777216.0f - (float)n) / mcsi_max(sum, MCSI_SUM_LEAST);
+    uint32_t so_far = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        sums[i] = so_far;
+        so_far += (uint32_t)(int32_t)(weight[i] * scale) + (uint32_t)(weight[i] > 0.0f);
+    }
+    sums[n] = so_far;
+    return so_far;
+}
+/* The last of n (a power of two) cumulative shares, `stride` apart, that is not above u. */
+MCSI_CORE uint32_t mcsi_shares_find(const uint32_t *sums, uint32_t n, uint32_t stride, uint32_t u) {
+    uint32_t i = 0;
+    for (uint32_t step = n / 2; step; step /= 2) i += (uint32_t)(sums[(i + step) * stride] <= u) * step;
+    return i;
+}
+/* The position of u within the share that goes from `begin` to `end`, in [0, 2^31). */
+MCSI_CORE double mcsi_share_position(double u, uint32_t begin, uint32_t end) {
+    const double position = (u - (int32_t)begin) * ((double)MCSI_ONE / (int32_t)(end - begin));
+    return position < 2147483647.5 ? position : 2147483647.5;
+}
+#endif
+/* Cumulative shares of tiles within their rows; a tile weighs its light times its value. */
+MCSI_CORE void mcsi_tile_shares(size_t rows, size_t cols, const float *light, const float *value, uint32_t *tile_sums,
+                                float *row_weight) {
+    for (size_t i = 0; i < rows; i += MCSI_W) {
+        mcs_f sum = mcs_set(0.0f);
+        mcs_i so_far = mcsi_trunc(sum);
+        for (size_t k = i; k < rows * cols; k += rows) sum = sum + mcs_load(light + k) * mcs_load(value + k);
+        const mcs_f scale = (16777216.0f - (float)cols) / mcsi_max(sum, mcs_set(MCSI_SUM_LEAST));
+        for (size_t k = i; k < rows * cols; k += rows) {
+            const mcs_f w = mcs_load(light + k) * mcs_load(value + k);
+            mcsi_store_int(tile_sums + k, so_far);
+            so_far = so_far + mcsi_trunc(mcsi_sel(w > 0.0f, w * scale + 1.0f, mcs_set(0.0f)));
+        }
+        mcsi_store_int(tile_sums + rows * cols + i, so_far);
+        mcs_store(row_weight + i, sum);
+    }
+}
+#ifdef MCSI_LOOPS
+MCSI_LOOP void mcsi_tile_shares_loop(const mcsi_product_lists *l) {
+    mcsi_tile_shares(l->rows, l->cols, l->light, l->value, l->tile_sums, l->row_weight);
+}
+#endif
+#if MCSI_W == 1
+MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l); /* by the widest loop */
 
-#define MCS_PRODUCT_BYTES(rows)                                                                                  \
-    (sizeof(mcs_product) + (rows) * sizeof(double) + (2 * (rows) * (rows) + 2 * (rows) + 2) * sizeof(uint32_t) + \
-     (4 * (rows) * (rows) + 3 * (rows) + MCSI_FINE * (MCSI_GRID + MCSI_NODES)) * sizeof(float) + 2 * (rows) * (rows))
-MCS_API size_t mcs_product_bytes(uint32_t rows) { return mcsi_tiles_ok(rows) ? MCS_PRODUCT_BYTES((size_t)rows) : 0; }
-/* Where a product keeps its parts: of each row the density of a unit of its shares; shares of rows; of the columns of each row; the
- * reflection of tiles, and towards their corners; sums of rows; grids of fine tiles, each followed by what its rows of nodes weigh;
- * which of them a tile has, from 1 on, 0: none. */
-MCSI_CORE double *mcsi_product_units(const mcs_product *p) { return (double *)(uintptr_t)(p + 1); }
-MCSI_CORE uint32_t *mcsi_product_rows(const mcs_product *p) {
-    return (uint32_t *)(void *)(mcsi_product_units(p) + p->t->rows);
-}
-MCSI_CORE uint32_t *mcsi_product_cum(const mcs_product *p) { return mcsi_product_rows(p) + p->t->rows + 2; }
-MCSI_CORE float *mcsi_product_values(const mcs_product *p) {
-    return (float *)(void *)(mcsi_product_cum(p) + (size_t)p->t->rows * (p->t->cols + 1));
-}
-MCSI_CORE float *mcsi_product_corners(const mcs_product *p) {
-    return mcsi_product_values(p) + (size_t)p->t->rows * p->t->cols;
-}
-MCSI_CORE float *mcsi_product_sums(const mcs_product *p) { return mcsi_product_corners(p) + mcsi_corners(p->t); }
-MCSI_CORE float *mcsi_product_grids(const mcs_product *p) { return mcsi_product_sums(p) + p->t->rows; }
-MCSI_CORE uint8_t *mcsi_product_fine(const mcs_product *p) {
-    return (uint8_t *)(void *)(mcsi_product_grids(p) + MCSI_FINE * (MCSI_GRID + MCSI_NODES));
-}
 MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e) {
     if (!p || !t || !e || ((uintptr_t)p & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (bytes < mcs_product_bytes(t->rows)) return MCS_ERR_MEMORY;
+    const mcsi_product_offsets o = mcsi_product_layout(t->rows);
     MCSI_FILL(p, 0, sizeof *p);
-    p->t = t;
-    p->e = e;
-    mcsi_product_rows(p)[t->rows + 1] = 0; /* it only aligns what follows */
-    MCSI_FILL(mcsi_product_fine(p), 0, (size_t)t->rows * t->cols);
+    p->rows = t->rows;
+    p->cols = t->cols;
+    p->at = o;
+    MCSI_WRITE(uint32_t, p, o.row_sums)[t->rows + 1] = 0; /* it only aligns what follows */
+    MCSI_FILL(MCSI_WRITE(uint8_t, p, o.grid_of), 0, mcsi_tiles_count(t));
     return MCS_OK;
 }
-/* Memory keeps nothing of what it held before: zeros for the grids that no tile uses. */
-MCSI_CORE void mcsi_product_end_grids(mcs_product *p, uint32_t used) {
+/* Memory keeps nothing of what it held before: the grids that no tile uses become zeros. */
+MCSI_CORE void mcsi_product_clear_grids(mcs_product *p, uint32_t used) {
     const size_t grid = MCSI_GRID + MCSI_NODES;
-    MCSI_FILL(mcsi_product_grids(p) + used * grid, 0, (MCSI_FINE - used) * grid * sizeof(float));
+    float *unused = MCSI_WRITE(float, p, p->at.grid) + used * grid;
+    MCSI_FILL(unused, 0, (MCSI_GRIDS - used) * grid * sizeof *unused);
 }
-MCSI_CORE void mcsi_product_add_up(mcs_product *p) {
-    mcsi_grid_rows_n(p->t->rows, p->t->cols, mcsi_tiles_fields(p->t), mcsi_product_values(p), mcsi_product_cum(p),
-                     mcsi_product_sums(p));
+/* From values to shares. */
+MCS_FN void mcsi_product_finish(mcs_product *p, const mcs_tiles *t) {
+    const mcsi_product_lists l = mcsi_product_lists_of(p, t);
+    mcsi_tile_shares_n(&l);
+    uint32_t *row_sums = MCSI_WRITE(uint32_t, p, p->at.row_sums);
+    const uint32_t *row_totals = l.tile_sums + mcsi_tiles_count(t);
+    double *per_share = MCSI_WRITE(double, p, p->at.per_share);
+    const uint32_t all = mcsi_shares_build(row_sums, l.row_weight, t->rows);
+    p->row_total = all * (1.0 / MCSI_ONE);
+    for (uint32_t i = 0; i < t->rows; i++) {
+        const uint32_t share = row_sums[i + 1] - row_sums[i];
+        per_share[i] = share ? share / ((double)all * row_totals[i]) : 0.0;
+    }
+    p->dark = all == 0;
 }
-MCS_FN mcs_status mcsi_product_finish(mcs_product *p) {
-    const size_t n = (size_t)p->t->rows * p->t->cols;
-    uint32_t *rows = mcsi_product_rows(p);
-    mcsi_product_add_up(p);
-    const uint32_t lit = mcsi_shares(rows, mcsi_product_sums(p), p->t->rows);
-    p->lit = lit * (1.0 / MCSI_ONE);
-    for (uint32_t i = 0; i < p->t->rows; i++)
-        mcsi_product_units(p)[i] =
-            rows[i + 1] > rows[i] ? (rows[i + 1] - rows[i]) / ((double)lit * mcsi_product_cum(p)[n + i]) : 0.0;
-    return lit ? MCS_OK : MCS_UNIFORM;
+#endif
+
+/* ---- [product] narrow lobes: grids on the heaviest tiles ----
+ * A lobe is narrow when its solid angle, 4 pi alpha_x alpha_y cos(theta_o), is below 8 mean tiles. The prepared form
+ * then evaluates the reflection on a grid of 8 x 8 nodes in each heavy tile: at most 32 tiles, those that by their mean
+ * direction or a corner may weigh more than 1/256 of all. In these tiles the density is bilinear in 7 x 7 cells, and
+ * the tile weighs the mean of the grid. The other tiles weigh less where their corners are darker than their mean
+ * direction. */
+
+#if MCSI_W == 1
+#define MCSI_GRIDS_BELOW 8.0f /* mean tiles */
+#endif
+/* The larger one and the sum of the values at the two corners of a tile at one azimuth. */
+typedef struct {
+    mcs_f most, sum;
+} mcsi_side;
+MCSI_CORE mcsi_side mcsi_side_load(const float *corner) {
+    const mcs_f upper = mcs_load(corner);
+    const mcs_f lower = mcs_load(corner + 1);
+    mcsi_side side;
+    side.most = mcsi_max(upper, lower);
+    side.sum = upper + lower;
+    return side;
 }
-/* The tiles that may weigh most: their numbers, at most MCSI_FINE of them, each more than a 256th of all. The weights lie where the
- * integers of the columns will. */
-MCS_FN uint32_t mcsi_product_heaviest(mcs_product *p, uint32_t *tile) {
-    const float *fields = mcsi_tiles_fields(p->t);
-    const float *corners = mcsi_product_corners(p);
-    float *sum = mcsi_product_sums(p);
-    float *weight = (float *)(void *)mcsi_product_cum(p);
-    float *values = mcsi_product_values(p);
-    float least = 0.0f;
-    const uint32_t rows = p->t->rows;
-    const uint32_t cols = p->t->cols;
-    uint32_t count = 0;
-    const float *pull = fields + MCSI_TILE_PULL * (size_t)rows * cols;
-    mcsi_grid_bounds_n(rows, cols, fields, pull, corners, values, weight, sum);
-    for (uint32_t i = 0; i < rows; i++) least += sum[i] * 0.00390625f;
-    for (uint32_t i = 0; i < rows; i++) {
-        if (!(sum[i] > least)) continue;
-        for (uint32_t k = i; k < rows * cols; k += rows) {
-            uint32_t at = 0;
-            if (!(weight[k] > least)) continue;
-            if (count < MCSI_FINE) {
-                tile[count++] = k;
-                continue;
-            }
-            for (uint32_t c = 1; c < MCSI_FINE; c++) at = weight[tile[c]] < weight[tile[at]] ? c : at;
-            if (weight[k] > weight[tile[at]]) tile[at] = k;
+/* Upper bound of each tile's weight: light times the largest of its value and its corner values; and the sums of rows.
+ * Then lowers a tile's value by three quarters of its excess over the mean of its warp: beside the peak of a narrow
+ * lobe, the value at the mean direction overestimates the tile. */
+MCSI_CORE void mcsi_tile_bounds(const mcsi_product_lists *l) {
+    const size_t rows = l->rows;
+    const size_t cols = l->cols;
+    const float *corner = l->corner;
+    float *bounds = l->bound;
+    float *values = l->value;
+    for (size_t i = 0; i < rows; i += MCSI_W) {
+        mcs_f sum = mcs_set(0.0f);
+        const mcsi_side first = mcsi_side_load(corner + i);
+        mcsi_side left = first;
+        for (size_t j = 0; j < cols; j++) {
+            const size_t k = j * rows + i;
+            mcsi_side right = first;
+            if (j + 1 < cols) right = mcsi_side_load(corner + (j + 1) * (rows + 1) + i);
+            const mcs_f v = mcs_load(values + k);
+            const mcs_f most = mcsi_sane_result(v > 0.0f, mcsi_max(v, mcsi_max(left.most, right.most)));
+            const mcs_f bound = mcs_load(l->light + k) * most;
+            sum = sum + bound;
+            const mcs_f mean = v + mcs_load(l->evenness + k) * (0.25f * (left.sum + right.sum) - v);
+            mcs_store(bounds + k, bound);
+            mcs_store(values + k, mcsi_sel(mean < v, 0.25f * v + 0.75f * mean, v));
+            left = right;
         }
+        mcs_store(l->row_weight + i, sum);
+    }
+}
+#ifdef MCSI_LOOPS
+MCSI_LOOP void mcsi_tile_bounds_loop(const mcsi_product_lists *l) { mcsi_tile_bounds(l); }
+#endif
+#if MCSI_W == 1
+MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l); /* by the widest loop */
+
+/* Keeps tile k if it is one of the MCSI_GRIDS heaviest so far. Returns how many are kept. */
+MCSI_CORE uint32_t mcsi_keep_heaviest(const float *bound, uint32_t k, uint32_t *tile, uint32_t count) {
+    if (count < MCSI_GRIDS) {
+        tile[count] = k;
+        return count + 1;
+    }
+    uint32_t lightest = 0;
+    for (uint32_t c = 1; c < MCSI_GRIDS; c++) lightest = bound[tile[c]] < bound[tile[lightest]] ? c : lightest;
+    if (bound[k] > bound[tile[lightest]]) tile[lightest] = k;
+    return count;
+}
+/* The numbers of the tiles that get a grid. Returns how many they are. */
+MCS_FN uint32_t mcsi_product_heaviest(const mcsi_product_lists *l, uint32_t *tile) {
+    mcsi_tile_bounds_n(l);
+    const uint32_t rows = (uint32_t)l->rows;
+    const uint32_t n = (uint32_t)(l->rows * l->cols);
+    float least = 0.0f;
+    for (uint32_t i = 0; i < rows; i++) least += l->row_weight[i] * 0.00390625f;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < rows; i++) {
+        if (!(l->row_weight[i] > least)) continue;
+        for (uint32_t k = i; k < n; k += rows)
+            if (l->bound[k] > least) count = mcsi_keep_heaviest(l->bound, k, tile, count);
     }
     return count;
 }
-/* Reflection on a grid of places among the light of a tile, then what its rows weigh. Returns the mean of the bilinear function. */
-MCS_FN float mcsi_grid_make(const mcsi_facing *s, const float *node, float *v) {
-    float mean = 0.0f;
-    mcsi_corner_values_n(s, MCSI_GRID, node, MCSI_GRID, v);
+/* A grid: values at 8 x 8 nodes, column by column, to which 1 % of their mean is added; then the weights of the 8 rows
+ * of nodes, by trapezoids. Returns the mean over the cells. */
+MCS_FN float mcsi_grid_build(const mcsi_surface *s, const float *node, float *grid) {
+    mcsi_corner_values_n(s, MCSI_GRID, node, grid);
     float sum[MCSI_NODES];
-    for (uint32_t k = 0; k < MCSI_NODES; k++) sum[k] = 0.5f * (v[k] + v[MCSI_GRID - MCSI_NODES + k]);
-    for (uint32_t a = MCSI_NODES; a < MCSI_GRID - MCSI_NODES; a += MCSI_NODES)
-        for (uint32_t k = 0; k < MCSI_NODES; k++) sum[k] += v[a + k];
-    for (uint32_t k = 1; k < MCSI_NODES - 1; k++) mean += sum[k];
-    mean = (0.5f * (sum[0] + sum[MCSI_NODES - 1]) + mean) * (1.0f / ((MCSI_NODES - 1) * (MCSI_NODES - 1)));
+    for (uint32_t k = 0; k < MCSI_NODES; k++) sum[k] = 0.5f * (grid[k] + grid[MCSI_GRID - MCSI_NODES + k]);
+    for (uint32_t col = MCSI_NODES; col < MCSI_GRID - MCSI_NODES; col += MCSI_NODES)
+        for (uint32_t k = 0; k < MCSI_NODES; k++) sum[k] += grid[col + k];
+    float inner = 0.0f;
+    for (uint32_t k = 1; k < MCSI_NODES - 1; k++) inner += sum[k];
+    const float mean = (0.5f * (sum[0] + sum[MCSI_NODES - 1]) + inner) * (1.0f / ((MCSI_NODES - 1) * (MCSI_NODES - 1)));
     const float least = 0.01f * mean;
-    for (uint32_t k = 0; k < MCSI_GRID; k++) v[k] += least;
-    for (uint32_t k = 0; k < MCSI_NODES; k++) v[MCSI_GRID + k] = sum[k] + (MCSI_NODES - 1) * least;
+    for (uint32_t k = 0; k < MCSI_GRID; k++) grid[k] += least;
+    for (uint32_t k = 0; k < MCSI_NODES; k++) grid[MCSI_GRID + k] = sum[k] + (MCSI_NODES - 1) * least;
     return mean + least;
 }
-/* The tiles that weigh most get a grid, and weigh what that says. Returns how many they are. */
-MCS_FN uint32_t mcsi_product_refine(mcs_product *p, const mcsi_facing *s) {
-    uint32_t tile[MCSI_FINE];
-    const uint32_t count = mcsi_product_heaviest(p, tile);
+/* Gives grids to the tiles that need them. Returns how many they are. */
+MCS_FN uint32_t mcsi_product_refine(mcs_product *p, const mcs_tiles *t, const mcsi_surface *s) {
+    const mcsi_product_lists l = mcsi_product_lists_of(p, t);
+    const float *node = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).node);
+    float *grid = MCSI_WRITE(float, p, p->at.grid);
+    uint8_t *grid_of = MCSI_WRITE(uint8_t, p, p->at.grid_of);
+    uint32_t tile[MCSI_GRIDS];
+    const uint32_t count = mcsi_product_heaviest(&l, tile);
     for (uint32_t i = 0; i < count; i++) {
-        mcsi_product_values(p)[tile[i]] = mcsi_grid_make(s, mcsi_tiles_nodes(p->t) + 3 * (size_t)MCSI_GRID * tile[i],
-                                                         mcsi_product_grids(p) + i * (size_t)(MCSI_GRID + MCSI_NODES));
-        mcsi_product_fine(p)[tile[i]] = (uint8_t)(i + 1);
+        l.value[tile[i]] =
+            mcsi_grid_build(s, node + 3 * (size_t)MCSI_GRID * tile[i], grid + i * (size_t)(MCSI_GRID + MCSI_NODES));
+        grid_of[tile[i]] = (uint8_t)(i + 1);
     }
     return count;
 }
-/* Solid angle of a lobe, that of the sphere over `cells`: 1. */
-MCSI_CORE float mcsi_lobe_width(const mcsi_facing *s, size_t cells) {
-    return (float)cells * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z;
+/* ---- [product] narrow lobes: drawing from a grid ---- */
+
+/* The warp of a cell whose upper left node is at v. */
+MCSI_CORE mcsi_warp mcsi_grid_cell(const float *v) {
+    mcsi_warp w;
+    w.v00 = v[0];
+    w.v01 = v[1];
+    w.v10 = v[MCSI_NODES];
+    w.v11 = v[MCSI_NODES + 1];
+    return w;
 }
-/* The part of the samples that a lobe narrower than the cells gets for itself; without GGX's tails it falls within a third. */
-MCS_FN float mcsi_brdf_share(const mcsi_facing *s, size_t cells, float less) {
-    const float m = (s->profile == MCS_PROFILE_GGX ? 1.0f : 3.0f) / mcsi_lobe_width(s, cells) - less;
+/* Draws one of the 7 cells between 8 nodes of weight w, in proportion to its trapezoid. u becomes the position in the
+ * cell; the density is multiplied by the cell's. */
+MCSI_CORE uint32_t mcsi_nodes_draw(const float *w, double *u, double *density) {
+    double sum[MCSI_NODES];
+    sum[0] = 0.0;
+    for (uint32_t i = 1; i < MCSI_NODES; i++) sum[i] = sum[i - 1] + ((double)w[i - 1] + (double)w[i]);
+    const double total = sum[MCSI_NODES - 1];
+    const double v = *u * (total * (1.0 / MCSI_ONE));
+    uint32_t k = (uint32_t)(sum[4] <= v) << 2;
+    k += (uint32_t)(sum[k + 2] <= v) << 1;
+    k += (uint32_t)(sum[k + 1] <= v);
+    const double mass = sum[k + 1] - sum[k];
+    const double position = (v - sum[k]) * (MCSI_ONE / mass);
+    *u = position < 2147483647.5 ? position : 2147483647.5;
+    *density *= (MCSI_NODES - 1) * mass / total;
+    return k;
+}
+/* u1 and u2 become the point of the grid: row of cells, cell, point in it. */
+MCSI_CORE void mcsi_draw_grid(const float *grid, mcsi_draw *d) {
+    const uint32_t row = mcsi_nodes_draw(grid + MCSI_GRID, &d->u2, &d->density);
+    const float *v = grid + row;
+    float both[MCSI_NODES]; /* weights of the nodes on both borders of the row */
+    for (uint32_t k = 0; k < MCSI_NODES; k++) both[k] = v[k * MCSI_NODES] + v[k * MCSI_NODES + 1];
+    const uint32_t col = mcsi_nodes_draw(both, &d->u1, &d->density);
+    const mcsi_warp w = mcsi_grid_cell(v + col * MCSI_NODES);
+    d->density *= 4.0 / (((double)w.v00 + (double)w.v01) + ((double)w.v10 + (double)w.v11));
+    mcsi_draw_warp(&w, d);
+    d->u1 = (col * (double)MCSI_ONE + d->u1) * (1.0 / (MCSI_NODES - 1));
+    d->u2 = (row * (double)MCSI_ONE + d->u2) * (1.0 / (MCSI_NODES - 1));
+}
+/* Density of a grid at t1, t2, both 0 to 1, relative to its mean. */
+MCSI_CORE float mcsi_grid_density(const float *grid, float t1, float t2) {
+    const float x = t1 * (MCSI_NODES - 1);
+    const float y = t2 * (MCSI_NODES - 1);
+    const uint32_t x_cell = (uint32_t)(int32_t)x;
+    const uint32_t y_cell = (uint32_t)(int32_t)y;
+    const uint32_t col = x_cell < MCSI_NODES - 2 ? x_cell : MCSI_NODES - 2;
+    const uint32_t row = y_cell < MCSI_NODES - 2 ? y_cell : MCSI_NODES - 2;
+    const float *row_weight = grid + MCSI_GRID;
+    float sum = 0.5f * (row_weight[0] + row_weight[MCSI_NODES - 1]);
+    for (uint32_t k = 1; k < MCSI_NODES - 1; k++) sum += row_weight[k];
+    const mcsi_warp w = mcsi_grid_cell(grid + col * MCSI_NODES + row);
+    return mcsi_warp_density(&w, x - (float)col, y - (float)row) * ((MCSI_NODES - 1) * (MCSI_NODES - 1)) / sum;
+}
+
+/* ---- [product] narrow lobes: samples from the lobe itself ----
+ * If the lobe is narrower than a cell, a share of the samples comes from the lobe itself (mcs_ggx_vndf, mcs_ward,
+ * mcs_phong); the density is that of the mixture. What the lobe sends below the surface is lost. */
+
+/* Solid angle of a lobe in mean cells, when the sphere is cut into n. */
+MCSI_CORE float mcsi_lobe_in_cells(const mcsi_surface *s, size_t n) {
+    return (float)n * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z;
+}
+/* The lobe's share of the samples. It begins where a cell is `threshold` times as large as the lobe. Lobes without
+ * GGX's tails fall within a third. */
+MCS_FN float mcsi_lobe_share(const mcsi_surface *s, size_t n, float threshold) {
+    const float m = (s->profile == MCS_PROFILE_GGX ? 1.0f : 3.0f) / mcsi_lobe_in_cells(s, n) - threshold;
     return m > 0.0f ? (1.0f - s->matte) * mcsi_min(m / (1.0f + m), 0.95f) : 0.0f;
 }
-MCSI_CORE mcsi_own_lobe mcsi_own_make(const mcs_reflection *r, const mcsi_facing *s) {
+/* Of the prepared form, where 14 stands for the cells of a tile, and of the one-shot form. */
+MCSI_CORE float mcsi_product_lobe_share(const mcsi_surface *s, const mcs_tiles *t) {
+    return mcsi_lobe_share(s, 14 * mcsi_tiles_count(t), 0.03f);
+}
+MCSI_CORE float mcsi_oneshot_lobe_share(const mcsi_surface *s, const mcs_tiles *t) {
+    return mcsi_lobe_share(s, mcsi_tiles_count(t), 0.3f);
+}
+MCSI_CORE mcsi_lobe mcsi_lobe_make(const mcs_reflection *r, const mcsi_surface *s) {
     const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-7f, 1e4f);
     const float ay = mcsi_sane_parameter(r->alpha_y >= 0.0f, r->alpha_y, 1e-7f, 1e4f);
-    mcsi_own_lobe l;
+    mcsi_lobe l;
     MCSI_FILL(&l, 0, sizeof l);
     l.frame = r->frame;
     l.wo = s->wo;
@@ -6664,27 +7009,21 @@ MCSI_CORE mcsi_own_lobe mcsi_own_make(const mcs_reflection *r, const mcsi_facing
     }
     return l;
 }
-/* When u1 falls on the lobe's share, its direction in world space; else u1 becomes the place in the rest. */
-MCSI_CORE int mcsi_own_draw(const mcsi_own_lobe *l, float share, float *u1, float u2, mcs_vec3 *w, int32_t *kept) {
-    if (!(share > 0.0f)) return 0;
-    if (*u1 >= share) {
-        *u1 = mcsi_min((*u1 - share) / (1.0f - share), 0.99999994f);
-        return 0;
-    }
-    const float u = mcsi_min(*u1 / share, 0.99999994f);
+/* A world direction drawn from the lobe; *kept becomes 0 where it is lost. */
+MCSI_CORE mcs_vec3 mcsi_lobe_draw(const mcsi_lobe *l, float u1, float u2, int32_t *kept) {
     mcs_brdf b;
     switch (l->profile) {
-    case MCS_PROFILE_GAUSS: b = mcs_ward_sample(&l->gauss, l->wo, u, u2); break;
-    case MCS_PROFILE_PHONG: b = mcs_phong_sample(&l->phong, l->wo, u, u2); break;
-    default: b = mcs_ggx_vndf_sample(&l->ggx, l->wo, u, u2);
+    case MCS_PROFILE_GAUSS: b = mcs_ward_sample(&l->gauss, l->wo, u1, u2); break;
+    case MCS_PROFILE_PHONG: b = mcs_phong_sample(&l->phong, l->wo, u1, u2); break;
+    default: b = mcs_ggx_vndf_sample(&l->ggx, l->wo, u1, u2);
     }
-    *w = mcs_to_world(&l->frame, b.wi);
     *kept &= b.pdf > 0.0f;
-    return 1;
+    return mcs_to_world(&l->frame, b.wi);
 }
-/* One body for sample and pdf: contraction that differs would show in lobes as narrow as the rounding of a direction. */
+/* Not inlined, so that sample and pdf run the same instructions: two copies may be contracted differently, which shows
+ * in lobes as narrow as a float's rounding. */
 MCSI_QUIET
-MCSI_APART float mcsi_own_pdf(const mcsi_own_lobe *l, mcs_vec3 w) {
+MCSI_APART float mcsi_lobe_pdf(const mcsi_lobe *l, mcs_vec3 w) {
     w = mcs_to_local(&l->frame, w);
     switch (l->profile) {
     case MCS_PROFILE_GAUSS: return mcs_ward_pdf(&l->gauss, l->wo, w);
@@ -6693,485 +7032,486 @@ MCSI_APART float mcsi_own_pdf(const mcsi_own_lobe *l, mcs_vec3 w) {
     }
 }
 MCSI_LOUD
-MCSI_CORE float mcsi_own_mix(const mcsi_own_lobe *l, float share, mcs_vec3 w, float tiled) {
-    return share > 0.0f ? mcs_mix_pdf(share, mcsi_own_pdf(l, w), tiled) : tiled;
+/* Density of the mixture of lobe and tiles. */
+MCSI_CORE float mcsi_lobe_mix(const mcsi_lobe *l, float share, mcs_vec3 w, float of_tiles) {
+    return share > 0.0f ? mcs_mix_pdf(share, mcsi_lobe_pdf(l, w), of_tiles) : of_tiles;
 }
+/* u1 below the share draws from the lobe, the rest from the tiles: u1 rescaled for either. */
+MCSI_CORE float mcsi_lobe_u(float share, float u1) { return mcsi_min(u1 / share, 0.99999994f); }
+MCSI_CORE float mcsi_tiles_u(float share, float u1) {
+    return share > 0.0f ? mcsi_min((u1 - share) / (1.0f - share), 0.99999994f) : u1;
+}
+#endif
+
+/* ---- [product] the prepared form: building ---- */
+
+#if MCSI_W == 1
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r) {
     const mcs_status status = mcsi_product_start(p, bytes, t, e);
-    uint32_t fine = 0;
     if (status) return status;
     if (!r) return MCS_ERR_ARG;
-    mcsi_facing s;
-    if (!mcsi_facing_make(e, r, &s)) {
-        MCSI_FILL(mcsi_product_units(p), 0, mcs_product_bytes(t->rows) - sizeof *p);
-        return MCS_UNIFORM;
+    const mcsi_surface s = mcsi_surface_make(e, r);
+    if (!s.reflects) {
+        MCSI_FILL(MCSI_WRITE(char, p, sizeof *p), 0, mcs_product_bytes(t->rows) - sizeof *p);
+        p->dark = 1;
+        return MCS_OK;
     }
-    const size_t n = (size_t)t->rows * t->cols;
-    p->own = mcsi_own_make(r, &s);
-    p->brdf_share = mcsi_brdf_share(&s, 14 * n, 0.03f);
+    const size_t n = mcsi_tiles_count(t);
+    const size_t corners = n + t->cols;
+    const mcsi_tiles_offsets from = mcsi_tiles_offsets_of(t);
+    p->lobe = mcsi_lobe_make(r, &s);
+    p->brdf_share = mcsi_product_lobe_share(&s, t);
     p->warped = 1;
-    mcsi_tile_values_n(&s, n, mcsi_tiles_fields(t), n, mcsi_product_values(p));
-    mcsi_corner_values_n(&s, mcsi_corners(t), mcsi_tiles_corners(t), mcsi_corners(t), mcsi_product_corners(p));
-    if (s.matte < 1.0f && mcsi_lobe_width(&s, n) < MCSI_FINE_BELOW) fine = mcsi_product_refine(p, &s);
-    mcsi_product_end_grids(p, fine);
-    return mcsi_product_finish(p);
+    mcsi_tile_values_n(&s, n, MCSI_READ(float, t, from.light), MCSI_WRITE(float, p, p->at.value));
+    mcsi_corner_values_n(&s, corners, MCSI_READ(float, t, from.corner), MCSI_WRITE(float, p, p->at.corner));
+    const int narrow = s.matte < 1.0f && mcsi_lobe_in_cells(&s, n) < MCSI_GRIDS_BELOW;
+    mcsi_product_clear_grids(p, narrow ? mcsi_product_refine(p, t, &s) : 0);
+    mcsi_product_finish(p, t);
+    return MCS_OK;
 }
 MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                              const float *weight) {
     const mcs_status status = mcsi_product_start(p, bytes, t, e);
-    float top = 0.0f;
-    uint32_t bad = 0;
     if (status) return status;
     if (!weight) return MCS_ERR_ARG;
-    const size_t n = (size_t)t->rows * t->cols;
-    float *value = mcsi_product_values(p);
+    const size_t n = mcsi_tiles_count(t);
+    float *value = MCSI_WRITE(float, p, p->at.value);
+    float top = 0.0f;
+    uint32_t bad = 0;
     for (size_t k = 0; k < n; k++) {
         value[k] = mcsi_clean(weight[k], &bad);
         top = mcsi_max(top, value[k]);
     }
     for (size_t k = 0; k < n; k++) /* of the size of reflections, and none lost to underflow */
         value[k] = value[k] > 0.0f ? mcsi_max((float)((double)value[k] / (double)top), 1e-18f) : 0.0f;
-    MCSI_FILL(mcsi_product_corners(p), 0, mcsi_corners(t) * sizeof(float));
-    mcsi_product_end_grids(p, 0);
-    return mcsi_product_finish(p);
+    MCSI_FILL(MCSI_WRITE(float, p, p->at.corner), 0, (n + t->cols) * sizeof(float));
+    mcsi_product_clear_grids(p, 0);
+    mcsi_product_finish(p, t);
+    return MCS_OK;
 }
-/* A number in [0, 2^31) as one in [0, 1], and a place as such a number. */
-MCSI_CORE float mcsi_part_of_one(double U) { return (float)(U * (1.0 / MCSI_ONE)); }
-MCSI_CORE void mcsi_warp_place(const mcsi_warp *w, double *U1, double *U2, double *part) {
-    float u1 = mcsi_part_of_one(*U1);
-    float u2 = mcsi_part_of_one(*U2);
-    *part *= (double)mcsi_warp_draw(w, &u1, &u2);
-    *U1 = (double)u1 * MCSI_ONE;
-    *U2 = (double)u2 * MCSI_ONE;
+
+/* ---- [product] the prepared form: drawing ---- */
+
+/* -- tile: chosen by row and column -- */
+
+/* Chooses a row of tiles by u2. */
+MCSI_CORE uint32_t mcsi_product_draw_row(const mcs_product *p, mcsi_draw *d) {
+    const uint32_t *sums = MCSI_READ(uint32_t, p, p->at.row_sums);
+    const double u2 = d->u2 * p->row_total;
+    const uint32_t row = mcsi_shares_find(sums, p->rows, 1, (uint32_t)(int32_t)u2);
+    d->u2 = mcsi_share_position(u2, sums[row], sums[row + 1]);
+    return row;
 }
-/* A cell of the grid of a fine tile: entry of a list whose borders weigh w, by trapezoids; U becomes the place in it. */
-MCSI_CORE uint32_t mcsi_nodes_draw(const float *w, double *U, double *part) {
-    double sum[MCSI_NODES];
-    uint32_t k;
-    for (sum[0] = 0.0, k = 1; k < MCSI_NODES; k++) sum[k] = sum[k - 1] + ((double)w[k - 1] + (double)w[k]);
-    const double V = *U * (sum[MCSI_NODES - 1] * (1.0 / MCSI_ONE));
-    k = (uint32_t)(sum[4] <= V) << 2;
-    k += (uint32_t)(sum[k + 2] <= V) << 1;
-    k += (uint32_t)(sum[k + 1] <= V);
-    const double rest = (V - sum[k]) * (MCSI_ONE / (sum[k + 1] - sum[k]));
-    *U = rest < 2147483647.5 ? rest : 2147483647.5;
-    *part *= (MCSI_NODES - 1) * (sum[k + 1] - sum[k]) / sum[MCSI_NODES - 1];
-    return k;
+/* Cumulative shares of the tiles of a row, rows apart. */
+MCSI_CORE const uint32_t *mcsi_product_tile_sums(const mcs_product *p, uint32_t row) {
+    return MCSI_READ(uint32_t, p, p->at.tile_sums) + row;
 }
-MCSI_CORE void mcsi_fine_draw(const float *v, double *U1, double *U2, double *part) {
-    const uint32_t i = mcsi_nodes_draw(v + MCSI_GRID, U2, part);
-    v += i;
-    float both[MCSI_NODES];
-    for (uint32_t k = 0; k < MCSI_NODES; k++) both[k] = v[k * MCSI_NODES] + v[k * MCSI_NODES + 1];
-    const uint32_t j = mcsi_nodes_draw(both, U1, part);
-    v += j * MCSI_NODES;
-    mcsi_warp w;
-    w.v[0] = v[0];
-    w.v[1] = v[1];
-    w.v[2] = v[MCSI_NODES];
-    w.v[3] = v[MCSI_NODES + 1];
-    *part *= 4.0 / (((double)w.v[0] + (double)w.v[1]) + ((double)w.v[2] + (double)w.v[3]));
-    mcsi_warp_place(&w, U1, U2, part);
-    *U1 = (j * (double)MCSI_ONE + *U1) * (1.0 / (MCSI_NODES - 1));
-    *U2 = (i * (double)MCSI_ONE + *U2) * (1.0 / (MCSI_NODES - 1));
+/* The probability of a tile of this row that has `share` of its shares. */
+MCSI_CORE double mcsi_product_probability(const mcs_product *p, uint32_t row, uint32_t share) {
+    return MCSI_READ(double, p, p->at.per_share)[row] * (int32_t)share;
 }
-MCSI_CORE float mcsi_fine_density(const float *v, float t1, float t2) {
-    const float *row = v + MCSI_GRID;
-    const float x = t1 * (MCSI_NODES - 1);
-    const float y = t2 * (MCSI_NODES - 1);
-    float sum = 0.5f * (row[0] + row[MCSI_NODES - 1]);
-    uint32_t j = (uint32_t)(int32_t)x;
-    uint32_t i = (uint32_t)(int32_t)y;
-    i = i < MCSI_NODES - 2 ? i : MCSI_NODES - 2;
-    j = j < MCSI_NODES - 2 ? j : MCSI_NODES - 2;
-    v += j * MCSI_NODES + i;
-    for (uint32_t k = 1; k < MCSI_NODES - 1; k++) sum += row[k];
-    mcsi_warp w;
-    w.v[0] = v[0];
-    w.v[1] = v[1];
-    w.v[2] = v[MCSI_NODES];
-    w.v[3] = v[MCSI_NODES + 1];
-    return mcsi_warp_density(&w, x - (float)j, y - (float)i) * ((MCSI_NODES - 1) * (MCSI_NODES - 1)) / sum;
+/* Chooses a tile of the row by u1. */
+MCSI_CORE mcsi_tile mcsi_product_draw_tile(const mcs_product *p, uint32_t row, mcsi_draw *d) {
+    const uint32_t *sums = mcsi_product_tile_sums(p, row);
+    const double u1 = d->u1 * ((int32_t)sums[p->cols * p->rows] * (1.0 / MCSI_ONE));
+    mcsi_tile tile;
+    tile.row = row;
+    tile.col = mcsi_shares_find(sums, p->cols, p->rows, (uint32_t)(int32_t)u1);
+    const uint32_t begin = sums[tile.col * p->rows];
+    const uint32_t end = sums[(tile.col + 1) * p->rows];
+    d->u1 = mcsi_share_position(u1, begin, end);
+    d->density *= mcsi_product_probability(p, row, end - begin);
+    return tile;
 }
-MCSI_CORE const float *mcsi_product_fine_of(const mcs_product *p, uint32_t i, uint32_t j) {
-    const uint32_t k = mcsi_product_fine(p)[(size_t)j * p->t->rows + i];
-    return k ? mcsi_product_grids(p) + (k - 1) * (size_t)(MCSI_GRID + MCSI_NODES) : NULL;
+
+/* -- point of the tile: by its grid, by its warp, or by its light alone -- */
+
+/* The grid of a tile, or NULL. */
+MCSI_CORE const float *mcsi_product_grid(const mcs_product *p, mcsi_tile tile) {
+    const uint32_t k = MCSI_READ(uint8_t, p, p->at.grid_of)[mcsi_tile_number(p->rows, tile)];
+    return k ? MCSI_READ(float, p, p->at.grid) + (k - 1) * (size_t)(MCSI_GRID + MCSI_NODES) : NULL;
 }
-/* Of what the warp of a tile is made; corners at either azimuth. */
-typedef struct {
-    const float *value, *pull, *first, *last;
-} mcsi_warp_source;
-MCSI_CORE mcsi_warp_source mcsi_product_source(const mcs_product *p, uint32_t i, uint32_t j) {
-    const mcs_tiles *t = p->t;
-    const size_t k = (size_t)j * t->rows + i;
+MCSI_CORE mcsi_warp_source mcsi_product_warp_source(const mcs_product *p, const mcs_tiles *t, mcsi_tile tile) {
+    const size_t k = mcsi_tile_number(p->rows, tile);
+    const uint32_t next_col = tile.col + 1 < p->cols ? tile.col + 1 : 0;
+    const float *left = MCSI_READ(float, p, p->at.corner) + tile.col * (p->rows + 1) + tile.row;
+    const float *right = MCSI_READ(float, p, p->at.corner) + next_col * (p->rows + 1) + tile.row;
     mcsi_warp_source s;
-    s.value = mcsi_product_values(p) + k;
-    s.pull = mcsi_tiles_fields(t) + MCSI_TILE_PULL * (size_t)t->rows * t->cols + k;
-    s.first = mcsi_product_corners(p) + i;
-    s.last = s.first + (j + 1 < t->cols ? j + 1 : 0) * (t->rows + 1);
-    s.first += j * (t->rows + 1);
+    s.value = MCSI_READ(float, p, p->at.value)[k];
+    s.evenness = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).evenness)[k];
+    s.corner.v00 = left[0];
+    s.corner.v01 = left[1];
+    s.corner.v10 = right[0];
+    s.corner.v11 = right[1];
     return s;
 }
-MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, uint32_t i, uint32_t j) {
-    const mcsi_warp_source s = mcsi_product_source(p, i, j);
-    return mcsi_warp_make(*s.value, *s.pull, s.first[0], s.first[1], s.last[0], s.last[1]);
+MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, const mcs_tiles *t, mcsi_tile tile) {
+    const mcsi_warp_source s = mcsi_product_warp_source(p, t, tile);
+    return mcsi_warp_make(&s);
 }
-/* Where among a tile's light the place of a direction in a row with light lies, for mcsi_warp_density. */
-MCSI_CORE void mcsi_tiled_place(const mcs_env *e, const mcsi_window *v, const mcsi_spot *at, float *t1, float *t2) {
-    const uint32_t *rows = v->rows.sums + (at->row - v->row0);
-    const mcsi_share *share = v->share + (at->row - v->row0);
-    double P;
-    if (v->uniform) {
-        const double a = mcsi_env_top(e, v->row0);
-        const double b = mcsi_env_top(e, v->row0 + v->rows.n);
-        P = mcsi_env_top(e, at->row);
-        P += at->down * (mcsi_env_top(e, at->row + 1) - P);
-        *t1 = (float)((at->col + at->across - v->col0) / v->cols);
-        *t2 = (float)((P - a) / (b - a));
-    } else {
-        const uint32_t *cdf = mcsi_env_sums(e, at->row) + at->col;
-        P = cdf[0] + at->across * (cdf[1] - cdf[0]) - share->begin;
-        *t1 = (float)((P < 0.0 ? P + MCSI_ONE : P) / share->mass);
-        *t2 = (float)((rows[0] + at->down * (rows[1] - rows[0])) / MCSI_ONE);
+/* u1 and u2 become the point among the light of the tile. */
+MCSI_CORE void mcsi_product_draw_point(const mcs_product *p, const mcs_tiles *t, mcsi_tile tile, mcsi_draw *d) {
+    const float *grid = mcsi_product_grid(p, tile);
+    if (grid) {
+        mcsi_draw_grid(grid, d);
+    } else if (p->warped) {
+        const mcsi_warp w = mcsi_product_warp(p, t, tile);
+        mcsi_draw_warp(&w, d);
     }
-    *t1 = mcsi_min(mcsi_max(*t1, 0.0f), 1.0f);
-    *t2 = mcsi_min(mcsi_max(*t2, 0.0f), 1.0f);
 }
-/* Density of the tiles alone; `part` of all draws fall on tile (i, j), there by a fine grid, a bilinear function or the light. */
-MCSI_CORE float mcsi_tiled_density(const mcs_tiles *t, const mcs_env *e, double part, const float *fine,
-                                   const mcsi_warp *warp, uint32_t i, uint32_t j, const mcsi_spot *at) {
-    const mcsi_window v = mcsi_window_of(e, mcsi_tiles_window(t, i, j));
-    const uint32_t row = at->row - v.row0;
-    if (!v.uniform && mcsi_cdf_mass(&v.rows, row) == 0) return 0.0f; /* no light in it */
-    if (fine || warp) {
-        float t1, t2;
-        mcsi_tiled_place(e, &v, at, &t1, &t2);
-        part *= (double)(fine ? mcsi_fine_density(fine, t1, t2) : mcsi_warp_density(warp, t1, t2));
-    }
-    if (v.uniform) return (float)(part * (double)mcsi_window_uniform_pdf(e, &v));
-    part *= mcsi_window_row_density(&v, row);
-    const uint32_t *cdf = mcsi_env_sums(e, at->row) + at->col;
-    return (float)((cdf[1] - cdf[0]) * part);
+/* The density of that step, for a given position. */
+MCSI_CORE double mcsi_product_point_density(const mcs_product *p, const mcs_tiles *t, mcsi_tile tile,
+                                            mcsi_position at) {
+    const float *grid = mcsi_product_grid(p, tile);
+    if (grid) return (double)mcsi_grid_density(grid, at.t1, at.t2);
+    const mcsi_warp w = mcsi_product_warp(p, t, tile);
+    return (double)mcsi_warp_density(&w, at.t1, at.t2);
 }
-MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcsi_spot *at) {
-    const mcs_tiles *t = p->t;
-    const uint32_t i = mcsi_tile_of(at->row, t->rows, p->e->h);
-    const uint32_t j = mcsi_tile_of(at->col, t->cols, p->e->w);
-    const uint32_t *cum = mcsi_product_cum(p) + j * t->rows + i;
-    const double part = mcsi_product_units(p)[i] * (int32_t)(cum[t->rows] - cum[0]);
-    const float *fine = mcsi_product_fine_of(p, i, j);
-    if (!(part > 0.0)) return 0.0f;
-    mcsi_warp warp;
-    if (p->warped) warp = mcsi_product_warp(p, i, j);
-    return mcsi_tiled_density(t, p->e, part, fine, p->warped ? &warp : NULL, i, j, at);
+
+/* -- the whole -- */
+
+/* Density of the tiles at a spot, without the lobe's share. */
+MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcs_tiles *t, const mcs_env *e,
+                                     const mcsi_spot *spot) {
+    const mcsi_tile tile = mcsi_tile_of_spot(t, e, spot);
+    const uint32_t *sums = mcsi_product_tile_sums(p, tile.row) + tile.col * p->rows;
+    double density = mcsi_product_probability(p, tile.row, sums[p->rows] - sums[0]);
+    if (!(density > 0.0)) return 0.0f;
+    const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, tile));
+    if (!mcsi_window_row_is_lit(&window, spot->row)) return 0.0f;
+    if (p->warped) density *= mcsi_product_point_density(p, t, tile, mcsi_window_position(e, &window, spot));
+    return mcsi_window_density_at(e, &window, spot, density);
 }
-MCSI_CORE mcs_texel mcsi_nothing(const mcs_env *e) {
-    mcs_texel r;
-    r.w = e->frame.n;
-    r.pdf = 0.0f;
-    r.col = r.row = 0;
-    return r;
+/* What is returned where nothing can be drawn, and for bad directions. */
+MCSI_CORE mcs_texel mcsi_no_texel(const mcs_env *e) {
+    mcs_texel x;
+    x.w = e->frame.n;
+    x.pdf = 0.0f;
+    x.col = x.row = 0;
+    return x;
 }
-/* The same for a direction, with the lobe's share. */
-MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, mcs_vec3 w) {
-    mcsi_spot at;
-    if (!mcsi_env_find(p->e, w, &at)) return mcsi_nothing(p->e);
-    mcs_texel r;
-    r.w = w;
-    r.row = at.row;
-    r.col = at.col;
-    r.pdf = mcsi_own_mix(&p->own, p->brdf_share, w, p->lit > 0.0 ? mcsi_product_density(p, &at) : 0.0f);
-    return r;
+/* Texel and density of world direction w, the lobe's share included. */
+MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
+    mcsi_spot spot;
+    if (!mcsi_env_find(e, w, &spot)) return mcsi_no_texel(e);
+    const float of_tiles = p->dark ? 0.0f : mcsi_product_density(p, t, e, &spot);
+    mcs_texel x;
+    x.w = w;
+    x.row = spot.row;
+    x.col = spot.col;
+    x.pdf = mcsi_lobe_mix(&p->lobe, p->brdf_share, w, of_tiles);
+    return x;
 }
-MCS_API float mcs_product_pdf(const mcs_product *p, mcs_vec3 w) { return mcsi_product_look_up(p, w).pdf; }
-/* What a draw reads of a tile's rows near the place U2 of its light. */
-MCSI_CORE void mcsi_tile_prefetch(const mcs_env *e, const mcs_env_window *m, double U2) {
-    const mcsi_window v = mcsi_window_of(e, m);
-    const uint32_t row = (uint32_t)(U2 * v.rows.n * (1.0 / MCSI_ONE));
-    MCSI_PREFETCH((const uint16_t *)v.rows.guide + row);
-    MCSI_PREFETCH(v.rows.sums + row);
-    MCSI_PREFETCH(v.share + row);
+MCSI_CORE mcs_texel mcsi_product_draw(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcsi_draw d) {
+    const uint32_t row = mcsi_product_draw_row(p, &d);
+    const mcsi_tile tile = mcsi_product_draw_tile(p, row, &d);
+    const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, tile));
+    mcsi_window_prefetch(&window, d.u2);
+    mcsi_product_draw_point(p, t, tile, &d);
+    mcs_texel x = mcsi_window_draw(e, &window, d);
+    x.pdf = mcsi_lobe_mix(&p->lobe, p->brdf_share, x.w, x.pdf);
+    return x;
 }
-/* Tile row, then column; U2 and U1 become the place in it. */
-MCSI_CORE uint32_t mcsi_product_row(const mcs_product *p, double *U2) {
-    const uint32_t *rows = mcsi_product_rows(p);
-    *U2 *= p->lit;
-    const uint32_t i = mcsi_shares_find(rows, p->t->rows, 1, (uint32_t)(int32_t)*U2);
-    *U2 = mcsi_shares_rest(*U2, rows[i], rows[i + 1] - rows[i]);
-    return i;
-}
-MCSI_CORE uint32_t mcsi_product_col(const mcs_product *p, uint32_t i, double *U1, double *part) {
-    const uint32_t *cum = mcsi_product_cum(p) + i;
-    const uint32_t n = p->t->rows;
-    const uint32_t cols = p->t->cols;
-    *U1 *= (int32_t)cum[cols * n] * (1.0 / MCSI_ONE);
-    const uint32_t j = mcsi_shares_find(cum, cols, n, (uint32_t)(int32_t)*U1);
-    cum += j * n;
-    *U1 = mcsi_shares_rest(*U1, cum[0], cum[n] - cum[0]);
-    *part = mcsi_product_units(p)[i] * (int32_t)(cum[n] - cum[0]);
-    return j;
-}
-MCSI_CORE mcs_texel mcsi_tiled_draw(const mcs_env *e, const mcs_env_window *m, double U1, double U2, double part,
-                                    int ok) {
-    const mcsi_window window = mcsi_window_of(e, m);
-    return mcsi_window_draw(e, &window, mcsi_draw_make(U1, U2, ok ? part : 0.0));
-}
-MCS_API mcs_texel mcs_product_sample(const mcs_product *p, float u1, float u2) {
+MCS_API mcs_texel mcs_product_sample(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, float u1, float u2) {
+    MCS_ASSERT(p->rows == t->rows);
+    const float share = p->brdf_share;
     int32_t ok = 1;
-    double part = 1.0;
     u1 = mcsi_sane_u(u1, &ok);
     u2 = mcsi_sane_u(u2, &ok);
-    mcs_vec3 w;
-    mcs_texel r;
-    if (mcsi_own_draw(&p->own, p->brdf_share, &u1, u2, &w, &ok)) {
-        r = mcsi_product_look_up(p, w);
-    } else if (p->lit > 0.0) {
-        double U1 = (double)u1 * MCSI_ONE;
-        double U2 = (double)u2 * MCSI_ONE;
-        const uint32_t i = mcsi_product_row(p, &U2);
-        const uint32_t j = mcsi_product_col(p, i, &U1, &part);
-        const float *fine = mcsi_product_fine_of(p, i, j);
-        mcsi_tile_prefetch(p->e, mcsi_tiles_window(p->t, i, j), U2);
-        if (fine) {
-            mcsi_fine_draw(fine, &U1, &U2, &part);
-        } else if (p->warped) {
-            const mcsi_warp warp = mcsi_product_warp(p, i, j);
-            mcsi_warp_place(&warp, &U1, &U2, &part);
-        }
-        r = mcsi_tiled_draw(p->e, mcsi_tiles_window(p->t, i, j), U1, U2, part, ok);
-        r.pdf = mcsi_own_mix(&p->own, p->brdf_share, r.w, r.pdf);
-    } else {
-        return mcsi_nothing(p->e);
-    }
-    r.pdf = ok ? r.pdf : 0.0f;
-    return r;
+    mcs_texel x;
+    if (u1 < share) x = mcsi_product_look_up(p, t, e, mcsi_lobe_draw(&p->lobe, mcsi_lobe_u(share, u1), u2, &ok));
+    else if (!p->dark) x = mcsi_product_draw(p, t, e, mcsi_draw_of(mcsi_tiles_u(share, u1), u2));
+    else return mcsi_no_texel(e);
+    x.pdf = ok ? x.pdf : 0.0f;
+    return x;
 }
+MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
+    MCS_ASSERT(p->rows == t->rows);
+    return mcsi_product_look_up(p, t, e, w).pdf;
+}
+
+/* ---- [product] the prepared form: arrays ----
+ * A block of 32 draws goes through every step together, as each step is a long chain of operations. */
+
 #ifndef MCS_NO_BATCH
-MCS_API void mcs_product_sample_n(const mcs_product *p, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                  float *z, float *pdf, uint32_t *col, uint32_t *row) {
-    if (p->brdf_share > 0.0f || !(p->lit > 0.0)) {
-        for (size_t i = 0; i < n; i++) {
-            const mcs_texel r = mcs_product_sample(p, u1[i], u2[i]);
-            if (x) x[i] = r.w.x;
-            if (y) y[i] = r.w.y;
-            if (z) z[i] = r.w.z;
-            if (pdf) pdf[i] = r.pdf;
-            if (col) col[i] = r.col;
-            if (row) row[i] = r.row;
+typedef struct {
+    mcsi_draw draw[MCSI_ENV_BLOCK];
+    const mcs_env_window *window[MCSI_ENV_BLOCK];
+    const float *grid[MCSI_ENV_BLOCK];
+    uint32_t tile_row[MCSI_ENV_BLOCK];
+    mcsi_warp_block warps;
+} mcsi_product_block;
+
+/* Whole vectors are computed: what n draws leave of a block must be numbers. */
+MCSI_CORE void mcsi_product_block_start(mcsi_product_block *b, size_t n) {
+    if (n < MCSI_ENV_BLOCK) MCSI_FILL(&b->warps, 0, sizeof b->warps);
+    for (size_t k = n; k < MCSI_ENV_BLOCK; k++) b->warps.value[k] = 1.0f;
+}
+/* Chooses the tiles of n draws. */
+MCSI_CORE void mcsi_product_block_tiles(const mcs_product *p, const mcs_tiles *t, mcsi_product_block *b, size_t n) {
+    for (size_t k = 0; k < n; k++) b->tile_row[k] = mcsi_product_draw_row(p, &b->draw[k]);
+    for (size_t k = 0; k < n; k++) {
+        const mcsi_tile tile = mcsi_product_draw_tile(p, b->tile_row[k], &b->draw[k]);
+        b->window[k] = mcsi_tiles_window(t, tile);
+        b->grid[k] = mcsi_product_grid(p, tile);
+        MCSI_PREFETCH(b->window[k]);
+        if (!p->warped) continue;
+        const mcsi_warp_source s = mcsi_product_warp_source(p, t, tile);
+        b->warps.value[k] = s.value;
+        b->warps.evenness[k] = s.evenness;
+        b->warps.v00[k] = s.corner.v00;
+        b->warps.v01[k] = s.corner.v01;
+        b->warps.v10[k] = s.corner.v10;
+        b->warps.v11[k] = s.corner.v11;
+        b->warps.u1[k] = mcsi_part_of_one(b->draw[k].u1);
+        b->warps.u2[k] = mcsi_part_of_one(b->draw[k].u2);
+    }
+}
+/* Chooses the points in the tiles. */
+MCSI_CORE void mcsi_product_block_points(const mcs_product *p, const mcs_env *e, mcsi_product_block *b, size_t n) {
+    if (p->warped) mcsi_warps_n(n, &b->warps);
+    for (size_t k = 0; k < n; k++) {
+        mcsi_draw *d = &b->draw[k];
+        if (b->grid[k]) {
+            mcsi_draw_grid(b->grid[k], d);
+        } else if (p->warped) {
+            d->density *= (double)b->warps.density[k];
+            d->u1 = (double)b->warps.t1[k] * MCSI_ONE;
+            d->u2 = (double)b->warps.t2[k] * MCSI_ONE;
         }
+        const mcsi_window window = mcsi_window_of(e, b->window[k]);
+        mcsi_window_prefetch(&window, d->u2);
+    }
+}
+MCSI_CORE void mcsi_texels_put(const mcsi_texels *out, size_t i, mcs_texel x) {
+    if (out->x) out->x[i] = x.w.x;
+    if (out->y) out->y[i] = x.w.y;
+    if (out->z) out->z[i] = x.w.z;
+    if (out->pdf) out->pdf[i] = x.pdf;
+    if (out->col) out->col[i] = x.col;
+    if (out->row) out->row[i] = x.row;
+}
+MCS_API void mcs_product_sample_n(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t n, const float *u1,
+                                  const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
+                                  uint32_t *row) {
+    MCS_ASSERT(p->rows == t->rows);
+    const mcsi_texels out = {x, y, z, pdf, col, row};
+    if (p->brdf_share > 0.0f || p->dark) { /* a lobe with a share, or no light: one by one */
+        for (size_t i = 0; i < n; i++) mcsi_texels_put(&out, i, mcs_product_sample(p, t, e, u1[i], u2[i]));
         return;
     }
-    const mcsi_texels out = {x, y, z, pdf, col, row};
-    mcsi_env_block b;
-    mcsi_block_start(&b, n);
-    mcsi_warp_block warps;
-    if (n < MCSI_ENV_BLOCK) MCSI_FILL(&warps, 0, sizeof warps);
-    for (size_t k = n; k < MCSI_ENV_BLOCK; k++) warps.value[k] = 1.0f;
-    double U1[MCSI_ENV_BLOCK], U2[MCSI_ENV_BLOCK], part[MCSI_ENV_BLOCK];
-    const mcs_env_window *window[MCSI_ENV_BLOCK];
-    const float *fine[MCSI_ENV_BLOCK];
-    uint32_t tile_row[MCSI_ENV_BLOCK];
-    int32_t ok[MCSI_ENV_BLOCK];
+    mcsi_product_block b;
+    mcsi_product_block_start(&b, n);
+    mcsi_env_block of_map;
+    mcsi_block_start(&of_map, n);
     size_t m;
-    for (size_t i = 0; i < n; i += m) { /* by stages, as each of them is a long chain of operations */
+    for (size_t i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
+        for (size_t k = 0; k < m; k++) b.draw[k] = mcsi_draw_start(u1[i + k], u2[i + k]);
+        mcsi_product_block_tiles(p, t, &b, m);
+        mcsi_product_block_points(p, e, &b, m);
         for (size_t k = 0; k < m; k++) {
-            ok[k] = 1;
-            U1[k] = mcsi_times_one(u1[i + k], &ok[k]);
-            U2[k] = mcsi_times_one(u2[i + k], &ok[k]);
-            tile_row[k] = mcsi_product_row(p, &U2[k]);
+            const mcsi_window window = mcsi_window_of(e, b.window[k]);
+            mcsi_block_row(e, &window, b.draw[k], &of_map, k);
         }
-        for (size_t k = 0; k < m; k++) {
-            const uint32_t tile_col = mcsi_product_col(p, tile_row[k], &U1[k], &part[k]);
-            const mcsi_warp_source s = mcsi_product_source(p, tile_row[k], tile_col);
-            window[k] = mcsi_tiles_window(p->t, tile_row[k], tile_col);
-            fine[k] = mcsi_product_fine_of(p, tile_row[k], tile_col);
-            MCSI_PREFETCH(window[k]);
-            if (!p->warped) continue;
-            warps.value[k] = *s.value;
-            warps.pull[k] = *s.pull;
-            warps.v00[k] = s.first[0];
-            warps.v01[k] = s.first[1];
-            warps.v10[k] = s.last[0];
-            warps.v11[k] = s.last[1];
-            warps.u1[k] = mcsi_part_of_one(U1[k]);
-            warps.u2[k] = mcsi_part_of_one(U2[k]);
-        }
-        if (p->warped) mcsi_warps_n(m, &warps);
-        for (size_t k = 0; k < m; k++) {
-            if (fine[k]) {
-                mcsi_fine_draw(fine[k], &U1[k], &U2[k], &part[k]);
-            } else if (p->warped) {
-                part[k] *= (double)warps.density[k];
-                U1[k] = (double)warps.u1[k] * MCSI_ONE;
-                U2[k] = (double)warps.u2[k] * MCSI_ONE;
-            }
-            mcsi_tile_prefetch(p->e, window[k], U2[k]);
-        }
-        for (size_t k = 0; k < m; k++) {
-            const mcsi_window v = mcsi_window_of(p->e, window[k]);
-            mcsi_block_row(p->e, &v, mcsi_draw_make(U1[k], U2[k], ok[k] ? part[k] : 0.0), &b, k);
-        }
-        mcsi_block_columns(p->e, &b, m, &out, i);
+        mcsi_block_columns(e, &of_map, m, &out, i);
     }
 }
 #endif
+#endif
 
-/* ---- one-shot form: one of 4 x 8 patches, one of its parts, down to a tile ---- */
+/* ---- [product] the one-shot form: the descent ----
+ * No table: from one of the 4 x 8 patches to one of its parts, down to a tile. Weights are light times reflection at
+ * every level. A density walks the same way down to a given tile. */
 
-/* A draw from a list of n (even) weights: entry, place in it, and the entry's part; with U < 0, the part of entry *k. In double,
- * where the part of an entry down to 2^-30 of the whole is that of the sums to 2^-22 of itself. 0: nothing to draw. */
-MCSI_CORE int mcsi_list_draw(const float *weight, uint32_t n, double *U, uint32_t *k, double *part) {
+#if MCSI_W == 1
+/* The way down. `given`: to this tile, and only the density changes; else the tile is chosen. It is a constant in every
+ * call. */
+typedef struct {
+    mcsi_draw d;
+    mcsi_tile tile;
+    int given;
+} mcsi_descent;
+
+/* Chooses entry *k of n weights (n even) by *u, which becomes the position in the entry. Multiplies *density by the
+ * entry's probability. With `given`, *k stays as it is. Returns 0 when there is nothing to choose from. In double: an
+ * entry of 2^-30 of the total keeps 22 bits. */
+MCSI_CORE int mcsi_list_choose(const float *weight, uint32_t n, int given, double *u, uint32_t *k, double *density) {
+    double sums[MCSI_PATCH_COLS];
     double total = 0.0;
-    double cum[MCSI_PATCH_COLS];
     MCSI_UNROLL
     for (uint32_t i = 0; i < n; i += 2) { /* by pairs: half the latency */
         const double a = (double)weight[i];
         const double both = a + (double)weight[i + 1];
-        cum[i] = total;
-        cum[i + 1] = total + a;
+        sums[i] = total;
+        sums[i + 1] = total + a;
         total += both;
     }
     if (!(total > 0.0)) return 0;
-    if (*U >= 0.0) {
-        const double V = *U * (total * (1.0 / MCSI_ONE));
+    if (!given) {
+        const double v = *u * (total * (1.0 / MCSI_ONE));
         *k = 0;
         MCSI_UNROLL
-        for (uint32_t i = 1; i < n; i++) *k += (uint32_t)(cum[i] <= V);
-        const double rest = (V - cum[*k]) * (MCSI_ONE / (double)weight[*k]);
-        *U = rest < 2147483647.5 ? rest : 2147483647.5;
+        for (uint32_t i = 1; i < n; i++) *k += (uint32_t)(sums[i] <= v);
+        const double position = (v - sums[*k]) * (MCSI_ONE / (double)weight[*k]);
+        *u = position < 2147483647.5 ? position : 2147483647.5;
     }
     if (!(weight[*k] > 0.0f)) return 0;
-    *part *= (double)weight[*k] / total;
+    *density *= (double)weight[*k] / total;
     return 1;
 }
-/* The same from a grid, column by column: the row, then its column. */
-MCSI_CORE int mcsi_grid_draw(const float *weight, uint32_t rows, uint32_t cols, double *U1, double *U2, uint32_t *i,
-                             uint32_t *j, double *part) {
-    float sum[MCSI_PATCHES];
-    float *to = sum;
+/* Chooses one of rows x cols patches, column by column: the row by u2, then the column by u1. */
+MCSI_CORE int mcsi_patch_choose(const float *weight, uint32_t rows, uint32_t cols, mcsi_descent *way,
+                                mcsi_tile *patch) {
+    float sums[MCSI_PATCHES];
+    float *to = sums;
     const float *from = weight;
     MCSI_UNROLL
     for (uint32_t n = rows * cols / 2; n >= rows; from = to, to += n, n /= 2) {
         MCSI_UNROLL
         for (uint32_t k = 0; k < n; k++) to[k] = from[k] + from[k + n];
     }
-    if (!mcsi_list_draw(from, rows, U2, i, part)) return 0;
-    float list[MCSI_PATCH_COLS];
+    if (!mcsi_list_choose(from, rows, way->given, &way->d.u2, &patch->row, &way->d.density)) return 0;
+    float of_row[MCSI_PATCH_COLS];
     MCSI_UNROLL
-    for (uint32_t k = 0; k < cols; k++) list[k] = weight[k * rows + *i];
-    return mcsi_list_draw(list, cols, U1, j, part);
+    for (uint32_t k = 0; k < cols; k++) of_row[k] = weight[k * rows + patch->row];
+    return mcsi_list_choose(of_row, cols, way->given, &way->d.u1, &patch->col, &way->d.density);
 }
-/* The same from the parts of a patch; by their light alone when all are below the horizon that crosses the patch. */
-MCSI_CORE int mcsi_parts_draw(const float *light, uint32_t side, float *value, float *weight, double *U1, double *U2,
-                              uint32_t *i, uint32_t *j, double *part) {
-    for (uint32_t tried = 0; tried < 2; tried++) {
-        if (side == 4 ? mcsi_grid_draw(weight, 4, 4, U1, U2, i, j, part)
-                      : mcsi_grid_draw(weight, 2, 2, U1, U2, i, j, part))
+/* Chooses one of the side x side parts of a patch: by their light alone when all are below the horizon that crosses the
+ * patch. */
+MCSI_CORE int mcsi_part_choose(const float *light, uint32_t side, float *value, float *weight, mcsi_descent *way,
+                               mcsi_tile *part) {
+    for (uint32_t attempt = 0; attempt < 2; attempt++) {
+        if (side == 4 ? mcsi_patch_choose(weight, 4, 4, way, part) : mcsi_patch_choose(weight, 2, 2, way, part))
             return 1;
         for (uint32_t k = 0; k < side * side; k++)
             if (weight[k] > 0.0f) return 0;
         for (uint32_t k = 0; k < side * side; k++) {
-            value[k] = MCSI_TILE_LEAST;
-            weight[k] = light[k] * MCSI_TILE_LEAST;
+            value[k] = MCSI_VALUE_LEAST;
+            weight[k] = light[k] * MCSI_VALUE_LEAST;
         }
     }
     return 0;
 }
-/* Down to tile (i, j) and the place in it; with U1, U2 < 0, the part of all draws that tile (i, j) gets. */
-MCSI_CORE int mcsi_oneshot_tile(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s, double *U1, double *U2,
-                                uint32_t *i, uint32_t *j, double *part, mcsi_warp *warp) {
-    const float *level = mcsi_tiles_patches(t);
-    uint32_t rows = MCSI_PATCH_ROWS;
-    uint32_t below = t->rows / MCSI_PATCH_ROWS;
-    uint32_t in_row = *i / below;
-    uint32_t in_col = *j / below;
-    uint32_t k = 0;
+/* Down to a tile, whose value is returned; 0 when it cannot be drawn. */
+MCSI_CORE float mcsi_oneshot_tile(const mcs_tiles *t, const mcsi_surface *s, mcsi_descent *way) {
+    const float *level = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).patch);
+    uint32_t rows = MCSI_PATCH_ROWS;            /* of patches */
+    uint32_t below = t->rows / MCSI_PATCH_ROWS; /* tiles along the side of a patch */
+    mcsi_tile at = {way->tile.row / below, way->tile.col / below};
     float value[MCSI_PATCHES], weight[MCSI_PATCHES];
     mcsi_patch_weights_n(s, MCSI_PATCHES, level, value, weight);
-    if (!mcsi_grid_draw(weight, MCSI_PATCH_ROWS, MCSI_PATCH_COLS, U1, U2, &in_row, &in_col, part)) return 0;
-    level += (int)MCSI_TILE_FIELDS * MCSI_PATCHES;
+    if (!mcsi_patch_choose(weight, MCSI_PATCH_ROWS, MCSI_PATCH_COLS, way, &at)) return 0.0f;
+    level += (int)MCSI_TILE_MEMBERS * MCSI_PATCHES;
+    uint32_t k;
     do {
         const uint32_t side = mcsi_patch_side(t, rows);
         const uint32_t parts = side * side;
-        const float *patch = level + MCSI_TILE_FIELDS * (size_t)(in_col * rows + in_row) * parts;
+        const float *part = level + MCSI_TILE_MEMBERS * (size_t)(at.col * rows + at.row) * parts;
         below /= side;
-        uint32_t y = *i / below % side;
-        uint32_t x = *j / below % side;
-        mcsi_patch_weights_n(s, parts, patch, value, weight);
-        if (!mcsi_parts_draw(patch, side, value, weight, U1, U2, &y, &x, part)) return 0;
-        in_row = in_row * side + y;
-        in_col = in_col * side + x;
-        k = x * side + y;
-        level += MCSI_TILE_FIELDS * 2 * (size_t)rows * rows * parts;
+        mcsi_tile in = {way->tile.row / below % side, way->tile.col / below % side};
+        mcsi_patch_weights_n(s, parts, part, value, weight);
+        if (!mcsi_part_choose(part, side, value, weight, way, &in)) return 0.0f;
+        at.row = at.row * side + in.row;
+        at.col = at.col * side + in.col;
+        k = in.col * side + in.row;
+        level += mcsi_level_length(rows, parts);
         rows *= side;
     } while (below > 1);
-    *i = in_row;
-    *j = in_col;
-    const size_t at = (size_t)in_col * rows + in_row;
-    mcsi_tile_prefetch(e, mcsi_tiles_window(t, in_row, in_col), *U2);
-    float v[MCSI_PATCHES]; /* whole vectors are computed */
-    mcsi_corner_values_n(s, 4, mcsi_tiles_around(t) + 12 * at, 4, v);
-    *warp = mcsi_warp_make(value[k], mcsi_tiles_fields(t)[MCSI_TILE_PULL * (size_t)t->rows * t->cols + at], v[0], v[1],
-                           v[2], v[3]);
+    way->tile = at;
+    return value[k];
+}
+MCSI_CORE mcsi_warp mcsi_oneshot_warp(const mcs_tiles *t, const mcsi_surface *s, mcsi_tile tile, float value) {
+    const mcsi_tiles_offsets o = mcsi_tiles_offsets_of(t);
+    const size_t k = mcsi_tile_number(t->rows, tile);
+    float corner[MCSI_PATCHES]; /* whole vectors are computed */
+    mcsi_corner_values_n(s, 4, MCSI_READ(float, t, o.around) + 3 * 4 * k, corner);
+    mcsi_warp_source source;
+    source.value = value;
+    source.evenness = MCSI_READ(float, t, o.evenness)[k];
+    source.corner.v00 = corner[0];
+    source.corner.v01 = corner[1];
+    source.corner.v10 = corner[2];
+    source.corner.v11 = corner[3];
+    return mcsi_warp_make(&source);
+}
+/* Density of the tiles at a spot, without the lobe's share. */
+MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_surface *s, const mcsi_spot *spot) {
+    mcsi_descent way;
+    way.d.u1 = way.d.u2 = 0.0;
+    way.d.density = 1.0;
+    way.tile = mcsi_tile_of_spot(t, e, spot);
+    way.given = 1;
+    const float value = mcsi_oneshot_tile(t, s, &way);
+    if (!(value > 0.0f)) return 0.0f;
+    const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, way.tile));
+    if (!mcsi_window_row_is_lit(&window, spot->row)) return 0.0f;
+    const mcsi_warp warp = mcsi_oneshot_warp(t, s, way.tile, value);
+    const mcsi_position at = mcsi_window_position(e, &window, spot);
+    way.d.density *= (double)mcsi_warp_density(&warp, at.t1, at.t2);
+    return mcsi_window_density_at(e, &window, spot, way.d.density);
+}
+/* ---- [product] the one-shot form: samples and densities ---- */
+
+/* What a call prepares. `lobe` is set where it has a share. */
+typedef struct {
+    mcsi_surface surface;
+    float share;
+    mcsi_lobe lobe;
+} mcsi_oneshot;
+/* Returns 0 where nothing is reflected. */
+MCSI_CORE int mcsi_oneshot_start(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcsi_oneshot *o) {
+    o->surface = mcsi_surface_make(e, r);
+    if (!o->surface.reflects) return 0;
+    o->share = mcsi_oneshot_lobe_share(&o->surface, t);
+    if (o->share > 0.0f) o->lobe = mcsi_lobe_make(r, &o->surface);
     return 1;
 }
-/* Density of the tiles alone. */
-MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_facing *s, const mcsi_spot *at) {
-    double part = 1.0;
-    double U1 = -1.0;
-    double U2 = -1.0;
-    uint32_t i = mcsi_tile_of(at->row, t->rows, e->h);
-    uint32_t j = mcsi_tile_of(at->col, t->cols, e->w);
-    mcsi_warp warp;
-    return mcsi_oneshot_tile(t, e, s, &U1, &U2, &i, &j, &part, &warp)
-               ? mcsi_tiled_density(t, e, part, NULL, &warp, i, j, at)
-               : 0.0f;
+/* Texel and density of world direction w, the lobe's share included. */
+MCSI_CORE mcs_texel mcsi_oneshot_look_up(const mcs_tiles *t, const mcs_env *e, const mcsi_oneshot *o, mcs_vec3 w) {
+    mcsi_spot spot;
+    if (!mcsi_env_find(e, w, &spot)) return mcsi_no_texel(e);
+    mcs_texel x;
+    x.w = w;
+    x.row = spot.row;
+    x.col = spot.col;
+    x.pdf = mcsi_lobe_mix(&o->lobe, o->share, w, mcsi_oneshot_density(t, e, &o->surface, &spot));
+    return x;
+}
+MCSI_CORE mcs_texel mcsi_oneshot_draw(const mcs_tiles *t, const mcs_env *e, const mcsi_oneshot *o, mcsi_draw d) {
+    mcsi_descent way;
+    way.d = d;
+    way.tile.row = way.tile.col = 0;
+    way.given = 0;
+    const float value = mcsi_oneshot_tile(t, &o->surface, &way);
+    if (!(value > 0.0f)) return mcsi_no_texel(e);
+    const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, way.tile));
+    mcsi_window_prefetch(&window, way.d.u2);
+    const mcsi_warp warp = mcsi_oneshot_warp(t, &o->surface, way.tile, value);
+    mcsi_draw_warp(&warp, &way.d);
+    mcs_texel x = mcsi_window_draw(e, &window, way.d);
+    x.pdf = mcsi_lobe_mix(&o->lobe, o->share, x.w, x.pdf);
+    return x;
 }
 MCS_API mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1,
                                      float u2) {
     int32_t ok = 1;
-    double part = 1.0;
-    uint32_t i = 0;
-    uint32_t j = 0;
     u1 = mcsi_sane_u(u1, &ok);
     u2 = mcsi_sane_u(u2, &ok);
-    mcsi_facing s;
-    if (!mcsi_facing_make(e, r, &s)) return mcsi_nothing(e);
-    const float share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f);
-    mcsi_own_lobe own;
-    if (share > 0.0f) own = mcsi_own_make(r, &s);
+    mcsi_oneshot o;
+    if (!mcsi_oneshot_start(t, e, r, &o)) return mcsi_no_texel(e);
     mcs_texel x;
-    mcs_vec3 w;
-    if (mcsi_own_draw(&own, share, &u1, u2, &w, &ok)) {
-        mcsi_spot at;
-        if (!mcsi_env_find(e, w, &at)) return mcsi_nothing(e);
-        x.w = w;
-        x.row = at.row;
-        x.col = at.col;
-        x.pdf = mcsi_oneshot_density(t, e, &s, &at);
-    } else {
-        double U1 = (double)u1 * MCSI_ONE;
-        double U2 = (double)u2 * MCSI_ONE;
-        mcsi_warp warp;
-        if (!mcsi_oneshot_tile(t, e, &s, &U1, &U2, &i, &j, &part, &warp)) return mcsi_nothing(e);
-        mcsi_warp_place(&warp, &U1, &U2, &part);
-        x = mcsi_tiled_draw(e, mcsi_tiles_window(t, i, j), U1, U2, part, ok);
-    }
-    x.pdf = ok ? mcsi_own_mix(&own, share, x.w, x.pdf) : 0.0f;
+    if (u1 < o.share) x = mcsi_oneshot_look_up(t, e, &o, mcsi_lobe_draw(&o.lobe, mcsi_lobe_u(o.share, u1), u2, &ok));
+    else x = mcsi_oneshot_draw(t, e, &o, mcsi_draw_of(mcsi_tiles_u(o.share, u1), u2));
+    x.pdf = ok ? x.pdf : 0.0f;
     return x;
 }
 MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w) {
-    mcsi_spot at;
-    mcsi_facing s;
-    if (!mcsi_env_find(e, w, &at) || !mcsi_facing_make(e, r, &s)) return 0.0f;
-    const float share = mcsi_brdf_share(&s, (size_t)t->rows * t->cols, 0.3f);
-    mcsi_own_lobe own;
-    if (share > 0.0f) own = mcsi_own_make(r, &s);
-    return mcsi_own_mix(&own, share, w, mcsi_oneshot_density(t, e, &s, &at));
+    mcsi_oneshot o;
+    return mcsi_oneshot_start(t, e, r, &o) ? mcsi_oneshot_look_up(t, e, &o, w).pdf : 0.0f;
 }
-#endif /* MCSI_W == 1 */
+#endif
 #endif
 
 #if MCSI_W == 1
@@ -7420,6 +7760,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_bell_ok MCSI_(bell_ok)
 #define mcsi_bits MCSI_(bits)
 #define mcsi_blend MCSI_(blend)
+#define mcsi_blurred_gauss MCSI_(blurred_gauss)
+#define mcsi_blurred_ggx MCSI_(blurred_ggx)
+#define mcsi_blurred_lobe MCSI_(blurred_lobe)
+#define mcsi_blurred_lobe_make MCSI_(blurred_lobe_make)
+#define mcsi_blurred_phong MCSI_(blurred_phong)
+#define mcsi_blurred_value MCSI_(blurred_value)
 #define mcsi_brdf MCSI_(brdf)
 #define mcsi_cancelled MCSI_(cancelled)
 #define mcsi_concentric_loop MCSI_(concentric_loop)
@@ -7485,10 +7831,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_ggx_vndf_h_loop MCSI_(ggx_vndf_h_loop)
 #define mcsi_ggx_vndf_pdf_loop MCSI_(ggx_vndf_pdf_loop)
 #define mcsi_ggx_vndf_sample_loop MCSI_(ggx_vndf_sample_loop)
-#define mcsi_grid_bounds MCSI_(grid_bounds)
-#define mcsi_grid_bounds_loop MCSI_(grid_bounds_loop)
-#define mcsi_grid_rows MCSI_(grid_rows)
-#define mcsi_grid_rows_loop MCSI_(grid_rows_loop)
 #define mcsi_hemisphere_loop MCSI_(hemisphere_loop)
 #define mcsi_in MCSI_(in)
 #define mcsi_in_radii MCSI_(in_radii)
@@ -7496,7 +7838,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_linear MCSI_(linear)
 #define mcsi_linear_loop MCSI_(linear_loop)
 #define mcsi_linear_make MCSI_(linear_make)
-#define mcsi_linear_place MCSI_(linear_place)
 #define mcsi_log MCSI_(log)
 #define mcsi_log1m MCSI_(log1m)
 #define mcsi_log1p MCSI_(log1p)
@@ -7538,7 +7879,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_q MCSI_Q
 #define mcsi_quotient MCSI_(quotient)
 #define mcsi_rarely MCSI_(rarely)
-#define mcsi_reflected MCSI_(reflected)
 #define mcsi_reverse_bits MCSI_(reverse_bits)
 #define mcsi_root MCSI_(root)
 #define mcsi_sample1 MCSI_(sample1)
@@ -7547,10 +7887,13 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_sane_result MCSI_(sane_result)
 #define mcsi_sane_u MCSI_(sane_u)
 #define mcsi_sane_upper MCSI_(sane_upper)
+#define mcsi_sane_value MCSI_(sane_value)
 #define mcsi_scale_ok MCSI_(scale_ok)
 #define mcsi_scramble_reversed MCSI_(scramble_reversed)
 #define mcsi_secant2 MCSI_(secant2)
 #define mcsi_sel MCSI_(sel)
+#define mcsi_side MCSI_(side)
+#define mcsi_side_load MCSI_(side_load)
 #define mcsi_sincos_turns MCSI_(sincos_turns)
 #define mcsi_slope_brdf MCSI_(slope_brdf)
 #define mcsi_slope_draw MCSI_(slope_draw)
@@ -7576,7 +7919,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_sum MCSI_(sum)
 #define mcsi_tan2 MCSI_(tan2)
 #define mcsi_tent_loop MCSI_(tent_loop)
-#define mcsi_tile_lobe MCSI_(tile_lobe)
+#define mcsi_tile_bounds MCSI_(tile_bounds)
+#define mcsi_tile_bounds_loop MCSI_(tile_bounds_loop)
+#define mcsi_tile_light MCSI_(tile_light)
+#define mcsi_tile_light_load MCSI_(tile_light_load)
+#define mcsi_tile_shares MCSI_(tile_shares)
+#define mcsi_tile_shares_loop MCSI_(tile_shares_loop)
 #define mcsi_tile_value MCSI_(tile_value)
 #define mcsi_tile_values_loop MCSI_(tile_values_loop)
 #define mcsi_times_2_to MCSI_(times_2_to)
@@ -7603,7 +7951,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_warp MCSI_(warp)
 #define mcsi_warp_density MCSI_(warp_density)
 #define mcsi_warp_draw MCSI_(warp_draw)
+#define mcsi_warp_linear MCSI_(warp_linear)
 #define mcsi_warp_make MCSI_(warp_make)
+#define mcsi_warp_point MCSI_(warp_point)
+#define mcsi_warp_source MCSI_(warp_source)
 #define mcsi_warps_loop MCSI_(warps_loop)
 #define mcsi_with_sign MCSI_(with_sign)
 
@@ -7858,6 +8209,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_bell_ok
 #undef mcsi_bits
 #undef mcsi_blend
+#undef mcsi_blurred_gauss
+#undef mcsi_blurred_ggx
+#undef mcsi_blurred_lobe
+#undef mcsi_blurred_lobe_make
+#undef mcsi_blurred_phong
+#undef mcsi_blurred_value
 #undef mcsi_brdf
 #undef mcsi_cancelled
 #undef mcsi_concentric_loop
@@ -7923,10 +8280,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_ggx_vndf_h_loop
 #undef mcsi_ggx_vndf_pdf_loop
 #undef mcsi_ggx_vndf_sample_loop
-#undef mcsi_grid_bounds
-#undef mcsi_grid_bounds_loop
-#undef mcsi_grid_rows
-#undef mcsi_grid_rows_loop
 #undef mcsi_hemisphere_loop
 #undef mcsi_in
 #undef mcsi_in_radii
@@ -7934,7 +8287,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_linear
 #undef mcsi_linear_loop
 #undef mcsi_linear_make
-#undef mcsi_linear_place
 #undef mcsi_log
 #undef mcsi_log1m
 #undef mcsi_log1p
@@ -7976,7 +8328,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_q
 #undef mcsi_quotient
 #undef mcsi_rarely
-#undef mcsi_reflected
 #undef mcsi_reverse_bits
 #undef mcsi_root
 #undef mcsi_sample1
@@ -7985,10 +8336,13 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_sane_result
 #undef mcsi_sane_u
 #undef mcsi_sane_upper
+#undef mcsi_sane_value
 #undef mcsi_scale_ok
 #undef mcsi_scramble_reversed
 #undef mcsi_secant2
 #undef mcsi_sel
+#undef mcsi_side
+#undef mcsi_side_load
 #undef mcsi_sincos_turns
 #undef mcsi_slope_brdf
 #undef mcsi_slope_draw
@@ -8014,7 +8368,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_sum
 #undef mcsi_tan2
 #undef mcsi_tent_loop
-#undef mcsi_tile_lobe
+#undef mcsi_tile_bounds
+#undef mcsi_tile_bounds_loop
+#undef mcsi_tile_light
+#undef mcsi_tile_light_load
+#undef mcsi_tile_shares
+#undef mcsi_tile_shares_loop
 #undef mcsi_tile_value
 #undef mcsi_tile_values_loop
 #undef mcsi_times_2_to
@@ -8041,7 +8400,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_warp
 #undef mcsi_warp_density
 #undef mcsi_warp_draw
+#undef mcsi_warp_linear
 #undef mcsi_warp_make
+#undef mcsi_warp_point
+#undef mcsi_warp_source
 #undef mcsi_warps_loop
 #undef mcsi_with_sign
 #endif
@@ -8073,24 +8435,18 @@ MCS_FN void mcsi_env_angles_n(const mcs_frame *f, size_t n, const float *x, cons
     MCSI_WIDEST(env_angles_loop, (f, n, x, y, z, angles));
 }
 #ifndef MCS_NO_LOBES
-MCS_FN void mcsi_tile_values_n(const mcsi_facing *s, size_t n, const float *tile, size_t stride, float *value) {
-    MCSI_WIDEST(tile_values_loop, (s, n, tile, stride, value));
+MCS_FN void mcsi_tile_values_n(const mcsi_surface *s, size_t n, const float *tile, float *value) {
+    MCSI_WIDEST(tile_values_loop, (s, n, tile, value));
 }
-MCS_FN void mcsi_patch_weights_n(const mcsi_facing *s, size_t n, const float *patch, float *value, float *weight) {
+MCS_FN void mcsi_patch_weights_n(const mcsi_surface *s, size_t n, const float *patch, float *value, float *weight) {
     MCSI_WIDEST(patch_weights_loop, (s, n, patch, value, weight));
 }
-MCS_FN void mcsi_corner_values_n(const mcsi_facing *s, size_t n, const float *corner, size_t stride, float *value) {
-    MCSI_WIDEST(corner_values_loop, (s, n, corner, stride, value));
+MCS_FN void mcsi_corner_values_n(const mcsi_surface *s, size_t n, const float *corner, float *value) {
+    MCSI_WIDEST(corner_values_loop, (s, n, corner, value));
 }
 MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b) { MCSI_WIDEST(warps_loop, (n, b)); }
-MCS_FN void mcsi_grid_rows_n(size_t rows, size_t cols, const float *light, const float *value, uint32_t *cum,
-                             float *row) {
-    MCSI_WIDEST(grid_rows_loop, (rows, cols, light, value, cum, row));
-}
-MCS_FN void mcsi_grid_bounds_n(size_t rows, size_t cols, const float *light, const float *pull, const float *corner,
-                               float *value, float *weight, float *row) {
-    MCSI_WIDEST(grid_bounds_loop, (rows, cols, light, pull, corner, value, weight, row));
-}
+MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l) { MCSI_WIDEST(tile_shares_loop, (l)); }
+MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l) { MCSI_WIDEST(tile_bounds_loop, (l)); }
 #endif
 #endif
 #ifndef MCS_NO_BATCH

@@ -49,7 +49,7 @@ int main(void) {
         const float u1 = mcs_pcg32_float(&rng);
         const float u2 = mcs_pcg32_float(&rng);
         const mcs_texel e = mcs_env_sample(env, u1, u2);
-        const mcs_texel p = mcs_product_sample(point, u1, u2);
+        const mcs_texel p = mcs_product_sample(point, tiles, env, u1, u2);
         const mcs_texel o = mcs_oneshot_sample(tiles, env, &matte, u1, u2);
         mcs_stat_add(&plain, e.w.z > 0 ? sky[e.row][e.col] * e.w.z / e.pdf : 0);
         mcs_stat_add(&prepared, p.w.z > 0 ? sky[p.row][p.col] * p.w.z / p.pdf : 0);

@@ -496,7 +496,7 @@ static vec3 sample_product(const scene *s, const environment *e, const surface *
         mcs_pcg32_fill_n(rng, n, u2);
         float wx[BLOCK], wy[BLOCK], wz[BLOCK], pdf[BLOCK];
         uint32_t col[BLOCK], row[BLOCK];
-        mcs_product_sample_n(&point.p, n, u1, u2, wx, wy, wz, pdf, col, row);
+        mcs_product_sample_n(&point.p, e->tiles, e->table, n, u1, u2, wx, wy, wz, pdf, col, row);
         for (uint32_t i = 0; i < n; i++) {
             mcs_texel l;
             l.w = vec(wx[i], wy[i], wz[i]);

@@ -22,7 +22,7 @@ bugprone-implicit-widening-of-multiplication-result	4 * MCSI_W is 64 at most
 bugprone-macro-parentheses	the argument is the name of a parameter in a declaration, where parentheses do not stand
 redundantInitialization	mcs_sobol_bits: a variable that every branch overwrites has a value before them
 variableScope	C99 style of the header: declarations at the head of the function
-use of uninitialized value 'l\.(ggx|gauss|phong)	mcsi_own_make: memset has set all of l to 0 before
+use of uninitialized value 'l\.(ggx|gauss|phong)	mcsi_lobe_make: memset has set all of l to 0 before
 use of uninitialized value '\*tile_	mcsi_product_heaviest: entries below count have been written
 shiftTooManyBitsSigned	masks from signs: >> of a negative int keeps its sign with every compiler the header is for
 Condition 'k<[mn]' is always false	wrong: n was set by ?: a line before, and the tests run these loops

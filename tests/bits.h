@@ -649,6 +649,11 @@ FN(env_window_pdf) {
 
 /* --- products --------------------------------------------------------------------------------------------------------------- */
 
+/* What a build returned; 1 where all is black. */
+MCST_HD static uint32_t bits_said(mcs_status status, uint32_t black) {
+    return status < 0 ? (uint32_t)status : black != 0;
+}
+
 MCST_HD static mcs_reflection bits_reflection(const float *in) {
     mcs_reflection r;
     r.frame = mcs_frame_make(IN3(8)), r.wo = IN3(3), r.alpha_x = IN(0), r.alpha_y = IN(1);
@@ -663,7 +668,7 @@ FN(tiles_bytes) {
 }
 FN(tiles_build) {
     MAP;
-    PUT_WORD(0, (uint32_t)m->status[2]), bits_put_array(out, 1, m->tiles, 3);
+    PUT_WORD(0, bits_said(m->status[2], !(m->env->total > 0))), bits_put_array(out, 1, m->tiles, 3);
     PUT_WORD(3,
              (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes - 1 - WORD(11) % m->tile_bytes, m->env, m->tiles->rows));
     PUT_WORD(4, (uint32_t)mcs_tiles_build(m->tiles, m->tile_bytes, m->env, WORD(11) % 16));
@@ -675,7 +680,7 @@ FN(tiles_direction) {
     bits1_put3(out, 0, mcs_tiles_direction(m->tiles, m->env, WORD(11) % 600));
     bits1_put3(out, 3, mcs_tiles_direction(m->tiles, m->env, WORD(12)));
 }
-FN(product_bytes) { /* beyond the header, which holds pointers */
+FN(product_bytes) { /* beyond the header */
     const size_t bytes = mcs_product_bytes(16u << (WORD(11) & 3));
     PUT_WORD(0, (uint32_t)(bytes ? bytes - sizeof(mcs_product) : 0)),
         PUT_WORD(1, (uint32_t)mcs_product_bytes(WORD(12)));
@@ -683,12 +688,14 @@ FN(product_bytes) { /* beyond the header, which holds pointers */
 static uint64_t bits_room[MCS_PRODUCT_BYTES(32) / 8 + 1];
 /* Its share of the lobe and a sample with its density show a product. */
 static void bits_put_product(const float *in, float *out, mcs_status status) {
+    MAP;
     const mcs_product *p = (const mcs_product *)(const void *)bits_room;
     mcs_texel t;
-    PUT_WORD(0, (uint32_t)status);
+    PUT_WORD(0, bits_said(status, p->dark));
     if (status < 0) return;
-    t = mcs_product_sample(p, IN(6), IN(7));
-    PUT(1, (float)p->lit), PUT(2, p->brdf_share), bits_put_texel(out, 3, t), PUT(9, mcs_product_pdf(p, t.w));
+    t = mcs_product_sample(p, m->tiles, m->env, IN(6), IN(7));
+    PUT(1, (float)p->row_total), PUT(2, p->brdf_share), bits_put_texel(out, 3, t),
+        PUT(9, mcs_product_pdf(p, m->tiles, m->env, t.w));
 }
 HOST(product_build) {
     MAP;
@@ -707,12 +714,13 @@ HOST(product_build_weights) {
 }
 FN(product_sample) {
     PRODUCT;
-    bits_put_texel(out, 0, mcs_product_sample(p, IN(6), IN(7)));
-    PUT_WORD(6, (uint32_t)m->status[3 + PRODUCT_OF(in) / BITS_MAPS]);
+    bits_put_texel(out, 0, mcs_product_sample(p, m->tiles, m->env, IN(6), IN(7)));
+    PUT_WORD(6, bits_said(m->status[3 + PRODUCT_OF(in) / BITS_MAPS], p->dark));
 }
 FN(product_pdf) {
     PRODUCT;
-    PUT(0, mcs_product_pdf(p, IN3(8))), PUT(1, mcs_product_pdf(p, mcs_product_sample(p, IN(6), IN(7)).w));
+    PUT(0, mcs_product_pdf(p, m->tiles, m->env, IN3(8))),
+        PUT(1, mcs_product_pdf(p, m->tiles, m->env, mcs_product_sample(p, m->tiles, m->env, IN(6), IN(7)).w));
 }
 FN(oneshot_sample) {
     MAP;
@@ -761,9 +769,10 @@ HOST(env_window_sample_n) {
 DRAW(env_window_sample_n, bits_map_at(k)->window, bits_map_at(k)->env)
 HOST(product_sample_n) {
     PRODUCT;
-    bits_put_texel(out, 0, mcs_product_sample(p, IN(6), IN(7)));
+    bits_put_texel(out, 0, mcs_product_sample(p, m->tiles, m->env, IN(6), IN(7)));
 }
-DRAW(product_sample_n, bits_map_at(k % BITS_MAPS)->product[k / BITS_MAPS])
+DRAW(product_sample_n, bits_map_at(k % BITS_MAPS)->product[k / BITS_MAPS], bits_map_at(k % BITS_MAPS)->tiles,
+     bits_map_at(k % BITS_MAPS)->env)
 #undef ARRAY
 #undef DRAW
 #undef HOST

@@ -148,7 +148,7 @@ static void test_support(void) {
 /* A black map is drawn from like an even one, as the environment's. */
 static void check_black(const sampler *d, const scene *even) {
     sampler e = sampler_make(even, d->s, d->p != NULL);
-    CHECK(d->status == e.status, "black: build returns %d, of an even map %d", (int)d->status, (int)e.status);
+    CHECK(d->dark == e.dark, "black: dark %d, of an even map %d", d->dark, e.dark);
     for (uint32_t j = 0; j < 20; j++) {
         const float u1 = hash01(j, 13);
         const float u2 = hash01(j, 19);
@@ -199,7 +199,7 @@ static void check_eyes_below(void) {
             s.r.wo.y = bad_wo[i][1];
             s.r.wo.z = bad_wo[i][2];
             sampler d = sampler_make(&m, &s, form);
-            CHECK(!form || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
+            CHECK(d.dark, "the product is not dark");
             check_sane(&d, 1);
             for (int j = 0; j < HARD; j++)
                 CHECK(!(draw(&d, hard_u[j], 0.3f).pdf > 0) && density(&d, normals[4]) == 0, "eye (%g, %g, %g): density",
@@ -216,7 +216,7 @@ static void check_light_below(void) {
             const mcs_vec3 to = point(64, 32, 21, 10, 0.5, 0.5);
             const surface s = surface_make(vec(-(double)to.x, -(double)to.y, -(double)to.z), local_wo(0.5, 0), lobes[i]);
             sampler d = sampler_make(&m, &s, form);
-            CHECK(!form || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
+            CHECK(d.dark, "the product is not dark");
             CHECK(!(draw(&d, 0.3f, 0.6f).pdf > 0) && density(&d, to) == 0, "%s: the light behind has density %g",
                   form ? "prepared" : "one-shot", density(&d, to));
             check_sane(&d, 1);
@@ -301,6 +301,30 @@ static void check_moved_tiles(const scene *m, const sampler *d, const mcs_reflec
     }
 }
 
+/* Product, tiles and map hold no pointers: copies of them are as good. */
+static void check_copies(const scene *m, const sampler *d) {
+    scene other = *m;
+    other.env = arena_make(m->env.bytes);
+    other.tiles = arena_make(m->tiles.bytes);
+    arena product = arena_make(d->mem.bytes);
+    memcpy(other.env.at, m->env.at, m->env.bytes);
+    memcpy(other.tiles.at, m->tiles.at, m->tiles.bytes);
+    memcpy(product.at, d->mem.at, d->mem.bytes);
+    sampler copy = *d;
+    copy.m = &other;
+    copy.p = (mcs_product *)(void *)product.at;
+    for (uint32_t i = 0; i < 200; i++) {
+        const float u1 = hash01(i, 16);
+        const float u2 = hash01(i, 17);
+        const mcs_texel a = draw(d, u1, u2);
+        const mcs_texel b = draw(&copy, u1, u2);
+        CHECK(!memcmp(&a, &b, sizeof a), "u = %a, %a: the copy draws another", (double)u1, (double)u2);
+    }
+    arena_free(&product);
+    arena_free(&other.tiles);
+    arena_free(&other.env);
+}
+
 static void check_room_on_stack(void) {
     struct {
         char before;
@@ -312,8 +336,9 @@ static void check_room_on_stack(void) {
     scene m = scene_make("smooth", 64, 32, v_smooth, 16);
     const surface s = surface_make(normals[0], local_wo(0.7, 0.1), lobes[0]);
     const mcs_status rc = mcs_product_build(&on_stack.at.p, sizeof on_stack.at, tiles_of(&m), env_of(&m), &s.r);
-    CHECK(rc == MCS_OK, "refused: %d", rc);
-    CHECK((uintptr_t)mcsi_product_units(&on_stack.at.p) % offsetof(mcsi_aligned, at) == 0, "units are misaligned");
+    CHECK(rc == MCS_OK && !on_stack.at.p.dark, "refused or dark: %d", rc);
+    CHECK(((uintptr_t)&on_stack.at.p + mcsi_product_layout(16).per_share) % offsetof(mcsi_aligned, at) == 0,
+          "lists are misaligned");
     scene_free(&m);
 }
 
@@ -340,6 +365,7 @@ static void test_memory(void) {
         arena moved = arena_make(m.tiles.bytes);
         check_refused_products(&m, &d, &s.r, mcs_product_bytes(rows));
         check_moved_tiles(&m, &d, &s.r, mcs_product_bytes(rows), &moved);
+        check_copies(&m, &d);
         arena_free(&moved);
         sampler_free(&d);
         scene_free(&m);
@@ -351,7 +377,7 @@ static void test_memory(void) {
 /* A draw by array is that of sample. Where a*b + c is contracted the places of both differ by rounding, and with them perhaps the
  * texel: there its density has to be that of its direction. */
 static int same_draw(const sampler *d, float u1, float u2, mcs_texel by_array) {
-    const mcs_texel t = mcs_product_sample(d->p, u1, u2);
+    const mcs_texel t = mcs_product_sample(d->p, tiles_of(d->m), env_of(d->m), u1, u2);
     if (!mcst_arrays_contract()) return !memcmp(&t, &by_array, sizeof t);
     if (!(by_array.pdf > 0)) return !(t.pdf > 0);
     double col, row;
@@ -378,8 +404,8 @@ static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
                 u2[off + 3] = 1.0f;
             }
             if (count > 4) u1[off + 4] = 0.0f;
-            mcs_product_sample_n(d->p, (size_t)count, u1 + off, u2 + off, all[0] + off, all[1] + off, all[2] + off, all[3] + off,
-                                 col[0] + off, row[0] + off);
+            mcs_product_sample_n(d->p, tiles_of(d->m), env_of(d->m), (size_t)count, u1 + off, u2 + off, all[0] + off, all[1] + off,
+                                 all[2] + off, all[3] + off, col[0] + off, row[0] + off);
             for (int i = off; i < count + off; i++) {
                 mcs_texel t;
                 t.w.x = all[0][i];
@@ -391,8 +417,8 @@ static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
                 CHECK(same_draw(d, u1[i], u2[i], t), "n = %d, entry %d: not that of sample(%a, %a)", count, i, (double)u1[i],
                       (double)u2[i]);
             }
-            mcs_product_sample_n(d->p, (size_t)count, u1 + off, u2 + off, wanted & 1 ? x + off : NULL, wanted & 2 ? y + off : NULL,
-                                 wanted & 4 ? out[2] + off : NULL, wanted & 8 ? out[3] + off : NULL,
+            mcs_product_sample_n(d->p, tiles_of(d->m), env_of(d->m), (size_t)count, u1 + off, u2 + off, wanted & 1 ? x + off : NULL,
+                                 wanted & 2 ? y + off : NULL, wanted & 4 ? out[2] + off : NULL, wanted & 8 ? out[3] + off : NULL,
                                  wanted & 2 ? col[1] + off : NULL, wanted & 1 ? row[1] + off : NULL);
             for (int i = off; i < count + off; i++)
                 CHECK((!(wanted & 1) || !memcmp(all[0] + i, x + i, 4)) && (!(wanted & 2) || !memcmp(all[1] + i, y + i, 4)) &&
@@ -405,9 +431,10 @@ static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
 }
 
 static int has_fine(const sampler *d) {
-    uint32_t fine = 0;
-    for (uint32_t k = 0; k < 2 * d->m->rows * d->m->rows; k++) fine += mcsi_product_fine(d->p)[k] > 0;
-    return fine > 0;
+    const uint8_t *grid_of = MCSI_READ(uint8_t, d->p, mcsi_product_layout(d->m->rows).grid_of);
+    uint32_t grids = 0;
+    for (uint32_t k = 0; k < 2 * d->m->rows * d->m->rows; k++) grids += grid_of[k] > 0;
+    return grids > 0;
 }
 
 static void test_arrays(void) {

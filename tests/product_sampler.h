@@ -123,6 +123,7 @@ typedef struct {
     mcs_phong phong;
     int most_fine; /* so many tiles may have more than one part */
     mcs_status status;
+    int dark; /* what the prepared form says */
 } sampler;
 
 static inline void sampler_start(sampler *d, const scene *m, const surface *s) {
@@ -137,6 +138,7 @@ static inline void sampler_ready(sampler *d) {
     memcpy(d->mem_alone.at, d->mem.at, d->mem.bytes);
     d->share = (double)d->alone->brdf_share;
     d->alone->brdf_share = 0;
+    d->dark = d->alone->dark != 0;
     CHECK(arena_intact(&d->mem), "wrote outside its %zu bytes", d->mem.bytes);
 }
 static inline double within(double x, double least, double most) { return x > least ? fmin(x, most) : least; }
@@ -157,7 +159,7 @@ static inline sampler sampler_make(const scene *m, const surface *s, int prepare
     sampler_start(&d, m, s);
     d.status = mcs_product_build((mcs_product *)(void *)d.mem.at, d.mem.bytes, tiles_of(m), env_of(m), &s->r);
     sampler_ready(&d);
-    CHECK(d.status == MCS_OK || d.status == MCS_UNIFORM, "build returns %d", (int)d.status);
+    CHECK(d.status == MCS_OK, "build returns %d", (int)d.status);
     CHECK(d.share >= 0 && d.share <= 0.95f && (!(s->r.matte >= 1) || !(d.share > 0)), "share %g", d.share);
     if (prepared) d.p = (mcs_product *)(void *)d.mem.at;
     else oneshot_share(&d, &s->r);
@@ -176,10 +178,12 @@ static inline void sampler_free(sampler *d) {
     arena_free(&d->mem_alone);
 }
 static inline mcs_texel draw(const sampler *d, float u1, float u2) {
-    return d->p ? mcs_product_sample(d->p, u1, u2) : mcs_oneshot_sample(tiles_of(d->m), env_of(d->m), &d->s->r, u1, u2);
+    return d->p ? mcs_product_sample(d->p, tiles_of(d->m), env_of(d->m), u1, u2)
+                : mcs_oneshot_sample(tiles_of(d->m), env_of(d->m), &d->s->r, u1, u2);
 }
 static inline double density(const sampler *d, mcs_vec3 w) {
-    return (double)(d->p ? mcs_product_pdf(d->p, w) : mcs_oneshot_pdf(tiles_of(d->m), env_of(d->m), &d->s->r, w));
+    return (double)(d->p ? mcs_product_pdf(d->p, tiles_of(d->m), env_of(d->m), w)
+                         : mcs_oneshot_pdf(tiles_of(d->m), env_of(d->m), &d->s->r, w));
 }
 static inline double own_density(const sampler *d, mcs_vec3 w) {
     const mcs_reflection *r = &d->s->r;
@@ -194,7 +198,7 @@ static inline double tile_density(const sampler *d, mcs_vec3 w, double *blur, do
     *blur = 0;
     *all = density(d, w);
     if (!(d->share > 0)) return *all;
-    if (d->p) return (1 - d->share) * (double)mcs_product_pdf(d->alone, w);
+    if (d->p) return (1 - d->share) * (double)mcs_product_pdf(d->alone, tiles_of(d->m), env_of(d->m), w);
     const double peak = own_density(d, w);
     *blur = 0x1p-148 + 4 * eps * *all + d->share_off * peak;
     return *all - d->share * peak;

@@ -198,6 +198,41 @@ static void check_tables(void) {
     TELLS("mcs_env_window_pdf", mcs_env_window_pdf(window, e, w));
 }
 
+/* A product is sampled with tiles of another size than it was built from. Every tile has light, so that draws end somewhere. */
+static void check_products(void) {
+    enum { W = 64, H = 32 };
+    const mcs_vec3 unit = {0.48f, 0.6f, 0.64f};
+    static float even[W * H];
+    for (int k = 0; k < W * H; k++) even[k] = 1;
+    const mcs_image image = mcs_image_make(even, W, H, 1);
+    mcs_env *e = (mcs_env *)malloc(mcs_env_bytes(W, H));
+    CHECK(e && !mcs_env_build(e, mcs_env_bytes(W, H), &image), "map");
+    const size_t bytes = mcs_tiles_bytes(e, 32);
+    mcs_tiles *t = (mcs_tiles *)malloc(bytes);
+    mcs_tiles *other = (mcs_tiles *)malloc(bytes);
+    static double p_room[MCS_PRODUCT_BYTES(16) / 8 + 1];
+    mcs_product *p = (mcs_product *)(void *)p_room;
+    const mcs_reflection r = {mcs_frame_make(unit), unit, 0.5f, 0.5f, 0.5f, MCS_PROFILE_GGX};
+    CHECK(t && other && !mcs_tiles_build(t, bytes, e, 16) && !mcs_tiles_build(other, bytes, e, 32), "tiles");
+    CHECK(!mcs_product_build(p, sizeof p_room, t, e, &r), "product");
+    TELLS_U("mcs_product_sample", mcs_product_sample(p, t, e, u, u));
+    TELLS_U("mcs_oneshot_sample", mcs_oneshot_sample(t, e, &r, u, u));
+    TELLS("mcs_product_pdf", mcs_product_pdf(p, t, e, w));
+    TELLS("mcs_oneshot_pdf", mcs_oneshot_pdf(t, e, &r, w));
+    asserted = 0;
+    mcs_product_sample(p, other, e, 0.5f, 0.5f);
+    CHECK(asserted > 0, "a sample by other tiles");
+    asserted = 0;
+    mcs_product_pdf(p, other, e, unit);
+    CHECK(asserted > 0, "a density by other tiles");
+    asserted = 0;
+    mcs_product_sample_n(p, other, e, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL);
+    CHECK(asserted > 0, "an array by other tiles");
+    free(t);
+    free(other);
+    free(e);
+}
+
 /* Turned there and back by float frames, 100 of them. */
 static void check_turns(void) {
     uint64_t state = mcst.seed;
@@ -221,6 +256,7 @@ int main(int argc, char **argv) {
     mcst_group("mistakes elsewhere");
     if (mcst_case("functions of directions")) check_vectors();
     if (mcst_case("tables and maps")) check_tables();
+    if (mcst_case("products")) check_products();
     if (mcst_case("turned by 100 frames")) check_turns();
     return mcst_finish();
 }

@@ -20,7 +20,7 @@ static estimate estimate_of(const sampler *d, int count, uint64_t stream) {
     int n = 0;
     for (int i = 0; i < count; i += CHUNK) {
         fill(&rng, CHUNK, u1, u2);
-        if (d->p) mcs_product_sample_n(d->p, CHUNK, u1, u2, x, y, z, pdf, NULL, NULL);
+        if (d->p) mcs_product_sample_n(d->p, tiles_of(d->m), env_of(d->m), CHUNK, u1, u2, x, y, z, pdf, NULL, NULL);
         for (int k = 0; k < CHUNK; k++, n++) {
             double v = 0;
             uint32_t col, at;
@@ -207,12 +207,12 @@ static void check_model(int k) {
     const surface s = surface_make(normals[3 + k], local_wo(0.5 + 0.1 * k, 0.2 * k), lobes[0]);
     float *weight = weights_of_model(k, &m, &s);
     sampler d = sampler_weights(&m, &s, weight);
-    CHECK(d.status == MCS_OK, "build returns %d", (int)d.status);
+    CHECK(d.status == MCS_OK && !d.dark, "build returns %d, dark: %d", (int)d.status, d.dark);
     const double truth = check_model_density(k, &d);
     for (int i = 0; i < count; i++) {
         const float u1 = mcs_pcg32_float(&rng);
         const float u2 = mcs_pcg32_float(&rng);
-        const mcs_texel t = mcs_product_sample(d.p, u1, u2);
+        const mcs_texel t = mcs_product_sample(d.p, tiles_of(d.m), env_of(d.m), u1, u2);
         double v = 0;
         if (t.pdf > 0) v = m.light[t.row * m.w + t.col] * model(k, s.r.wo, mcs_to_local(&s.r.frame, t.w)) / (double)t.pdf;
         sum += v;
@@ -236,7 +236,7 @@ static void check_far_weights(const scene *m, const surface *s, float size, int 
     float weight[512];
     for (uint32_t q = 0; q < 512; q++) weight[q] = !kind || q == 100 ? size : kind == 1 ? 0 : 1e-44f;
     sampler d = sampler_weights(m, s, weight);
-    CHECK(d.status == MCS_OK, "%g: build returns %d", (double)size, (int)d.status);
+    CHECK(d.status == MCS_OK && !d.dark, "%g: build returns %d, dark: %d", (double)size, (int)d.status, d.dark);
     for (uint32_t r = 0; r < 32; r++)
         for (uint32_t c = 0; c < 64; c++) {
             const double p = density(&d, point(64, 32, c, r, 0.5, 0.5));
@@ -255,7 +255,7 @@ static void check_bad_weights(const scene *m, const surface *s, int kind) {
     for (uint32_t q = 0; q < 512; q++) weight[q] = kind || q % 3 ? wrong[q % 5] : 1;
     for (uint32_t q = 0; kind == 2 && q < 512; q++) weight[q] = weight[q] > 0 ? NAN : weight[q];
     sampler d = sampler_weights(m, s, weight);
-    CHECK(d.status == (kind == 2 ? MCS_UNIFORM : MCS_OK), "build returns %d", (int)d.status);
+    CHECK(d.status == MCS_OK && d.dark == (kind == 2), "build returns %d, dark: %d", (int)d.status, d.dark);
     check_sane(&d, 1);
     for (uint32_t r = 0; r < 32; r++)
         for (uint32_t c = 0; c < 64; c++) {

@@ -656,12 +656,12 @@ static void tiny_tiles(void) {
     weight[9 * ROWS + 3] = 1e-12f;
     CHECK(mcs_product_build_weights(p, memory.bytes, t, e, weight) == MCS_OK, "product");
     for (uint32_t k = 0; k < TILES; k++)
-        CHECK((mcs_product_pdf(p, mcs_tiles_direction(t, e, k)) > 0) == (weight[k] > 0), "tile %u of weight %g: density %g", k,
-              (double)weight[k], (double)mcs_product_pdf(p, mcs_tiles_direction(t, e, k)));
+        CHECK((mcs_product_pdf(p, t, e, mcs_tiles_direction(t, e, k)) > 0) == (weight[k] > 0), "tile %u of weight %g: density %g",
+              k, (double)weight[k], (double)mcs_product_pdf(p, t, e, mcs_tiles_direction(t, e, k)));
     for (uint32_t k = 0; k < 4; k++) {
-        const mcs_texel x = mcs_product_sample(p, k & 1 ? 0.5f : 0, k & 2 ? 0.5f : 0);
-        CHECK(x.pdf > 0 && relative(mcs_product_pdf(p, x.w), (ld)x.pdf) <= 1e-5L, "draw %u: density %g, of its direction %g", k,
-              (double)x.pdf, (double)mcs_product_pdf(p, x.w));
+        const mcs_texel x = mcs_product_sample(p, t, e, k & 1 ? 0.5f : 0, k & 2 ? 0.5f : 0);
+        CHECK(x.pdf > 0 && relative(mcs_product_pdf(p, t, e, x.w), (ld)x.pdf) <= 1e-5L, "draw %u: density %g, of its direction %g",
+              k, (double)x.pdf, (double)mcs_product_pdf(p, t, e, x.w));
     }
     arena_free(&map);
     arena_free(&tiles);
@@ -696,7 +696,7 @@ static void fine_grids(void) {
         const ld want = (ld)((1 - x) * ((1 - y) * (double)v[j * M + i] + y * (double)v[j * M + i + 1]) +
                              x * ((1 - y) * (double)v[(j + 1) * M + i] + y * (double)v[(j + 1) * M + i + 1])) /
                         (ld)mean;
-        const double got = (double)mcsi_fine_density(v, u[0], u[1]);
+        const double got = (double)mcsi_grid_density(v, u[0], u[1]);
         /* values of up to 1000 times the least, differences of which are rounded; places to 7 * 2^-24 */
         CHECK(fabsl((ld)got - want) <= 20 * EPS * want + 40 * EPS * 1000 / (ld)mean, "at %g, %g: %g, not %Lg", (double)u[0],
               (double)u[1], got, want);
@@ -760,8 +760,8 @@ static void mirrored(float alpha) {
         mcs_dir a, b;
         a = b = mcs_sphere_sample(u1, i % 4 ? u2 : u2 * 0.03f);
         b.w.y = -b.w.y;
-        const double p = (double)mcs_product_pdf(s.p, a.w);
-        const double q = (double)mcs_product_pdf(s.p, b.w);
+        const double p = (double)mcs_product_pdf(s.p, s.t, s.e, a.w);
+        const double q = (double)mcs_product_pdf(s.p, s.t, s.e, b.w);
         const double f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, a.w);
         const double g = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, b.w);
         CHECK(fabs(p - q) <= 1e-4 * p, "(%g, %g, %g): %g, mirrored %g", (double)a.w.x, (double)a.w.y, (double)a.w.z, p, q);
@@ -783,7 +783,7 @@ static void black_rows(void) {
         mcst_uniform(&seed, 1, &u1, &u2);
         const mcs_vec3 w = mcs_sphere_sample(u1, u2).w;
         const int black = mcs_env_texel(s.e, w).row % 2 == 0;
-        const double p = (double)mcs_product_pdf(s.p, w);
+        const double p = (double)mcs_product_pdf(s.p, s.t, s.e, w);
         const double f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, w);
         CHECK(black ? p == 0 && f == 0 : p >= 0 && f >= 0, "(%g, %g, %g): %g, one-shot %g", (double)w.x, (double)w.y, (double)w.z,
               p, f);

@@ -239,11 +239,11 @@ DRAW(window, {
     keep3(i, t.w, t.pdf);
 })
 DRAW(matte, {
-    const mcs_texel t = mcs_product_sample(now.product[MATTE][i / RUN % SURFACES], u1[i], u2[i]);
+    const mcs_texel t = mcs_product_sample(now.product[MATTE][i / RUN % SURFACES], now.tiles, now.env, u1[i], u2[i]);
     keep3(i, t.w, t.pdf);
 })
 DRAW(ggx, {
-    const mcs_texel t = mcs_product_sample(now.product[GGX][i / RUN % SURFACES], u1[i], u2[i]);
+    const mcs_texel t = mcs_product_sample(now.product[GGX][i / RUN % SURFACES], now.tiles, now.env, u1[i], u2[i]);
     keep3(i, t.w, t.pdf);
 })
 DRAW(matte_once, {
@@ -276,8 +276,8 @@ static void draw_window_n(size_t at) {
 }
 static void draw_product_n(int kind, size_t at) {
     for (size_t i = 0; i < DRAWS; i += RUN)
-        mcs_product_sample_n(now.product[kind][i / RUN % SURFACES], RUN, pool[0] + at + i, pool[1] + at + i, out[0] + i, out[1] + i,
-                             out[2] + i, out[3] + i, NULL, NULL);
+        mcs_product_sample_n(now.product[kind][i / RUN % SURFACES], now.tiles, now.env, RUN, pool[0] + at + i, pool[1] + at + i,
+                             out[0] + i, out[1] + i, out[2] + i, out[3] + i, NULL, NULL);
 }
 static void draw_matte_n(size_t at) { draw_product_n(MATTE, at); }
 static void draw_ggx_n(size_t at) { draw_product_n(GGX, at); }

@@ -277,6 +277,7 @@ typedef struct {
     const mcs_env *e;
     const mcs_env_window *window;
     const mcs_product *product;
+    const mcs_tiles *tiles;
     uint32_t row, rows, col, cols;
     int lit; /* 0: there is no light to draw */
 } source;
@@ -284,17 +285,17 @@ typedef struct {
 static mcs_texel draw(const source *s, float u1, float u2) {
     return s->kind == MAP      ? mcs_env_sample(s->e, u1, u2)
            : s->kind == WINDOW ? mcs_env_window_sample(s->window, s->e, u1, u2)
-                               : mcs_product_sample(s->product, u1, u2);
+                               : mcs_product_sample(s->product, s->tiles, s->e, u1, u2);
 }
 static void draw_n(const source *s, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
     if (s->kind == MAP) mcs_env_sample_n(s->e, n, u1, u2, x, y, z, pdf, NULL, NULL);
     else if (s->kind == WINDOW) mcs_env_window_sample_n(s->window, s->e, n, u1, u2, x, y, z, pdf, NULL, NULL);
-    else mcs_product_sample_n(s->product, n, u1, u2, x, y, z, pdf, NULL, NULL);
+    else mcs_product_sample_n(s->product, s->tiles, s->e, n, u1, u2, x, y, z, pdf, NULL, NULL);
 }
 static float density(const source *s, mcs_vec3 w) {
     return s->kind == MAP      ? mcs_env_pdf(s->e, w)
            : s->kind == WINDOW ? mcs_env_window_pdf(s->window, s->e, w)
-                               : mcs_product_pdf(s->product, w);
+                               : mcs_product_pdf(s->product, s->tiles, s->e, w);
 }
 static int inside(const source *s, uint32_t col, uint32_t row) {
     const uint32_t w = s->p->im.w;
@@ -468,7 +469,7 @@ static void check_product_texels(const source *s, const row_of_texels *t, tally 
             dir.x = t->x[x];
             dir.y = t->y[x];
             dir.z = t->z[x];
-            const float pdf = mcs_product_pdf(s->product, dir);
+            const float pdf = mcs_product_pdf(s->product, s->tiles, s->e, dir);
             wrong += !(pdf >= 0 && pdf <= FLT_MAX) || (pdf > 0 && p->total > 0 && black(p, x, y));
             mass += pdf * omega;
         }
@@ -615,7 +616,7 @@ static void check_products(const source *map, const row_of_texels *t, long n, ta
     mcs_tiles *tiles = (mcs_tiles *)(void *)a.at;
     mcs_product *product = (mcs_product *)(void *)b.at;
     mcs_status rc = mcs_tiles_build(tiles, a.bytes, map->e, 16);
-    CHECK(rc == (map->lit ? MCS_OK : MCS_UNIFORM), "%s, tiles: status %d", p->name, (int)rc);
+    CHECK(rc == MCS_OK, "%s, tiles: status %d", p->name, (int)rc);
     for (int i = 0; i < count; i++) {
         source s = *map;
         mcs_reflection r;
@@ -629,8 +630,9 @@ static void check_products(const source *map, const row_of_texels *t, long n, ta
         product->brdf_share = 0;
         s.kind = PRODUCT;
         s.product = product;
-        s.lit = rc == MCS_OK;
-        CHECK(rc == MCS_OK || rc == MCS_UNIFORM, "%s, product: status %d", p->name, (int)rc);
+        s.tiles = tiles;
+        s.lit = !product->dark;
+        CHECK(rc == MCS_OK, "%s, product: status %d", p->name, (int)rc);
         check_product_texels(&s, t, to);
         check_draws(&s, n, "product", to);
     }
