@@ -1463,8 +1463,8 @@ MCS_API void mcs_product_sample_n(const mcs_product *p, const mcs_tiles *t, cons
 #endif
 
 /* ==== [estimator] running mean, variance and standard error ========================================================
- * Estimates an integral as the mean of f(x)/pdf(x) over the samples, and tells how far off that mean may be. Four times as
- * many samples halve the error.
+ * Estimates an integral as the mean of f(x)/pdf(x) over the samples, and tells how far off that mean may be. Four times
+ * as many samples halve the error.
  *
  *     mcs_stat s = {0, 0, 0};
  *     for (...) mcs_stat_add(&s, value_of_a_sample);
@@ -7518,8 +7518,8 @@ MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_re
 /* ==== [estimator] bodies ========================================================================================= */
 
 /* Values up to DBL_MAX are good, so their differences and the squares of these may overflow. Differences are therefore
- * halved, and the sum of squares is computed in two ways: as it stands where every factor is small enough, else scaled by
- * 2^-1024, the square of 2^-512. */
+ * halved, and the sum of squares is computed in two ways: as it stands where every factor is small enough, else scaled
+ * by 2^-1024, the square of 2^-512. */
 
 /* sum + 4 a b k, where a b >= 0 and k >= 1/2, but at most DBL_MAX. */
 MCS_FN double mcsi_stat_sum(double sum, double a, double b, double k) {
@@ -7532,7 +7532,8 @@ MCS_FN double mcsi_stat_sum(double sum, double a, double b, double k) {
     return quarter < 0.25 ? 4.0 * quarter / down / down : DBL_MAX;
 }
 
-/* Welford's update: with d the difference to the mean before and e that to the mean after, mean += d/n and m2 += d e. */
+/* Welford's update: with d the difference to the mean before and e that to the mean after, mean += d/n and m2 += d
+ * e. */
 MCS_FN void mcs_stat_add(mcs_stat *s, double x) {
     const double half_d = 0.5 * x - 0.5 * s->mean;
     s->n += 1.0;
@@ -7540,7 +7541,8 @@ MCS_FN void mcs_stat_add(mcs_stat *s, double x) {
     s->m2 = mcsi_stat_sum(s->m2, half_d, 0.5 * x - 0.5 * s->mean, 1.0);
 }
 
-/* With d the difference of both means, the mean moves by d n_other/n, and m2 is the sum of both and d^2 n_s n_other/n. */
+/* With d the difference of both means, the mean moves by d n_other/n, and m2 is the sum of both and d^2 n_s
+ * n_other/n. */
 MCS_FN void mcs_stat_merge(mcs_stat *s, const mcs_stat *other) {
     if (!(s->n > 0.0)) *s = *other;
     else if (other->n > 0.0) {
