@@ -649,11 +649,6 @@ FN(env_window_pdf) {
 
 /* --- products --------------------------------------------------------------------------------------------------------------- */
 
-/* What a build returned; 1 where all is black. */
-MCST_HD static uint32_t bits_said(mcs_status status, uint32_t black) {
-    return status < 0 ? (uint32_t)status : black != 0;
-}
-
 MCST_HD static mcs_reflection bits_reflection(const float *in) {
     mcs_reflection r;
     r.frame = mcs_frame_make(IN3(8)), r.wo = IN3(3), r.alpha_x = IN(0), r.alpha_y = IN(1);
