@@ -3549,11 +3549,16 @@ MCSI_CORE mcsi_slope_half mcsi_slope_draw(const mcsi_slopes *m, mcs_vec3 wo, mcs
 MCSI_CORE mcs_vec3 mcsi_slope_reflect(mcs_vec3 wo, const mcsi_slope_half *h) {
     return mcsi_mirror(wo, h->p, 2.0f * h->wo_p / h->p2);
 }
-/* A sample of a BRDF: wi, its density and the weight that the lobe gives it. */
-MCSI_CORE mcs_brdf mcsi_slope_brdf(mcs_i ok, mcs_vec3 wi, const mcsi_slope_half *h, mcs_f g, mcs_f weight) {
+/* A sample of a BRDF, still without its weight. */
+MCSI_CORE mcs_brdf mcsi_slope_brdf(mcs_i ok, mcs_vec3 wi, const mcsi_slope_half *h, mcs_f g) {
     const mcs_i above = h->wo_p > 0.0f;
     const mcs_f pdf = g * (h->p2 * h->p2) / mcsi_sel(above, 4.0f * h->wo_p, mcs_set(1.0f));
-    return mcsi_brdf(ok & above, wi, pdf, weight);
+    return mcsi_brdf(ok & above, wi, pdf, mcs_set(1.0f));
+}
+/* s with its weight, which comes last, so that compilers may skip it where the sample is lost. */
+MCSI_CORE mcs_brdf mcsi_weighted(mcs_brdf s, mcs_f weight) {
+    s.weight = mcsi_sane_result(s.pdf > 0.0f, weight);
+    return s;
 }
 
 /* ==== [ward] bodies */
@@ -3640,7 +3645,8 @@ MCSI_SAMPLE mcs_brdf mcs_ward_sample(const mcs_ward *m, mcs_vec3 wo, mcs_f u1, m
     u2 = mcsi_sane_u(u2, &ok);
     const mcsi_slope_half h = mcsi_slope_draw(&m->s, wo, radius.r, u2);
     const mcs_vec3 wi = mcsi_slope_reflect(wo, &h);
-    return mcsi_slope_brdf(ok, wi, &h, radius.g, mcsi_ward_sample_weight(m->model, wo, wi, &h));
+    const mcs_brdf s = mcsi_slope_brdf(ok, wi, &h, radius.g);
+    return mcsi_weighted(s, mcsi_ward_sample_weight(m->model, wo, wi, &h));
 }
 MCSI_FN mcs_f mcs_ward_pdf(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) { return mcsi_gauss_pdf(&m->s, wo, wi); }
 
@@ -3731,8 +3737,8 @@ MCSI_SAMPLE mcs_brdf mcs_beckmann_sample(const mcs_beckmann *m, mcs_vec3 wo, mcs
     u2 = mcsi_sane_u(u2, &ok);
     const mcsi_slope_half h = mcsi_slope_draw(&m->s, wo, radius.r, u2);
     const mcs_vec3 wi = mcsi_slope_reflect(wo, &h);
-    const mcs_f weight = wi.z * h.wo_p / mcsi_beckmann_g2_divisor(&m->s, wo, wi);
-    return mcsi_slope_brdf(ok, wi, &h, radius.g, weight);
+    const mcs_brdf s = mcsi_slope_brdf(ok, wi, &h, radius.g);
+    return mcsi_weighted(s, wi.z * h.wo_p / mcsi_beckmann_g2_divisor(&m->s, wo, wi));
 }
 MCSI_FN mcs_f mcs_beckmann_pdf(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_gauss_pdf(&m->s, wo, wi);
@@ -3869,8 +3875,8 @@ MCSI_SAMPLE mcs_brdf mcs_ggx_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs
     u2 = mcsi_sane_u(u2, &ok);
     const mcsi_slope_half h = mcsi_slope_draw(&m->s, wo, radius.r, u2);
     const mcs_vec3 wi = mcsi_slope_reflect(wo, &h);
-    const mcs_f weight = 2.0f * wi.z * h.wo_p / mcsi_ggx_g2_divisor(&m->s, wo, wi);
-    return mcsi_slope_brdf(ok, wi, &h, radius.g, weight);
+    const mcs_brdf s = mcsi_slope_brdf(ok, wi, &h, radius.g);
+    return mcsi_weighted(s, 2.0f * wi.z * h.wo_p / mcsi_ggx_g2_divisor(&m->s, wo, wi));
 }
 /* With H = wo + wi, wo.h is |H| / 2 and cos(theta_h) is H.z / |H|. */
 MCSI_FN mcs_f mcs_ggx_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
@@ -7958,6 +7964,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_warp_point MCSI_(warp_point)
 #define mcsi_warp_source MCSI_(warp_source)
 #define mcsi_warps_loop MCSI_(warps_loop)
+#define mcsi_weighted MCSI_(weighted)
 #define mcsi_with_sign MCSI_(with_sign)
 
 #define MCSI_W 4
@@ -8407,6 +8414,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_warp_point
 #undef mcsi_warp_source
 #undef mcsi_warps_loop
+#undef mcsi_weighted
 #undef mcsi_with_sign
 #endif
 
