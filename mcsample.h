@@ -1162,185 +1162,266 @@ MCS_FN float mcs_mis_power(float pf, float pg);
  * or NaN counts as 0. c is taken within [0,1]; the result is 0 where it is NaN. */
 MCS_FN float mcs_mix_pdf(float c, float pf, float pg);
 
-/* ==== [tables] densities given as numbers ======================================================================================
- * Built once into memory of the caller's (8-byte aligned, mcs_x_bytes(n) bytes), then constant; no pointers inside, so a table may
- * be copied, written to a file or shared. Probabilities are integers that add up to exactly 2^31: sample, pdf and pmf agree
- * exactly, every entry that is not zero has a share (a u of 24 bits may miss it below 2^-24), and zero entries are never drawn.
- * Bad entries are counted (t->bad): negative ones and NaN count as 0, +infinity counts as FLT_MAX. The x of pwc and pwl is a float:
- * beyond 2^24 cells it cannot tell them apart. The same list makes the same bytes, all mcs_x_bytes(n) of them.
+/* ==== [tables] densities and probabilities given as numbers ====================================================
+ * Lists of numbers, turned once into a table from which entries are drawn in proportion. Four kinds:
  *
- *   pwc        piecewise constant density on [0,1], n cells           mcs_pwc_build from n samples, _build_fn from a function
- *              (4-point Gauss per cell); mcs_pwc_sample(t, u) -> {x, pdf, cell}, _pdf(t, x), _invert(t, x)
- *   discrete   the same table as n probabilities                      mcs_discrete_sample(t, u) -> {i, pmf, u rescaled for reuse}
- *   pwl        piecewise linear density on [0,1], n cells, n+1 vertices
- *   alias      n probabilities by the alias method                    one look-up, but the map jumps about: stratified u are lost.
- *              For independent u and tables much larger than the cache only. mcs_alias_sample(t, u) -> {i, pmf, u}
- *   by bits    mcs_pwc_sample_bits, mcs_discrete_sample_bits, mcs_pwl_sample_bits, mcs_alias_sample_bits(t, b1, b2): the same from
- *              64 random bits, b1 the upper 32. The 24 bits of one float u find both the entry and the place in it (x, or the u to
- *              reuse): frequencies are off by up to n 2^-24 of 1/n, and 4 bits are left for the place in one of a million entries.
- *              Beyond some thousand entries use bits: at least 33 are left for the place (alias: 32 in a column)
+ *   pwc        piecewise constant density on [0,1], n cells. For histograms, and functions known at many points.
+ *   discrete   n probabilities: which light, which triangle. It is a pwc table read by entries.
+ *   pwl        piecewise linear density on [0,1], n cells between n + 1 vertices. Continuous.
+ *   alias      n probabilities in one look-up. The map from u jumps about, so that stratified u are lost. Only for
+ *              independent u and tables much larger than the cache.
  *
- * _build returns MCS_OK, MCS_UNIFORM (all entries zero: a uniform table was made), MCS_ERR_ARG (NULL or misaligned), MCS_ERR_SIZE
- * (n is 0 or too large), MCS_ERR_MEMORY (too few bytes). After an error nothing was written. t->bad counts bad entries, t->total is
- * the sum (pwl: t->cells.bad, t->cells.total).
- * Maps increase with u (but alias). Cost: constant expected time by a guide table (Chen and Asau 1974, "On generating random
- * variates from an empirical distribution"), at most log2(n) steps; 8 bytes an entry, pwl 12, alias 16 (Walker 1977, Vose 1991). */
+ * memory         The caller's, 8-byte aligned, mcs_x_bytes(n) bytes. A table holds no pointers: it may be copied,
+ *                written to a file or shared by threads. Once built it is constant. The same list makes the same bytes.
+ * size           24 bytes and per entry: pwc and discrete 6 to 8 bytes, pwl 10 to 12, alias 16.
+ * n              1 to 2^28 entries. The x of pwc and pwl is a float: beyond 2^24 cells it cannot tell them apart.
+ * probabilities  Integers that add up to exactly 2^31: sample, pdf and pmf agree exactly. Every entry that is not zero
+ *                has a share (a u of 24 bits may miss it below 2^-24), and zero entries are never drawn.
+ * bad entries    Negative ones and NaN count as 0, +infinity counts as FLT_MAX. The member bad counts them.
+ * all zero       makes an even table, which is no error: uniform is 1 and total is 0.
+ * errors         _build returns MCS_ERR_ARG where t or the list is NULL or t is misaligned, MCS_ERR_SIZE where n is 0 or
+ *                too large, MCS_ERR_MEMORY where bytes are too few, in this order, and otherwise MCS_OK. After an error
+ *                nothing was written.
+ * monotone       All but alias increase with u. mcs_x_invert is the inverse.
+ * bits           The 24 bits of a float u find both the entry and the position in it (x, or the u to reuse): frequencies
+ *                are off by up to n 2^-24 of 1/n, and 4 bits are left for the position in one of a million entries. Beyond
+ *                some thousand entries use mcs_x_sample_bits(t, b1, b2) with 64 random bits, b1 the upper 32: at least
+ *                33 are left for the position (alias: 32 in a column).
+ * cost           Constant expected time by a guide table (Chen and Asau 1974, "On generating random variates from an
+ *                empirical distribution"), at most log2(n) steps. Alias: Walker 1977, Vose 1991. */
 #ifndef MCS_NO_TABLES
+/* A point drawn from a density: x in [0,1), its density (0 for a bad u), and its cell. */
 typedef struct {
     float x, pdf;
     uint32_t i;
 } mcs_cell;
+/* An entry drawn, its probability (0 for a bad u), and what is left of u, again even in [0,1): use it for the next choice. */
 typedef struct {
     uint32_t i;
     float pmf, u;
 } mcs_pick;
+/* The header of a table; its lists follow in memory. Read it, do not write to it. */
 typedef struct {
-    double total;
-    uint32_t n, bad, shift, uniform;
-} mcs_pwc; /* then cdf[n + 1], guide[] */
-typedef mcs_pwc mcs_discrete;
+    double total;     /* sum of the entries */
+    uint32_t n;       /* cells */
+    uint32_t bad;     /* entries that were negative, NaN or infinite */
+    uint32_t shift;   /* private */
+    uint32_t uniform; /* 1 where all entries are zero: all cells are alike */
+} mcs_pwc;
+typedef mcs_pwc mcs_discrete; /* the same table by another name: each may be read as the other */
 typedef struct {
-    mcs_pwc cells;
-} mcs_pwl; /* then cdf[n + 1], guide[], vertex[n + 1] */
+    mcs_pwc cells; /* of these total is the integral times n; bad counts vertices */
+} mcs_pwl;
 typedef struct {
-    double total;
-    uint32_t n, bad, uniform, unused;
-} mcs_alias; /* then column[n] */
+    double total; /* sum of the entries */
+    uint32_t n, bad;
+    uint32_t uniform; /* 1 where all entries are zero: all are alike */
+    uint32_t unused;
+} mcs_alias;
+
+/* Bytes of a table of n cells; 0 where n is 0 or too large. */
 MCS_API size_t mcs_pwc_bytes(uint32_t n);
+/* From n densities, of any scale. f may lie in the table's own memory. */
 MCS_API mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n);
+/* From a function on [0,1]: f(x, context) is called 4 n times, for a Gauss rule with 4 points in each cell. */
 MCS_API mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context,
                                     uint32_t n);
+/* Draws x. u in [0,1), else the density is 0. */
 MCS_API mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u);
+/* Draws x by 64 random bits, b1 the upper 32. */
 MCS_API mcs_cell mcs_pwc_sample_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2);
+/* Density at x; 0 outside [0,1]. */
 MCS_API float mcs_pwc_pdf(const mcs_pwc *t, float x);
+/* The u that is mapped to x; 0 below 0 and for NaN, 1 - 2^-24 beyond 1. */
 MCS_API float mcs_pwc_invert(const mcs_pwc *t, float x);
+
+/* Bytes of a table of n probabilities; 0 where n is 0 or too large. */
 MCS_API size_t mcs_discrete_bytes(uint32_t n);
+/* From n weights, of any scale. w may lie in the table's own memory. */
 MCS_API mcs_status mcs_discrete_build(mcs_discrete *t, size_t bytes, const float *w, uint32_t n);
+/* Draws an entry. u in [0,1), else the probability is 0. */
 MCS_API mcs_pick mcs_discrete_sample(const mcs_discrete *t, float u);
+/* Draws an entry by 64 random bits, b1 the upper 32. */
 MCS_API mcs_pick mcs_discrete_sample_bits(const mcs_discrete *t, uint32_t b1, uint32_t b2);
+/* Probability of entry i; 0 from n on. */
 MCS_API float mcs_discrete_pmf(const mcs_discrete *t, uint32_t i);
+
+/* Bytes of a table of n cells, which has n + 1 vertices; 0 where n is 0 or too large. */
 MCS_API size_t mcs_pwl_bytes(uint32_t n);
+/* From densities at n + 1 vertices, of any scale. f may lie in the table's own memory. */
 MCS_API mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n);
+/* Draws x. u in [0,1), else the density is 0. */
 MCS_API mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u);
+/* Draws x by 64 random bits, b1 the upper 32. */
 MCS_API mcs_cell mcs_pwl_sample_bits(const mcs_pwl *t, uint32_t b1, uint32_t b2);
+/* Density at x; 0 outside [0,1]. */
 MCS_API float mcs_pwl_pdf(const mcs_pwl *t, float x);
+/* The u that is mapped to x; 0 below 0 and for NaN, 1 - 2^-24 beyond 1. */
 MCS_API float mcs_pwl_invert(const mcs_pwl *t, float x);
+
+/* Bytes of a table of n probabilities; 0 where n is 0 or too large. */
 MCS_API size_t mcs_alias_bytes(uint32_t n);
+/* From n weights, of any scale. w must not overlap the table. */
 MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n);
+/* Draws an entry. u in [0,1), else the probability is 0. */
 MCS_API mcs_pick mcs_alias_sample(const mcs_alias *t, float u);
+/* Draws an entry by 64 random bits, b1 the upper 32. */
 MCS_API mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t b2);
+/* Probability of entry i; 0 from n on. */
 MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i);
 #ifndef MCS_NO_BATCH
+/* mcs_pwc_sample_n, mcs_pwl_sample_n: n draws; x and pdf may be NULL, and either may be u. */
 MCS_API void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float *x, float *pdf);
 #endif
 #endif
 
-/* ==== [env] latitude-longitude environment map =================================================================================
- * domain (u1, u2): u1 the column within the row, u2 the row; codomain unit w: row 0 holds +z, phi = 2 pi (column + .)/width from +x
- * towards +y. Density per solid angle: texel probability (luminance times solid angle) over the texel's solid angle 2 pi/W (cos t0
- * - cos t1): constant within a texel, because there cos(theta), not theta, is linear; no division by sin(theta) is left (slide 23).
+/* ==== [env] latitude-longitude environment maps ==================================================================
+ * Directions in proportion to the luminance of a map of the whole sphere, per solid angle. Row 0 is at +z; row r spans
+ * theta in [pi r/h, pi (r+1)/h], column c phi in [2 pi c/w, 2 pi (c+1)/w], x = sin(theta) cos(phi).
  *
- *   mcs_image                    the pixels: mcs_image_make(pixels, w, h, channels), then set what differs. channels 1 (luminance)
- *                                or 3 and more (the first 3 linear RGB, Rec. 709 luminance); pixel_stride, row_stride in floats,
- *                                0: packed, row_stride may be negative (pixels is the row at +z); bilinear: radiance will be
- *                                looked up with a bilinear filter (columns wrap, rows end at the poles); floor: luminance taken
- *                                off every texel, see below
- *   mcs_env_bytes(w, h)          bytes to give to build, 8-byte aligned; 0 where refused
- *   mcs_env_build(e, bytes, &image)
- *   mcs_env_build_rows(e, bytes, &image, y0, y1), mcs_env_finish(e, bytes, &image)   the same in parts: any ranges that together
- *                                hold every row, in any order, by any threads; then finish once. The bits are those of build.
- *   mcs_env_sample(e, u1, u2) -> {w, pdf, col, row}; _sample_bits takes 32 random bits each: maps beyond 4096 columns have more
- *                                texels than a float u can tell apart
- *   mcs_env_pdf(e, w); mcs_env_texel(e, w) -> the same struct, for radiance and density in one look-up
- *   mcs_env_invert(e, w) -> (u1, u2)
- *   mcs_env_sample_n(e, n, u1, u2, x, y, z, pdf, col, row), _texel_n(e, n, x, y, z, pdf, col, row), _pdf_n(e, n, x, y, z, pdf)
- *                                arrays, of which results may be NULL; memory is fetched ahead, so these are the fast forms for
- *                                large maps
- *   mcs_env_check(e, bytes)      whether memory (a file read or mapped) is a table: MCS_OK, else MCS_ERR_MEMORY when cut short, or
- *                                MCS_ERR_FORMAT. MCS_OK promises that all bytes but e->frame are those of a build, by a checksum
- *                                of 64 bits: damage to one byte never passes, other damage once in 2^64 times; that e->frame,
- *                                which is yours to change, is orthonormal to 1e-4; and that samplers keep to the table's
- *                                memory, even if the table was forged. It reads the whole table
- *   mcs_env_mean(&image)         mean luminance over the sphere
- *   mcs_env_weight(e, pdf)       1/pdf, for an estimator without other strategies: 0 and MCS_ASSERT for a map with a floor
- *   mcs_env_window_*             the same for a rectangle of texels: `rows` rows from `row`, `cols` columns from `col`, across the
- *                                seam where need be. _bytes(rows); _build(m, bytes, e, row, rows, col, cols), MCS_UNIFORM when it
- *                                is black; the window holds no pointer and goes with any table of the same image
- *   e->frame                     orientation: world directions of local x, y, z, orthonormal. build makes it the axes; it may be
- *                                changed at any time but for products built with it. Seen from inside, +z up, columns run to the
- *                                left: a mirrored frame (t negated) shows a photograph as it was taken
+ *   const mcs_image im = mcs_image_make(rgb, w, h, 3);
+ *   const size_t bytes = mcs_env_bytes(w, h);
+ *   mcs_env *e = (mcs_env *)malloc(bytes);
+ *   if (!e || mcs_env_build(e, bytes, &im) != MCS_OK) return 0;
+ *   const mcs_texel s = mcs_env_sample(e, u1, u2);            // s.w, s.pdf, s.col, s.row
  *
- * Tables are exact as in [tables]: texel probabilities are integers over 2^31 by row and by column; a texel that is not black can
- * be drawn, black ones never are, and texel and pdf of the returned float direction are those of the sample, as samples keep a
- * rounding error off the borders of their texel (with the axes as frame; the rounding of another frame takes up to 2 % of the
- * samples near the poles of a map of 4096 columns to the next texel). e->total is the luminance integrated over the sphere. Maps
- * are monotone: stratified u stay stratified.
- * Channels are bad one by one, and e->bad counts the texels that have any. A negative channel, as colours outside the gamut have,
- * counts as 0, and so does NaN; the luminance is that of the others, so that a lamp of such a colour is drawn. +infinity, which a
- * sun in halves may be, counts as FLT_MAX. mcs_env_mean does the same; whoever looks radiance up has to.
- * The same image makes the same bytes, all mcs_env_bytes(w, h) of them, whatever the memory held; so do windows, tiles, products.
- * Bilinear: weights are the texels filtered by (1 2 1)/4 along rows and columns, at least a quarter of what a filtered look-up
- * finds anywhere in the texel: L/pdf is at most 4 times the filtered total.
- * MIS compensation (Karlik et al. 2019): with image.floor = mcs_env_mean(&image), what is darker than the mean is left to the other
- * strategy. Such a table is incomplete (e->incomplete): its density is 0 where the map is not black.
- * Skipped: a constant map is the uniform sphere and its rows are never read; an all-black one likewise, build returns MCS_UNIFORM;
- * rows without light are zeros; texels outside rows [row0, row1) and columns [col0, col1) are not read.
- * Cost: two cache misses; 4.3 bytes a texel from 1024 x 512 on, 5.3 at 64 x 32. Source: Pharr, Jakob, Humphreys 2023, section
- * 12.5. */
+ * To join it with another strategy, a BRDF say, weigh this sample by mcs_mis_balance(s.pdf, BRDF's pdf of s.w), and the
+ * BRDF's sample w by mcs_mis_balance(its pdf, mcs_env_pdf(e, w)). Both densities are per solid angle; directions are in
+ * world space here and local there (mcs_to_local, mcs_to_world).
+ *
+ * memory         The caller's, 8-byte aligned, mcs_env_bytes(w, h) bytes: 4.3 bytes a texel from 1024 x 512 on (2.3 MB;
+ *                4096 x 2048: 36 MB), 5.3 at 64 x 32. A map holds no pointers: it may be written to a file, mapped into
+ *                memory (call mcs_env_check), and shared by threads. The image is not needed any more. The same image
+ *                makes the same bytes, whatever the memory held.
+ * density        Per solid angle: probability of the texel (luminance times solid angle) over its solid angle,
+ *                2 pi/w (cos t0 - cos t1). It is constant within a texel, because there cos(theta), not theta, is linear in
+ *                u2; no division by sin(theta) is left (slide 23). Probabilities of rows, and of columns within a row, are
+ *                integers over 2^31, exact as in [tables]. A texel that is not black can be drawn, black ones never are.
+ *                Texel and pdf of the returned float direction are those of the sample, as samples keep a rounding error
+ *                off the borders of their texel (with the axes as frame; the rounding of another frame takes up to 2 % of
+ *                the samples near the poles of a map of 4096 columns to the next texel).
+ * monotone       Rows increase with u2, columns with u1: stratified u stay stratified.
+ * bad texels     Channels are bad one by one, and e->bad counts the texels that have any. A negative channel, as colours
+ *                outside the gamut have, counts as 0, and so does NaN; the luminance is that of the others, so that a lamp
+ *                of such a colour is drawn. +infinity, which a sun in halves may be, counts as FLT_MAX. mcs_env_mean does
+ *                the same; whoever looks radiance up has to.
+ * black map      is no error: it is drawn as even light, e->uniform is 1 and e->total is 0.
+ * bilinear       For radiance that is looked up with a bilinear filter: weights are the texels filtered by (1 2 1)/4 along
+ *                rows and columns, at least a quarter of what a filtered look-up finds anywhere in the texel. L/pdf is at
+ *                most 4 times the filtered total.
+ * floor          MIS compensation (Karlik et al. 2019): with image.floor = mcs_env_mean(&image), what is darker than the
+ *                mean is left to the other strategy. Such a map is incomplete (e->incomplete): its density is 0 where the
+ *                image is not black.
+ * skipped        A constant map is the uniform sphere and its rows are never read; an all-black one likewise. Rows without
+ *                light are zeros. Texels outside rows [row0, row1) and columns [col0, col1) are not read.
+ * ownership      Objects hold no pointers. Pass what they were built from to every call.
+ * cost           Two cache misses. The array forms fetch memory ahead: they are the fast ones for large maps.
+ * source         Pharr, Jakob, Humphreys 2023, section 12.5. */
 #ifndef MCS_NO_TABLES
+/* The picture that a map is built from. Make it by mcs_image_make, then set what differs. */
+typedef struct {
+    const float *pixels; /* of texel (col, row): pixels[row row_stride + col pixel_stride], and the next two for RGB */
+    uint32_t w, h;       /* 1 to 65536 columns and rows */
+    uint32_t channels;   /* 1: luminance; 3 or more: linear RGB and ignored ones (Rec. 709 luminance); 2 is an error */
+    int bilinear;        /* 1: for look-ups with a bilinear filter; default 0 */
+    ptrdiff_t pixel_stride; /* floats from a texel to the next; default 0: channels */
+    ptrdiff_t row_stride; /* floats from a row to the next, negative for pictures stored upwards; default 0: w texels */
+    float floor;          /* what is subtracted from the weights; default 0 */
+} mcs_image;
+/* Private: where the lists of a map lie, in bytes from its start. */
 typedef struct {
     uint64_t edge, row, row_light, row_sums, row_guide, col_sums, col_guide, bytes;
     uint32_t row_shift, col_shift, guide_length, unused;
 } mcsi_env_offsets;
+/* The header of a map; its lists follow in memory. Read it, and write to nothing but the frame. */
 typedef struct {
-    const float *pixels;
-    uint32_t w, h, channels;
-    int bilinear;
-    ptrdiff_t pixel_stride, row_stride;
-    float floor;
-} mcs_image;
-typedef struct {
-    uint32_t magic, version;
-    mcsi_env_offsets offset;
-    double total;
-    uint32_t w, h, bad, row0, row1, col0, col1, uniform, incomplete;
-    float turn, inner; /* mcsi_env_direction */
+    uint32_t magic, version; /* private: what makes a file a map */
+    mcsi_env_offsets offset; /* private */
+    double total; /* luminance integrated over the sphere (bilinear: of the filtered image; less the floor) */
+    uint32_t w, h;
+    uint32_t bad;                    /* texels with a channel that was negative, NaN or infinite */
+    uint32_t row0, row1, col0, col1; /* all light is in rows [row0, row1) and columns [col0, col1) */
+    uint32_t uniform;                /* 1 where all texels have the same weight: drawn as the uniform sphere */
+    uint32_t incomplete;             /* 1 where the image had a floor */
+    float turn, inner;               /* private: width of a column, and of its part within the margins */
+    /* World directions of the map's x, y, z, orthonormal. build makes it the axes; it may be changed at any time but for
+     * products built with it. Seen from inside, +z up, columns run to the left: a mirrored frame (t negated) shows a
+     * photograph as it was taken. */
     mcs_frame frame;
-    uint64_t checksum; /* mcsi_env_checksum */
+    uint64_t checksum; /* private: of all but the frame */
 } mcs_env;
+/* A direction in world space, its density per solid angle, and its texel. */
 typedef struct {
     mcs_vec3 w;
     float pdf;
     uint32_t col, row;
 } mcs_texel;
+/* A rectangle of texels to draw from: what is seen through a window of a room, say. Its lists follow in memory. */
 typedef struct {
-    uint32_t row, rows, col, cols, shift, uniform;
-} mcs_env_window; /* then span[rows], cdf[rows + 1], guide[] */
+    uint32_t row, rows, col, cols; /* rows [row, row + rows), columns [col, col + cols), modulo w */
+    uint32_t shift;                /* private */
+    uint32_t uniform;              /* 1: drawn as even light, as its map is constant or there is no light in it */
+} mcs_env_window;
+
+/* An image of w x h texels, row by row from +z, each of `channels` floats. All else is 0. */
 MCS_API mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels);
+/* Bytes of a map; 0 where w or h is 0, too large, or more than memory can have. */
 MCS_API size_t mcs_env_bytes(uint32_t w, uint32_t h);
+/* Builds a map. MCS_ERR_ARG: e, im or its pixels are NULL, e is misaligned, or there are 0 or 2 channels. MCS_ERR_SIZE:
+ * mcs_env_bytes is 0, a stride is too short or too long, or pixel_stride is negative. MCS_ERR_MEMORY: bytes are too few.
+ * After an error nothing was written. */
 MCS_API mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im);
+/* A part of a build: rows [y0, y1). Threads may build other rows of the same map at the same time. Errors as in
+ * mcs_env_build; MCS_ERR_SIZE also where y0 > y1 or y1 > h. */
 MCS_API mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1);
+/* The end of a build, after every row was built. Bits are those of mcs_env_build, whatever the parts. Errors as there. */
 MCS_API mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im);
+/* Whether memory (a file read or mapped) is a map. MCS_ERR_MEMORY when it is cut short, MCS_ERR_ARG when e is NULL or
+ * misaligned, else MCS_ERR_FORMAT. MCS_OK promises that all bytes but e->frame are those of a build, by a checksum of 64
+ * bits: damage to one byte never passes, other damage once in 2^64 times; that e->frame, which is yours to change, is
+ * orthonormal to 1e-4; and that samplers keep to the table's memory, even if the table was forged. It reads the whole
+ * table. A file of another version of the format, or of another byte order, is refused. */
 MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes);
+/* Mean luminance over the sphere, without regard to the floor; 0 for an image that build refuses. */
 MCS_API float mcs_env_mean(const mcs_image *im);
+
+/* Draws a direction. u1 (columns) and u2 (rows) in [0,1), else the density is 0. */
 MCS_API mcs_texel mcs_env_sample(const mcs_env *e, float u1, float u2);
+/* Draws a direction by 32 random bits each: maps beyond 4096 columns have more texels than a float u can tell apart. */
 MCS_API mcs_texel mcs_env_sample_bits(const mcs_env *e, uint32_t b1, uint32_t b2);
+/* Density at world direction w, of unit length; 0 for a bad one. */
 MCS_API float mcs_env_pdf(const mcs_env *e, mcs_vec3 w);
+/* The (u1, u2) that are mapped to w; (0, 0) for a bad w. */
 MCS_API mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w);
+/* Density and texel of w, for radiance and density in one look-up. A bad w is answered as frame.n, with density 0 and
+ * row 0. */
 MCS_API mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w);
+/* 1/pdf, for an estimator without other strategies; 0 where pdf is 0, and for a map with a floor, which MCS_ASSERT tells. */
 MCS_API float mcs_env_weight(const mcs_env *e, float pdf);
+
+/* Bytes of a window of `rows` rows, 13 to 14 a row and about 30; 0 where rows is 0 or above 65536. */
 MCS_API size_t mcs_env_window_bytes(uint32_t rows);
+/* A window of rows [row, row + rows) and columns [col, col + cols), across the seam where need be. MCS_ERR_ARG: m or e is
+ * NULL, or m is misaligned. MCS_ERR_SIZE: rows or columns are none, more than the map has, or begin beyond it; rows may
+ * not go beyond the last. MCS_ERR_MEMORY: bytes are too few. A window without light is no error: it is drawn as even light.
+ * It goes with any map of the same image. */
 MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
                                         uint32_t col, uint32_t cols);
+/* Draws a direction from the window: as mcs_env_sample, with densities that integrate to 1 over the window. */
 MCS_API mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2);
+/* Density of mcs_env_window_sample at w; 0 outside the window, and for a bad w. */
 MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
+/* n draws; x, y, z, pdf, col and row may be NULL. */
 MCS_API void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y,
                               float *z, float *pdf, uint32_t *col, uint32_t *row);
+/* Densities and texels of n directions; pdf, col and row may be NULL. */
 MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf,
                              uint32_t *col, uint32_t *row);
+/* Densities of n directions. */
 MCS_API void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf);
+/* n draws from a window; x, y, z, pdf, col and row may be NULL. */
 MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, size_t n, const float *u1,
                                      const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
                                      uint32_t *row);
