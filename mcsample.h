@@ -1179,14 +1179,14 @@ MCS_FN float mcs_mix_pdf(float c, float pf, float pg);
  *                has a share (a u of 24 bits may miss it below 2^-24), and zero entries are never drawn.
  * bad entries    Negative ones and NaN count as 0, +infinity counts as FLT_MAX. The member bad counts them.
  * all zero       makes an even table, which is no error: uniform is 1 and total is 0.
- * errors         _build returns MCS_ERR_ARG where t or the list is NULL or t is misaligned, MCS_ERR_SIZE where n is 0 or
- *                too large, MCS_ERR_MEMORY where bytes are too few, in this order, and otherwise MCS_OK. After an error
- *                nothing was written.
+ * errors         _build returns MCS_ERR_ARG where t or the list is NULL or t is misaligned, MCS_ERR_SIZE where n is 0
+ *                or too large, MCS_ERR_MEMORY where bytes are too few, in this order, and otherwise MCS_OK. After an
+ *                error nothing was written.
  * monotone       All but alias increase with u. mcs_x_invert is the inverse.
- * bits           The 24 bits of a float u find both the entry and the position in it (x, or the u to reuse): frequencies
- *                are off by up to n 2^-24 of 1/n, and 4 bits are left for the position in one of a million entries. Beyond
- *                some thousand entries use mcs_x_sample_bits(t, b1, b2) with 64 random bits, b1 the upper 32: at least
- *                33 are left for the position (alias: 32 in a column).
+ * bits           The 24 bits of a float u find both the entry and the position in it (x, or the u to reuse):
+ *                frequencies are off by up to n 2^-24 of 1/n, and 4 bits are left for the position in one of a million
+ *                entries. Beyond some thousand entries use mcs_x_sample_bits(t, b1, b2) with 64 random bits, b1 the
+ *                upper 32: at least 33 are left for the position (alias: 32 in a column).
  * cost           Constant expected time by a guide table (Chen and Asau 1974, "On generating random variates from an
  *                empirical distribution"), at most log2(n) steps. Alias: Walker 1977, Vose 1991. */
 #ifndef MCS_NO_TABLES
@@ -1195,7 +1195,8 @@ typedef struct {
     float x, pdf;
     uint32_t i;
 } mcs_cell;
-/* An entry drawn, its probability (0 for a bad u), and what is left of u, again even in [0,1): use it for the next choice. */
+/* An entry drawn, its probability (0 for a bad u), and what is left of u, again even in [0,1): use it for the next
+ * choice. */
 typedef struct {
     uint32_t i;
     float pmf, u;
@@ -1295,26 +1296,27 @@ MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float 
  *                memory (call mcs_env_check), and shared by threads. The image is not needed any more. The same image
  *                makes the same bytes, whatever the memory held.
  * density        Per solid angle: probability of the texel (luminance times solid angle) over its solid angle,
- *                2 pi/w (cos t0 - cos t1). It is constant within a texel, because there cos(theta), not theta, is linear in
- *                u2; no division by sin(theta) is left (slide 23). Probabilities of rows, and of columns within a row, are
- *                integers over 2^31, exact as in [tables]. A texel that is not black can be drawn, black ones never are.
- *                Texel and pdf of the returned float direction are those of the sample, as samples keep a rounding error
- *                off the borders of their texel (with the axes as frame; the rounding of another frame takes up to 2 % of
- *                the samples near the poles of a map of 4096 columns to the next texel).
+ *                2 pi/w (cos t0 - cos t1). It is constant within a texel, because there cos(theta), not theta, is
+ *                linear in u2; no division by sin(theta) is left (slide 23). Probabilities of rows, and of columns
+ *                within a row, are integers over 2^31, exact as in [tables]. A texel that is not black can be drawn,
+ *                black ones never are. Texel and pdf of the returned float direction are those of the sample, as
+ *                samples keep a rounding error off the borders of their texel (with the axes as frame; the rounding of
+ *                another frame takes up to 2 % of the samples near the poles of a map of 4096 columns to the next
+ *                texel).
  * monotone       Rows increase with u2, columns with u1: stratified u stay stratified.
- * bad texels     Channels are bad one by one, and e->bad counts the texels that have any. A negative channel, as colours
- *                outside the gamut have, counts as 0, and so does NaN; the luminance is that of the others, so that a lamp
- *                of such a colour is drawn. +infinity, which a sun in halves may be, counts as FLT_MAX. mcs_env_mean does
- *                the same; whoever looks radiance up has to.
+ * bad texels     Channels are bad one by one, and e->bad counts the texels that have any. A negative channel, as
+ *                colours outside the gamut have, counts as 0, and so does NaN; the luminance is that of the others, so
+ *                that a lamp of such a colour is drawn. +infinity, which a sun in halves may be, counts as FLT_MAX.
+ *                mcs_env_mean does the same; whoever looks radiance up has to.
  * black map      is no error: it is drawn as even light, e->uniform is 1 and e->total is 0.
- * bilinear       For radiance that is looked up with a bilinear filter: weights are the texels filtered by (1 2 1)/4 along
- *                rows and columns, at least a quarter of what a filtered look-up finds anywhere in the texel. L/pdf is at
- *                most 4 times the filtered total.
- * floor          MIS compensation (Karlik et al. 2019): with image.floor = mcs_env_mean(&image), what is darker than the
- *                mean is left to the other strategy. Such a map is incomplete (e->incomplete): its density is 0 where the
- *                image is not black.
- * skipped        A constant map is the uniform sphere and its rows are never read; an all-black one likewise. Rows without
- *                light are zeros. Texels outside rows [row0, row1) and columns [col0, col1) are not read.
+ * bilinear       For radiance that is looked up with a bilinear filter: weights are the texels filtered by (1 2 1)/4
+ *                along rows and columns, at least a quarter of what a filtered look-up finds anywhere in the texel.
+ *                L/pdf is at most 4 times the filtered total.
+ * floor          MIS compensation (Karlik et al. 2019): with image.floor = mcs_env_mean(&image), what is darker than
+ *                the mean is left to the other strategy. Such a map is incomplete (e->incomplete): its density is 0
+ *                where the image is not black.
+ * skipped        A constant map is the uniform sphere and its rows are never read; an all-black one likewise. Rows
+ *                without light are zeros. Texels outside rows [row0, row1) and columns [col0, col1) are not read.
  * ownership      Objects hold no pointers. Pass what they were built from to every call.
  * cost           Two cache misses. The array forms fetch memory ahead: they are the fast ones for large maps.
  * source         Pharr, Jakob, Humphreys 2023, section 12.5. */
@@ -1345,9 +1347,9 @@ typedef struct {
     uint32_t uniform;                /* 1 where all texels have the same weight: drawn as the uniform sphere */
     uint32_t incomplete;             /* 1 where the image had a floor */
     float turn, inner;               /* private: width of a column, and of its part within the margins */
-    /* World directions of the map's x, y, z, orthonormal. build makes it the axes; it may be changed at any time but for
-     * products built with it. Seen from inside, +z up, columns run to the left: a mirrored frame (t negated) shows a
-     * photograph as it was taken. */
+    /* World directions of the map's x, y, z, orthonormal. build makes it the axes; it may be changed at any time but
+     * for products built with it. Seen from inside, +z up, columns run to the left: a mirrored frame (t negated) shows
+     * a photograph as it was taken. */
     mcs_frame frame;
     uint64_t checksum; /* private: of all but the frame */
 } mcs_env;
@@ -1369,8 +1371,8 @@ MCS_API mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, ui
 /* Bytes of a map; 0 where w or h is 0, too large, or more than memory can have. */
 MCS_API size_t mcs_env_bytes(uint32_t w, uint32_t h);
 /* Builds a map. MCS_ERR_ARG: e, im or its pixels are NULL, e is misaligned, or there are 0 or 2 channels. MCS_ERR_SIZE:
- * mcs_env_bytes is 0, a stride is too short or too long, or pixel_stride is negative. MCS_ERR_MEMORY: bytes are too few.
- * After an error nothing was written. */
+ * mcs_env_bytes is 0, a stride is too short or too long, or pixel_stride is negative. MCS_ERR_MEMORY: bytes are too
+ * few. After an error nothing was written. */
 MCS_API mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im);
 /* A part of a build: rows [y0, y1). Threads may build other rows of the same map at the same time. Errors as in
  * mcs_env_build; MCS_ERR_SIZE also where y0 > y1 or y1 > h. */
@@ -1378,10 +1380,10 @@ MCS_API mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image 
 /* The end of a build, after every row was built. Bits are those of mcs_env_build, whatever the parts. Errors as there. */
 MCS_API mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im);
 /* Whether memory (a file read or mapped) is a map. MCS_ERR_MEMORY when it is cut short, MCS_ERR_ARG when e is NULL or
- * misaligned, else MCS_ERR_FORMAT. MCS_OK promises that all bytes but e->frame are those of a build, by a checksum of 64
- * bits: damage to one byte never passes, other damage once in 2^64 times; that e->frame, which is yours to change, is
- * orthonormal to 1e-4; and that samplers keep to the table's memory, even if the table was forged. It reads the whole
- * table. A file of another version of the format, or of another byte order, is refused. */
+ * misaligned, else MCS_ERR_FORMAT. MCS_OK promises that all bytes but e->frame are those of a build, by a checksum of
+ * 64 bits: damage to one byte never passes, other damage once in 2^64 times; that e->frame, which is yours to change,
+ * is orthonormal to 1e-4; and that samplers keep to the table's memory, even if the table was forged. It reads the
+ * whole table. A file of another version of the format, or of another byte order, is refused. */
 MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes);
 /* Mean luminance over the sphere, without regard to the floor; 0 for an image that build refuses. */
 MCS_API float mcs_env_mean(const mcs_image *im);
@@ -1397,15 +1399,16 @@ MCS_API mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w);
 /* Density and texel of w, for radiance and density in one look-up. A bad w is answered as frame.n, with density 0 and
  * row 0. */
 MCS_API mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w);
-/* 1/pdf, for an estimator without other strategies; 0 where pdf is 0, and for a map with a floor, which MCS_ASSERT tells. */
+/* 1/pdf, for an estimator without other strategies; 0 where pdf is 0, and for a map with a floor, which MCS_ASSERT
+ * tells. */
 MCS_API float mcs_env_weight(const mcs_env *e, float pdf);
 
-/* Bytes of a window of `rows` rows, 13 to 14 a row and about 30; 0 where rows is 0 or above 65536. */
+/* Bytes of a window of `rows` rows, 13 to 14 a row and about 36; 0 where rows is 0 or above 65536. */
 MCS_API size_t mcs_env_window_bytes(uint32_t rows);
-/* A window of rows [row, row + rows) and columns [col, col + cols), across the seam where need be. MCS_ERR_ARG: m or e is
- * NULL, or m is misaligned. MCS_ERR_SIZE: rows or columns are none, more than the map has, or begin beyond it; rows may
- * not go beyond the last. MCS_ERR_MEMORY: bytes are too few. A window without light is no error: it is drawn as even light.
- * It goes with any map of the same image. */
+/* A window of rows [row, row + rows) and columns [col, col + cols), across the seam where need be. MCS_ERR_ARG: m or e
+ * is NULL, or m is misaligned. MCS_ERR_SIZE: rows or columns are none, more than the map has, or begin beyond it; rows
+ * may not go beyond the last. MCS_ERR_MEMORY: bytes are too few. A window without light is no error: it is drawn as
+ * even light. It goes with any map of the same image. */
 MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
                                         uint32_t col, uint32_t cols);
 /* Draws a direction from the window: as mcs_env_sample, with densities that integrate to 1 over the window. */
@@ -4461,8 +4464,8 @@ MCSI_FN mcs_f mcs_mix_pdf(mcs_f c, mcs_f pf, mcs_f pg) {
 
 /* ---- memory of the caller's: alignment, sizes, and the only casts ---- */
 
-/* What lies `offset` bytes from the start of an object, to read and to write. Each object has one function that computes
- * its offsets and its size. */
+/* What lies `offset` bytes from the start of an object, to read and to write. Each object has one function that
+ * computes its offsets and its size. */
 #define MCSI_READ(type, object, offset) ((const type *)(const void *)((const char *)(object) + (offset)))
 #define MCSI_WRITE(type, object, offset) ((type *)(void *)((char *)(object) + (offset)))
 
@@ -4504,7 +4507,8 @@ MCS_FN void mcsi_move(uint32_t *to, const float *from, uint32_t n) {
     memmove(to, from, n * sizeof *to);
 #endif
 }
-/* Moves a list, which may overlap the table, to where its sums will be, and cleans it. Returns the number of bad entries. */
+/* Moves a list, which may overlap the table, to where its sums will be, and cleans it. Returns the number of bad
+ * entries. */
 MCS_FN uint32_t mcsi_weights_in(uint32_t *words, const float *f, uint32_t n) {
     uint32_t bad = 0;
     mcsi_move(words, f, n);
@@ -4517,17 +4521,18 @@ MCS_FN uint32_t mcsi_weights_in(uint32_t *words, const float *f, uint32_t n) {
 
 #define MCSI_ONE 0x80000000u /* the integer that stands for probability 1 */
 
-/* Entry i of n has sums[i + 1] - sums[i] of all 2^31. guide[g], g < 2^31 >> shift, is the last i with sums[i] <= g 2^shift:
- * the search for U starts at guide[U >> shift] and ends at the next entry. The last entry of the guide is the last i that
- * has a share. guide_bytes: 2 where n is small enough (maps), else 4 (tables); it is a constant wherever a cdf is made. */
+/* Entry i of n has sums[i + 1] - sums[i] of all 2^31. guide[g], g < 2^31 >> shift, is the last i with sums[i] <= g
+ * 2^shift: the search for U starts at guide[U >> shift] and ends at the next entry. The last entry of the guide is the
+ * last i that has a share. guide_bytes: 2 where n is small enough (maps), else 4 (tables); it is a constant wherever a
+ * cdf is made. */
 typedef struct {
     const uint32_t *sums;
     const void *guide;
     uint32_t n, shift, guide_bytes;
 } mcsi_cdf;
 
-/* A run over a quarter of a list: the sum of all quarters before it, its own so far, and how many entries so far, from the
- * start of the list, are not zero. */
+/* A run over a quarter of a list: the sum of all quarters before it, its own so far, and how many entries so far, from
+ * the start of the list, are not zero. */
 typedef struct {
     double before, sum;
     uint32_t seen;
@@ -4547,8 +4552,8 @@ MCSI_CORE void mcsi_run_restart(mcsi_run *r, double *total, uint32_t *some) {
     *total += sum;
     *some += seen;
 }
-/* Replaces weight i by its cumulative sum. Each of the `some` entries that are not zero gets a share of 1 beforehand, the
- * others share what is left of 2^31: scale of it per weight. */
+/* Replaces weight i by its cumulative sum. Each of the `some` entries that are not zero gets a share of 1 beforehand,
+ * the others share what is left of 2^31: scale of it per weight. */
 MCSI_CORE void mcsi_run_put(mcsi_run *r, uint32_t *words, uint32_t i, double scale, uint32_t some) {
     const double w = (double)mcsi_word_weight(words + i);
     const double below = (r->before + r->sum) * scale;
@@ -4560,9 +4565,9 @@ MCSI_CORE void mcsi_run_put(mcsi_run *r, uint32_t *words, uint32_t i, double sca
 MCS_FN void mcsi_sums_even(uint32_t *sums, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) sums[i] = (uint32_t)((uint64_t)i * MCSI_ONE / n);
 }
-/* Turns n weights (finite, not negative) into n + 1 cumulative sums, 0 to 2^31, in their place. An entry that is not zero
- * has a share of at least 1. Returns the sum of the weights; when it is 0, all shares are alike. The quarters of the list
- * take turns, as each sum has to wait for the one before it. */
+/* Turns n weights (finite, not negative) into n + 1 cumulative sums, 0 to 2^31, in their place. An entry that is not
+ * zero has a share of at least 1. Returns the sum of the weights; when it is 0, all shares are alike. The quarters of
+ * the list take turns, as each sum has to wait for the one before it. */
 MCS_FN double mcsi_sums_build(uint32_t *sums, uint32_t n) {
     mcsi_run a = {0.0, 0.0, 0};
     mcsi_run b = a;
@@ -4598,6 +4603,8 @@ MCS_FN double mcsi_sums_build(uint32_t *sums, uint32_t n) {
     return total;
 }
 
+/* ---- cdf: guide and search ---- */
+
 /* The shift of a guide with about one entry for `per_guide` of n. */
 MCS_FN uint32_t mcsi_guide_shift(uint32_t n, uint32_t per_guide) {
     uint32_t shift = 31;
@@ -4613,8 +4620,8 @@ MCSI_CORE void mcsi_guide_put(void *guide, uint32_t bytes, uint32_t g, uint32_t 
     if (bytes == 2) ((uint16_t *)guide)[g] = (uint16_t)i;
     else ((uint32_t *)guide)[g] = i;
 }
-/* Fills the guide of n entries. First each entry i goes to the first g that may start at it, later ones over earlier ones;
- * then what was left out takes over its neighbour's. */
+/* Fills the guide of n entries. First each entry i goes to the first g that may start at it, later ones over earlier
+ * ones; then what was left out takes over its neighbour's. */
 MCSI_CORE void mcsi_guide_build(void *guide, uint32_t bytes, uint32_t shift, const uint32_t *sums, uint32_t n) {
     const uint32_t end = MCSI_ONE >> shift;
     MCSI_FILL(guide, 0, ((size_t)end + 1) * bytes);
@@ -4850,7 +4857,8 @@ MCS_API float mcs_discrete_pmf(const mcs_discrete *t, uint32_t i) {
 MCS_API size_t mcs_pwl_bytes(uint32_t n) {
     return n && n <= MCSI_CELLS_MAX ? mcsi_pwc_layout(n, mcsi_guide_shift(n, 1)).pwl_bytes : 0;
 }
-/* Weights of the cells: the sum of both vertices, or half of it where sums could overflow. Returns the integral times n. */
+/* Weights of the cells: the sum of both vertices, or half of it where sums could overflow. Returns the integral times
+ * n. */
 MCS_FN double mcsi_pwl_weights(uint32_t *words, const uint32_t *vertex, uint32_t n) {
     float top = 0.0f;
     double total = 0.0;
@@ -4880,8 +4888,9 @@ MCS_API mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint3
 MCSI_CORE const float *mcsi_pwl_vertices(const mcs_pwl *t) {
     return MCSI_READ(float, t, mcsi_pwc_layout(t->cells.n, t->cells.shift).vertices);
 }
-/* Vertices a and b, scaled to a + b = 1: at the position s of its cell the density is mass n times 2((1 - s) a + s b). With
- * w = within, the share of the cell below s, that is 2r, r = sqrt((1 - w) a^2 + w b^2). s = w/(a + r), without cancellation. */
+/* Vertices a and b, scaled to a + b = 1: at the position s of its cell the density is mass n times 2((1 - s) a + s b).
+ * With w = within, the share of the cell below s, that is 2r, r = sqrt((1 - w) a^2 + w b^2). s = w/(a + r), without
+ * cancellation. */
 MCSI_CORE mcs_cell mcsi_pwl_cell(const mcs_pwl *t, mcsi_entry p, int ok) {
     const float *vertex = mcsi_pwl_vertices(t) + p.i;
     const double sum = (double)vertex[0] + (double)vertex[1];
@@ -4946,8 +4955,8 @@ MCS_FN void mcsi_column_leave(mcsi_column *c, uint64_t left) {
     c->cut = (uint32_t)left;
     c->alias = (uint32_t)(left >> 32);
 }
-/* Integer weights of n entries, by cumulative sums, so that they add up to n 2^31 exactly. `some` of them are not zero and
- * get at least 1; with some = 0 all are alike. */
+/* Integer weights of n entries, by cumulative sums, so that they add up to n 2^31 exactly. `some` of them are not zero
+ * and get at least 1; with some = 0 all are alike. */
 MCS_FN void mcsi_alias_weights(mcsi_column *c, const float *w, uint32_t n, double total, uint32_t some) {
     const uint64_t all = (uint64_t)n << 31;
     const uint32_t last = some ? some : n;
@@ -4968,8 +4977,8 @@ MCS_FN void mcsi_alias_weights(mcsi_column *c, const float *w, uint32_t n, doubl
         mcsi_column_leave(&c[i], c[i].weight);
     }
 }
-/* Fills columns short of 2^31 from the current donor. A donor that falls short thereby is filled by the next one: at once
- * if the scan has passed it, else when the scan comes to it. */
+/* Fills columns short of 2^31 from the current donor. A donor that falls short thereby is filled by the next one: at
+ * once if the scan has passed it, else when the scan comes to it. */
 MCS_FN void mcsi_alias_fill(mcsi_column *c, uint32_t n) {
     uint32_t donor = 0;
     while (donor < n && c[donor].weight < MCSI_ONE) donor++;
@@ -5039,12 +5048,13 @@ MCS_API mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t
 /* ---- directions of points, and where directions lie, for all widths ---- */
 
 /* A draw between table and direction. row_rest/row_mass: position within the row, 0 to 1. edge: 1 - cos(theta) of the
- * row's border nearer to a pole, margin included. height: extent of the row in 1 - cos(theta), negative for southern rows
- * (the sign goes to z). col, col_rest/col_mass: column, and position within it. */
+ * row's border nearer to a pole, margin included. height: extent of the row in 1 - cos(theta), negative for southern
+ * rows (the sign goes to z). col, col_rest/col_mass: column, and position within it. */
 typedef struct {
     mcs_f row_rest, row_mass, edge, height, col, col_rest, col_mass;
 } mcsi_env_point;
-/* What the rounding of a direction may move: samples keep 2^-22 of the map's width and height off the borders of their texel. */
+/* What the rounding of a direction may move: samples keep 2^-22 of the map's width and height off the borders of their
+ * texel. */
 #define MCSI_ENV_MARGIN 2.384185791015625e-07
 /* turn: width of a column in turns. inner: width of its part within the margins. */
 MCSI_CORE mcs_vec3 mcsi_env_direction(const mcs_frame *f, const mcsi_env_point *p, float turn, float inner) {
@@ -5056,8 +5066,8 @@ MCSI_CORE mcs_vec3 mcsi_env_direction(const mcs_frame *f, const mcsi_env_point *
     const mcs_i south = mcsi_bits(p->height) & (-0x7fffffff - 1);
     return mcsi_to_world(f, mcsi_vec3(sine * c, sine * s, mcsi_from_bits(mcsi_bits(1.0f - t) ^ south)));
 }
-/* off_pole: 1 - |cos(theta)|, with the sign of cos(theta); 4 for a bad direction. polar: angle to the nearer pole, in turns.
- * azimuth: in turns, 0 to 1. */
+/* off_pole: 1 - |cos(theta)|, with the sign of cos(theta); 4 for a bad direction. polar: angle to the nearer pole, in
+ * turns. azimuth: in turns, 0 to 1. */
 typedef struct {
     mcs_f off_pole, polar, azimuth;
 } mcsi_angles;
@@ -5073,11 +5083,12 @@ MCSI_CORE mcsi_angles mcsi_env_angles(const mcs_frame *f, mcs_vec3 w) {
     return a;
 }
 #if MCSI_W == 1
-/* Draws of a block, for array forms: what is left of each, the row's lists, the texel, and the members of mcsi_env_point. */
+/* Draws of a block, for array forms: what is left of each, the row's lists, the texel, and the members of
+ * mcsi_env_point. */
 enum { MCSI_ENV_BLOCK = 32 };
 typedef struct {
     double u1, u2, density;
-} mcsi_draw; /* see "drawing" */
+} mcsi_draw; /* see "draws, in steps" */
 typedef struct {
     mcsi_draw draw[MCSI_ENV_BLOCK];
     const uint32_t *sums[MCSI_ENV_BLOCK];
@@ -5216,15 +5227,15 @@ MCSI_CORE uint32_t mcsi_chunk(const mcs_image *im, uint32_t x) {
 
 /* ---- map: layout. Offsets are kept in the header; a map is a file ---- */
 
-/* What a draw needs of a row. texel_density: density per solid angle of a texel that has one of 2^31 shares of its row, in
- * a row that has one of 2^31 shares of the map. edge, height: see mcsi_env_point. */
+/* What a draw needs of a row. texel_density: density per solid angle of a texel that has one of 2^31 shares of its row,
+ * in a row that has one of 2^31 shares of the map. edge, height: see mcsi_env_point. */
 typedef struct {
     double texel_density;
     float edge, height;
 } mcsi_row;
-/* What build_rows leaves to finish. weight: sum of the texels' weights times the height of the row. checksum: of its sums
- * and guide. level: the weight of its texels if they are all alike, else -1. bad: number of bad texels. Columns from col0 on
- * and before col1 hold its light. */
+/* What build_rows leaves to finish. weight: sum of the texels' weights times the height of the row. checksum: of its
+ * sums and guide. level: the weight of its texels if they are all alike, else -1. bad: number of bad texels. Columns
+ * from col0 on and before col1 hold its light. */
 typedef struct {
     double weight;
     uint64_t checksum;
@@ -5236,8 +5247,8 @@ enum { MCSI_ENV_VERSION = 4, MCSI_ENV_PER_GUIDE = 8 };
 #define MCSI_ENV_MAGIC 0x4553434du /* "MCSE" in a little-endian file */
 
 /* edge: double[(h + 1)/2 + 1], 1 - cos(theta) of the borders of rows from a pole to the equator. row: mcsi_row[h].
- * row_light: mcsi_row_light[h]. row_sums: uint32_t[h + 1], with row_guide: uint16_t[]. col_sums: uint32_t[h][w + 1], with
- * col_guide: uint16_t[h][guide_length]. Zeros fill up to the next multiple of 8 bytes. */
+ * row_light: mcsi_row_light[h]. row_sums: uint32_t[h + 1], with row_guide: uint16_t[]. col_sums: uint32_t[h][w + 1],
+ * with col_guide: uint16_t[h][guide_length]. Zeros fill up to the next multiple of 8 bytes. */
 MCS_FN mcsi_env_offsets mcsi_env_layout(uint32_t w, uint32_t h) {
     mcsi_env_offsets o;
     o.row_shift = mcsi_guide_shift(h, 1);
@@ -5272,6 +5283,16 @@ MCSI_CORE mcsi_cdf mcsi_env_columns(const mcs_env *e, uint32_t row) {
     c.guide = mcsi_env_guide(e, row);
     c.n = e->w;
     c.shift = e->offset.col_shift;
+    c.guide_bytes = sizeof(uint16_t);
+    return c;
+}
+/* The rows of the map. */
+MCSI_CORE mcsi_cdf mcsi_env_rows(const mcs_env *e) {
+    mcsi_cdf c;
+    c.sums = MCSI_READ(uint32_t, e, e->offset.row_sums);
+    c.guide = MCSI_READ(uint16_t, e, e->offset.row_guide);
+    c.n = e->h;
+    c.shift = e->offset.row_shift;
     c.guide_bytes = sizeof(uint16_t);
     return c;
 }
@@ -5358,7 +5379,7 @@ MCS_FN uint64_t mcsi_env_checksum(const mcs_env *e) {
     return mcsi_checksum(sum, mcsi_env_guide(e, e->h), mcsi_env_padding(e));
 }
 
-/* ---- map: build ---- */
+/* ---- map: size, refusals, mean ---- */
 
 MCS_API size_t mcs_env_bytes(uint32_t w, uint32_t h) {
     if (w == 0 || h == 0 || w > MCSI_ENV_MAX || h > MCSI_ENV_MAX || (size_t)-1 / w / h < 80) return 0;
@@ -5390,8 +5411,10 @@ MCS_API float mcs_env_mean(const mcs_image *im) {
     return (float)(sum / (2.0 * im->w));
 }
 
-/* A run over the texels of a row. level: the weight of its first texel, which the first `alike` texels have. first, last:
- * its light. Weights are kept in words[] from the first light on. */
+/* ---- map: build, by rows and then the whole ---- */
+
+/* A run over the texels of a row. level: the weight of its first texel, which the first `alike` texels have. first,
+ * last: its light. Weights are kept in words[] from the first light on. */
 typedef struct {
     uint32_t *words;
     float level;
@@ -5516,6 +5539,98 @@ MCS_API mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im) 
     return status ? status : mcs_env_finish(e, bytes, im);
 }
 
+/* ---- map: check ---- */
+
+/* Equal but for the compilers' freedom to contract a*b + c. */
+MCS_FN int mcsi_same(double a, double b, double relative) {
+    const double slack = relative * (b < 0.0 ? -b : b);
+    return a - b <= slack && b - a <= slack;
+}
+MCSI_CORE int mcsi_dot_is(mcs_vec3 a, mcs_vec3 b, double want) {
+    const double off = (double)a.x * (double)b.x + (double)a.y * (double)b.y + (double)a.z * (double)b.z - want;
+    return off <= 1e-4 && off >= -1e-4;
+}
+/* Whether a frame is orthonormal to 1e-4. Its nine numbers may be a product of rotations: with floats each of them
+ * leaves 3 * 2^-24 in every number, thus 2 sqrt(3) times as much in the dot product of two columns, 1e-4 after 160 of
+ * them. */
+MCS_FN int mcsi_frame_ok(const mcs_frame *f) {
+    return mcsi_dot_is(f->s, f->s, 1.0) && mcsi_dot_is(f->t, f->t, 1.0) && mcsi_dot_is(f->n, f->n, 1.0) &&
+           mcsi_dot_is(f->s, f->t, 0.0) && mcsi_dot_is(f->t, f->n, 0.0) && mcsi_dot_is(f->n, f->s, 0.0);
+}
+/* The header alone: its size and its offsets are those of a build, so that all lists lie within the table. */
+MCS_FN int mcsi_env_header_ok(const mcs_env *e) {
+    if (e->magic != MCSI_ENV_MAGIC || e->version != MCSI_ENV_VERSION || !mcs_env_bytes(e->w, e->h)) return 0;
+    const mcsi_env_offsets o = mcsi_env_layout(e->w, e->h);
+    for (size_t i = 0; i < sizeof o; i++) /* CUDA device code has no memcmp */
+        if (MCSI_READ(char, &o, 0)[i] != MCSI_READ(char, &e->offset, 0)[i]) return 0;
+    if (e->uniform > 1 || e->incomplete > 1 || !(e->total >= 0.0 && e->total <= DBL_MAX)) return 0;
+    return mcsi_frame_ok(&e->frame);
+}
+MCS_FN int mcsi_env_checksums_ok(const mcs_env *e) {
+    if (e->checksum != mcsi_env_checksum(e)) return 0;
+    for (uint32_t y = 0; y < e->h; y++) {
+        const mcsi_cdf columns = mcsi_env_columns(e, y);
+        if (MCSI_READ(mcsi_row_light, e, e->offset.row_light)[y].checksum != mcsi_row_checksum(&columns)) return 0;
+    }
+    return 1;
+}
+/* Whether numbers that follow from the size are those of a build. */
+MCS_FN int mcsi_env_borders_ok(const mcs_env *e) {
+    mcs_env want;
+    want.w = e->w;
+    mcsi_env_set_turn(&want);
+    if (!mcsi_same((double)e->turn, (double)want.turn, 1.2e-7)) return 0;
+    if (!mcsi_same((double)e->inner, (double)want.inner, 1.2e-7)) return 0;
+    for (uint32_t y = 0; y <= (e->h + 1) / 2; y++)
+        if (!mcsi_same(mcsi_env_edge(e)[y], mcsi_one_minus_cos_pi((double)y / e->h), 1e-14)) return 0;
+    return 1;
+}
+MCS_FN int mcsi_row_ok(const mcsi_row *row, uint32_t y, uint32_t w, uint32_t h) {
+    const mcsi_row want = mcsi_row_make(y, w, h);
+    return mcsi_same(row->texel_density, want.texel_density, 1e-12) &&
+           mcsi_same((double)row->edge, (double)want.edge, 1.2e-7) &&
+           mcsi_same((double)row->height, (double)want.height, 1.2e-7);
+}
+/* Whether light fills just these rows and columns. */
+MCS_FN int mcsi_env_fills(const mcs_env *e, uint32_t row0, uint32_t row1, uint32_t col0, uint32_t col1) {
+    return e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1;
+}
+/* Of a map that is not constant: rows, all sums and guides, and the bounds of its light. */
+MCS_FN int mcsi_env_lists_ok(const mcs_env *e) {
+    const mcsi_cdf rows = mcsi_env_rows(e);
+    const mcsi_row *row = MCSI_READ(mcsi_row, e, e->offset.row);
+    if (!mcsi_cdf_ok(&rows)) return 0;
+    uint32_t row0 = e->h;
+    uint32_t row1 = 0;
+    uint32_t col0 = e->w;
+    uint32_t col1 = 0;
+    for (uint32_t y = 0; y < e->h; y++) {
+        if (!mcsi_row_ok(&row[y], y, e->w, e->h)) return 0;
+        if (mcsi_cdf_mass(&rows, y) == 0) continue;
+        const mcsi_cdf columns = mcsi_env_columns(e, y);
+        if (!mcsi_cdf_ok(&columns)) return 0;
+        row0 = y < row0 ? y : row0;
+        row1 = y + 1;
+        uint32_t first = 0;
+        while (columns.sums[first + 1] == 0) first++;
+        uint32_t last = e->w;
+        while (columns.sums[last - 1] == MCSI_ONE) last--;
+        col0 = first < col0 ? first : col0;
+        col1 = last > col1 ? last : col1;
+    }
+    return mcsi_env_fills(e, row0, row1, col0, col1);
+}
+MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
+    if (!e || ((uintptr_t)e & MCSI_ALIGN)) return MCS_ERR_ARG;
+    if (bytes < sizeof *e) return MCS_ERR_MEMORY;
+    if (!mcsi_env_header_ok(e)) return MCS_ERR_FORMAT;
+    if (bytes < mcs_env_bytes(e->w, e->h)) return MCS_ERR_MEMORY;
+    if (!mcsi_env_checksums_ok(e) || !mcsi_env_borders_ok(e)) return MCS_ERR_FORMAT;
+    const int lit = mcsi_env_fills(e, 0, e->h, 0, e->w);
+    const int black = mcsi_env_fills(e, e->h, 0, e->w, 0);
+    return (e->uniform ? lit || black : mcsi_env_lists_ok(e)) ? MCS_OK : MCS_ERR_FORMAT;
+}
+
 /* ---- window: what is drawn from ---- */
 
 /* What a window has of a row: shares begin to begin + mass of its 2^31, modulo 2^31. */
@@ -5532,11 +5647,7 @@ typedef struct {
 } mcsi_window;
 MCSI_CORE mcsi_window mcsi_env_whole(const mcs_env *e) {
     mcsi_window r;
-    r.rows.sums = MCSI_READ(uint32_t, e, e->offset.row_sums);
-    r.rows.guide = MCSI_READ(uint16_t, e, e->offset.row_guide);
-    r.rows.n = e->h;
-    r.rows.shift = e->offset.row_shift;
-    r.rows.guide_bytes = sizeof(uint16_t);
+    r.rows = mcsi_env_rows(e);
     r.row = MCSI_READ(mcsi_row, e, e->offset.row);
     r.share = NULL;
     r.row0 = 0;
@@ -5591,7 +5702,7 @@ MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const m
     if (!m || !e || ((uintptr_t)m & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (rows == 0 || cols == 0 || rows > e->h || row > e->h - rows || cols > e->w || col >= e->w) return MCS_ERR_SIZE;
     if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
-    const mcsi_window all = mcsi_env_whole(e);
+    const mcsi_cdf map_rows = mcsi_env_rows(e);
     const uint32_t shift = mcsi_guide_shift(rows, 1);
     const mcsi_window_offsets o = mcsi_window_layout(rows, shift);
     mcsi_share *share = MCSI_WRITE(mcsi_share, m, o.share);
@@ -5603,7 +5714,7 @@ MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const m
     m->cols = cols;
     m->shift = shift;
     for (uint32_t i = 0; i < rows; i++) {
-        const uint32_t mass = e->uniform ? 0 : mcsi_cdf_mass(&all.rows, row + i);
+        const uint32_t mass = e->uniform ? 0 : mcsi_cdf_mass(&map_rows, row + i);
         if (mass) share[i] = mcsi_share_make(e, row + i, col, cols);
         mcsi_put_weight(sums + i, (float)((double)mass * share[i].mass));
     }
@@ -5612,102 +5723,12 @@ MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const m
     return MCS_OK;
 }
 
-/* ---- map: check ---- */
-
-/* Equal but for the compilers' freedom to contract a*b + c. */
-MCS_FN int mcsi_same(double a, double b, double relative) {
-    const double slack = relative * (b < 0.0 ? -b : b);
-    return a - b <= slack && b - a <= slack;
-}
-MCSI_CORE int mcsi_dot_is(mcs_vec3 a, mcs_vec3 b, double want) {
-    const double off = (double)a.x * (double)b.x + (double)a.y * (double)b.y + (double)a.z * (double)b.z - want;
-    return off <= 1e-4 && off >= -1e-4;
-}
-/* Whether a frame is orthonormal to 1e-4. Its nine numbers may be a product of rotations: with floats each of them leaves
- * 3 * 2^-24 in every number, thus 2 sqrt(3) times as much in the dot product of two columns, 1e-4 after 160 of them. */
-MCS_FN int mcsi_frame_ok(const mcs_frame *f) {
-    return mcsi_dot_is(f->s, f->s, 1.0) && mcsi_dot_is(f->t, f->t, 1.0) && mcsi_dot_is(f->n, f->n, 1.0) &&
-           mcsi_dot_is(f->s, f->t, 0.0) && mcsi_dot_is(f->t, f->n, 0.0) && mcsi_dot_is(f->n, f->s, 0.0);
-}
-/* The header alone: its size and its offsets are those of a build, so that all lists lie within the table. */
-MCS_FN int mcsi_env_header_ok(const mcs_env *e) {
-    if (e->magic != MCSI_ENV_MAGIC || e->version != MCSI_ENV_VERSION || !mcs_env_bytes(e->w, e->h)) return 0;
-    const mcsi_env_offsets o = mcsi_env_layout(e->w, e->h);
-    for (size_t i = 0; i < sizeof o; i++) /* CUDA device code has no memcmp */
-        if (MCSI_READ(char, &o, 0)[i] != MCSI_READ(char, &e->offset, 0)[i]) return 0;
-    if (e->uniform > 1 || e->incomplete > 1 || !(e->total >= 0.0 && e->total <= DBL_MAX)) return 0;
-    return mcsi_frame_ok(&e->frame);
-}
-MCS_FN int mcsi_env_checksums_ok(const mcs_env *e) {
-    if (e->checksum != mcsi_env_checksum(e)) return 0;
-    for (uint32_t y = 0; y < e->h; y++) {
-        const mcsi_cdf columns = mcsi_env_columns(e, y);
-        if (MCSI_READ(mcsi_row_light, e, e->offset.row_light)[y].checksum != mcsi_row_checksum(&columns)) return 0;
-    }
-    return 1;
-}
-/* Whether numbers that follow from the size are those of a build. */
-MCS_FN int mcsi_env_borders_ok(const mcs_env *e) {
-    mcs_env want;
-    want.w = e->w;
-    mcsi_env_set_turn(&want);
-    if (!mcsi_same((double)e->turn, (double)want.turn, 1.2e-7)) return 0;
-    if (!mcsi_same((double)e->inner, (double)want.inner, 1.2e-7)) return 0;
-    for (uint32_t y = 0; y <= (e->h + 1) / 2; y++)
-        if (!mcsi_same(mcsi_env_edge(e)[y], mcsi_one_minus_cos_pi((double)y / e->h), 1e-14)) return 0;
-    return 1;
-}
-MCS_FN int mcsi_row_ok(const mcsi_row *row, uint32_t y, uint32_t w, uint32_t h) {
-    const mcsi_row want = mcsi_row_make(y, w, h);
-    return mcsi_same(row->texel_density, want.texel_density, 1e-12) &&
-           mcsi_same((double)row->edge, (double)want.edge, 1.2e-7) &&
-           mcsi_same((double)row->height, (double)want.height, 1.2e-7);
-}
-/* Whether light fills just these rows and columns. */
-MCS_FN int mcsi_env_fills(const mcs_env *e, uint32_t row0, uint32_t row1, uint32_t col0, uint32_t col1) {
-    return e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1;
-}
-/* Of a map that is not constant: rows, all sums and guides, and the bounds of its light. */
-MCS_FN int mcsi_env_lists_ok(const mcs_env *e) {
-    const mcsi_window all = mcsi_env_whole(e);
-    if (!mcsi_cdf_ok(&all.rows)) return 0;
-    uint32_t row0 = e->h;
-    uint32_t row1 = 0;
-    uint32_t col0 = e->w;
-    uint32_t col1 = 0;
-    for (uint32_t y = 0; y < e->h; y++) {
-        if (!mcsi_row_ok(&all.row[y], y, e->w, e->h)) return 0;
-        if (mcsi_cdf_mass(&all.rows, y) == 0) continue;
-        const mcsi_cdf columns = mcsi_env_columns(e, y);
-        if (!mcsi_cdf_ok(&columns)) return 0;
-        row0 = y < row0 ? y : row0;
-        row1 = y + 1;
-        uint32_t first = 0;
-        while (columns.sums[first + 1] == 0) first++;
-        uint32_t last = e->w;
-        while (columns.sums[last - 1] == MCSI_ONE) last--;
-        col0 = first < col0 ? first : col0;
-        col1 = last > col1 ? last : col1;
-    }
-    return mcsi_env_fills(e, row0, row1, col0, col1);
-}
-MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
-    if (!e || ((uintptr_t)e & MCSI_ALIGN)) return MCS_ERR_ARG;
-    if (bytes < sizeof *e) return MCS_ERR_MEMORY;
-    if (!mcsi_env_header_ok(e)) return MCS_ERR_FORMAT;
-    if (bytes < mcs_env_bytes(e->w, e->h)) return MCS_ERR_MEMORY;
-    if (!mcsi_env_checksums_ok(e) || !mcsi_env_borders_ok(e)) return MCS_ERR_FORMAT;
-    const int lit = mcsi_env_fills(e, 0, e->h, 0, e->w);
-    const int black = mcsi_env_fills(e, e->h, 0, e->w, 0);
-    return (e->uniform ? lit || black : mcsi_env_lists_ok(e)) ? MCS_OK : MCS_ERR_FORMAT;
-}
-
-/* ---- drawing ----
- * Every draw is a descent: row, column, point in the texel (products begin above it, with a tile). It carries what is left
- * of the two random numbers, from 0 to 2^31 within the last choice, and the density of the path so far. That is relative to
- * a uniform draw at first and per solid angle from the row on. A bad random number makes it 0 at the start. Each step is a
- * function that takes a mcsi_draw, chooses, and hands on the rest. Each density function walks the same steps for a given
- * texel. */
+/* ---- window: draws, in steps ----
+ * Every draw is a descent: row, column, point in the texel (products begin above it, with a tile). It carries what is
+ * left of the two random numbers, from 0 to 2^31 within the last choice, and the density of the path so far. That is
+ * relative to a uniform draw at first and per solid angle from the row on. A bad random number makes it 0 at the start.
+ * Each step is a function that takes a mcsi_draw, chooses, and hands on the rest. Each density function walks the same
+ * steps for a given texel. */
 
 MCSI_CORE mcsi_draw mcsi_draw_make(double u1, double u2, double density) {
     mcsi_draw d;
@@ -5748,8 +5769,8 @@ MCSI_CORE uint32_t mcsi_window_draw_row(const mcsi_window *r, mcsi_draw *d, mcsi
 MCSI_CORE void mcsi_window_draw_share(const mcsi_window *r, uint32_t i, mcsi_draw *d) {
     if (!r->share) return;
     const mcsi_share share = r->share[i];
-    /* Rounding must not carry u1 to the end of the share, nor the wrapped value to 2^31 (x87 registers hold values between
-     * the largest double below 2^31, 2^-22 below it, and 2^31). */
+    /* Rounding must not carry u1 to the end of the share, nor the wrapped value to 2^31 (x87 registers hold values
+     * between the largest double below 2^31, 2^-22 below it, and 2^31). */
     const double u1 = d->u1 * (share.mass * (1.0 / MCSI_ONE));
     const double end = share.mass - 4.76837158203125e-07;
     const double unwrapped = share.begin + (u1 < end ? u1 : end);
@@ -5759,8 +5780,8 @@ MCSI_CORE void mcsi_window_draw_share(const mcsi_window *r, uint32_t i, mcsi_dra
 
 /* -- column: looked for in two steps, so that array forms can fetch memory between them -- */
 
-/* Where to look for the column of U: in [lo, hi], as two neighbouring guide entries tell. Probably it is one of the eight
- * from `first` on, around the place where linear interpolation expects it. */
+/* Where to look for the column of U: in [lo, hi], as two neighbouring guide entries tell. Probably it is one of the
+ * eight from `first` on, around the place where linear interpolation expects it. */
 typedef struct {
     uint32_t lo, hi, first;
 } mcsi_candidates;
@@ -5926,8 +5947,9 @@ MCSI_CORE mcs_texel mcsi_window_draw(const mcs_env *e, const mcsi_window *r, mcs
 
 #ifndef MCS_NO_BATCH
 /* ---- window: array forms ----
- * A block of 32 draws goes through in two stages, so that the cache misses of one stage overlap. block_row finds the row of
- * a draw and fetches its guide; block_columns fetches and searches the columns of all, then computes their directions. */
+ * A block of 32 draws goes through in two stages, so that the cache misses of one stage overlap. block_row finds the
+ * row of a draw and fetches its guide; block_columns fetches and searches the columns of all, then computes their
+ * directions. */
 
 /* Results, of which any may be NULL. */
 typedef struct {
