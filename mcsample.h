@@ -132,6 +132,9 @@
  *   [loops]       what array functions consist of
  *   PART III      the bodies of [rng] to [mis], and why each formula is written so
  *   PART IV       the bodies of [tables] to [estimator] */
+#if defined(MCS_IMPLEMENTATION) && defined(MCSI_DECLARED)
+#error "define MCS_IMPLEMENTATION before anything includes mcsample.h"
+#endif
 #ifndef MCSAMPLE_H
 #define MCSAMPLE_H
 
@@ -143,23 +146,39 @@
 #define MCS_VERSION 100 /* major * 10000 + minor * 100 + patch */
 #define MCS_VERSION_STRING "0.1.0"
 
-/* ---- configuration: define before the include ----
+/* ---- configuration: define these before the include ---------------------------------------------------------------
+ * There are two ways to include the header. Where nothing is defined every function is inline and nothing is linked.
+ * A large project compiles less often what is large:
+ * MCS_DECLARE        defined in every file: array functions, tables, maps and products are only declared there, as
+ *                    functions of C; samplers for one point and for packets stay inline   (default: all is inline)
+ * MCS_IMPLEMENTATION defined in one file, too, before anything includes the header: they are compiled there. That file
+ *                    may be C or C++; the switches below have to be the same in all files.
  *
- * MCS_NO_WIDE     No mcs4_, mcs8_ and mcs16_ functions. Array functions loop over the scalar ones. On by itself where
- *                 the compiler has no vector types.
- * MCS_NO_BATCH    No array functions but mcs_pcg32_fill_n.
- * MCS_NO_1D       No [1d].
- * MCS_NO_LOBES    No [microfacet], no BRDFs and no [product].
- * MCS_NO_TABLES   No [tables], no [env] and no [product].
- * MCS_MAX_LANES   The widest unit that array functions use on x86: 4 is SSE2, 8 is AVX2, 16 is AVX-512.
- * MCS_ASSERT      Called with conditions on arguments; see "Mistakes" above. assert is a good value.
- * MCS_FN          The linkage of every function, static inline by default. Defined as nothing, it makes a library of a
- *                 C file that includes this one. Defined as inline, it lets a C++ module export the functions.
- * MCS_SELF        The name under which the header includes itself. Only a renamed copy needs it.
+ * These add something or leave it out. Functions that are not used leave no code in any case: what is left out saves
+ * compile time alone.
+ * MCS_PACKETS     4, 8 or 16: functions of so many lanes exist (mcs8_ggx_pdf), and those of fewer   (default: none)
+ * MCS_NO_WIDE     no vector types: array functions loop over one point at a time, and there are no packets (default:
+ *                 off; on where the compiler has no vector types, for kernels of graphics processors, and where this
+ *                 file was pasted into another one, so that it cannot include itself)
+ * MCS_NO_BATCH    no array functions (`_n`) but mcs_pcg32_fill_n                                      (default: off)
+ * MCS_NO_1D       leaves out [1d], the densities on a line                                            (default: off)
+ * MCS_NO_LOBES    leaves out [microfacet], the BRDFs and [product]                                    (default: off)
+ * MCS_NO_TABLES   leaves out [tables], [env] and [product]                                            (default: off)
  *
- * None of the MCS_NO_ switches is on by default. They save compile time only: functions that are not used leave no
- * code. */
+ * These change how functions are compiled.
+ * MCS_MAX_LANES   4, 8 or 16: the widest unit of x86 that array functions use: SSE2, AVX2 or AVX-512. mcs_lanes() tells
+ *                 which one it is                                                                      (default: 16)
+ * MCS_ASSERT      is called with conditions on arguments, as "mistakes" above explains; assert, say    (default: nothing)
+ * MCS_FN          the linkage of every public function: nothing makes a library of a C file that includes this, inline
+ *                 lets a module of C++ export them                                                     (default: static inline)
+ * MCS_API         the linkage of what MCS_DECLARE declares; in C++ it has to say extern "C"   (default: MCS_FN, or
+ *                 extern with MCS_DECLARE)
+ * MCS_SELF        the name by which this file includes itself, for a copy that has another name (default:
+ *                 "mcsample.h") */
 
+#if defined(MCS_IMPLEMENTATION) && !defined(MCS_DECLARE)
+#define MCS_DECLARE
+#endif
 #ifndef MCS_ASSERT
 #define MCS_ASSERT(condition) ((void)0)
 #endif
@@ -170,9 +189,10 @@
 #define MCS_SELF "mcsample.h"
 #endif
 
-/* ---- platform: the only place that knows compilers and instruction sets ------------------------------------------------------ */
+/* ---- platform: the only place that knows compilers and instruction sets -------------------------------------------- */
 
-/* The attributes and vector types of gcc, which clang has too where it passes for MSVC and does not define __GNUC__. */
+/* The attributes and vector types of gcc. clang has them, too, even where it passes for MSVC and does not define
+ * __GNUC__. */
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(__TINYC__)
 #define MCSI_GNU
 #endif
@@ -180,22 +200,50 @@
 #if defined(__CUDACC__) || defined(__HIPCC__)
 #define MCSI_DEVICE
 #endif
-/* How float expressions are evaluated: 0 as float, 1 as double, 2 with the digits of x87. 16 and 32 speak of _Float16 alone. */
+/* How the compiler evaluates float expressions: 0 is as float, 1 as double, 2 with the digits of x87. The values 16 and
+ * 32 speak of _Float16 alone. */
 #if FLT_EVAL_METHOD == 16 || FLT_EVAL_METHOD == 32
 #define MCSI_FLT_EVAL 0
 #else
 #define MCSI_FLT_EVAL FLT_EVAL_METHOD
 #endif
-/* No vector types, or none that mix with floats: where float expressions are evaluated as double (s390x and x87 under -std=c99). */
+/* There are no vector types, or none that mix with floats: so it is where float expressions are evaluated as double
+ * (s390x and x87 under -std=c99). */
 #if !defined(MCS_NO_WIDE) && (!defined(MCSI_GNU) || defined(MCSI_DEVICE) || MCSI_FLT_EVAL > 0)
 #define MCS_NO_WIDE
 #endif
+/* Passes for more than one lane need this file under its name. It has none where its text was pasted into another. */
+#if !defined(MCS_NO_WIDE) && defined(__has_include)
+#if !__has_include(MCS_SELF)
+#define MCS_NO_WIDE
+#endif
+#endif
+/* MCSI_PACKETS is the number of lanes of the largest packet, or 0. */
+#if defined(MCS_PACKETS) && MCS_PACKETS != 4 && MCS_PACKETS != 8 && MCS_PACKETS != 16
+#error "MCS_PACKETS is 4, 8 or 16"
+#endif
+#if defined(MCS_PACKETS) && !defined(MCS_NO_WIDE)
+#define MCSI_PACKETS MCS_PACKETS
+#else
+#define MCSI_PACKETS 0
+#endif
+/* MCSI_DECLARED: this file has declarations of array functions, tables, maps and products, and the bodies are in
+ * another file. Kernels cannot call those of another file, so they have everything inline. */
+#if defined(MCS_DECLARE) && !defined(MCS_IMPLEMENTATION) && !defined(MCSI_DEVICE)
+#define MCSI_DECLARED
+#endif
 
-/* Linkage. MCS_FN stands before public functions, and before private ones that may be left as calls. MCSI_PRIVATE is the linkage of
- * the other private functions: static, but that modules of C++ cannot export what calls those. Compilers would leave some functions
- * as calls that return structs through memory: MCSI_INLINE stands before private ones, MCSI_HOT before public ones. MCSI_APART is a
- * function with a body of its own. It is inline all the same, by which it vanishes where nothing calls it; gcc warns of both
- * together where MCSI_QUIET does not stand before it and MCSI_LOUD behind it. */
+/* ---- linkage ---------------------------------------------------------------------------------------------------------
+ * MCS_FN        stands before public functions that are inline everywhere, and before private ones that may stay calls.
+ * MCS_API       stands before public functions that a project may compile once: array functions, tables, maps, products.
+ * MCSI_PRIVATE  is the linkage of the other private functions. They are static, except in C++ where MCS_FN is given: a
+ *               module cannot export what calls static functions.
+ * MCSI_INLINE   stands before private functions that have to be inlined. Compilers would leave some of them as calls that
+ *               return structs through memory.
+ * MCSI_HOT      stands before public functions of the same kind.
+ * MCSI_APART    stands before functions that have a body of their own. They are declared inline all the same, so that
+ *               they vanish where nothing calls them. gcc warns of both together, unless MCSI_QUIET stands before the
+ *               function and MCSI_LOUD behind it. */
 #if defined(MCS_FN) && defined(__cplusplus)
 #define MCSI_PRIVATE inline
 #else
@@ -213,8 +261,15 @@
 #else
 #define MCS_FN static inline
 #endif
-/* MCS_API stands before public functions that a project may compile once: array functions, tables, maps, products. */
+#ifndef MCS_API
+#if !defined(MCS_DECLARE) || defined(MCSI_DEVICE)
 #define MCS_API MCS_FN
+#elif defined(__cplusplus)
+#define MCS_API extern "C"
+#else
+#define MCS_API extern
+#endif
+#endif
 #ifndef MCSI_INLINE
 #define MCSI_INLINE MCS_FN
 #define MCSI_APART MCS_FN
@@ -288,15 +343,20 @@ typedef enum {
 
 /* 4, 8 and 16 lanes of float, int32_t and uint32_t, with all operators of C. Their alignment is 16 at most, so that
  * none needs an over-aligned place in the caller's structs or on the stack. */
-#ifndef MCS_NO_WIDE
+#if MCSI_PACKETS >= 4
 typedef float mcs4_f __attribute__((vector_size(16)));
-typedef float mcs8_f __attribute__((vector_size(32), aligned(16)));
-typedef float mcs16_f __attribute__((vector_size(64), aligned(16)));
 typedef int32_t mcs4_i __attribute__((vector_size(16)));
-typedef int32_t mcs8_i __attribute__((vector_size(32), aligned(16)));
-typedef int32_t mcs16_i __attribute__((vector_size(64), aligned(16)));
 typedef uint32_t mcs4_u __attribute__((vector_size(16)));
+#endif
+/* 16-byte alignment: no vector needs an over-aligned place in the caller's structs or on the stack. */
+#if MCSI_PACKETS >= 8
+typedef float mcs8_f __attribute__((vector_size(32), aligned(16)));
+typedef int32_t mcs8_i __attribute__((vector_size(32), aligned(16)));
 typedef uint32_t mcs8_u __attribute__((vector_size(32), aligned(16)));
+#endif
+#if MCSI_PACKETS >= 16
+typedef float mcs16_f __attribute__((vector_size(64), aligned(16)));
+typedef int32_t mcs16_i __attribute__((vector_size(64), aligned(16)));
 typedef uint32_t mcs16_u __attribute__((vector_size(64), aligned(16)));
 #endif
 
@@ -1591,13 +1651,13 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 /* ================================================================================================================== */
 
 #if defined(MCSI_GNU) && !defined(__cplusplus)
-/* The header declares variables at their first use, as C99 and C++ allow; some projects are warned of that in their own files. */
+/* The header declares variables at their first use, as C99 and C++ allow. Some projects let the compiler warn of that. */
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdeclaration-after-statement"
 #endif
 #if defined(MCSI_GNU)
-/* About vectors passed to functions; here all of them are inlined. gcc reports it at the end of the file, so it stays off for the
- * rest of the including file as well. */
+/* gcc notes that functions which pass wide vectors depend on the instruction set. Here all of them are inlined. The note
+ * comes at the end of the file, so it stays off for the rest of the including file, too. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
@@ -1605,7 +1665,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 #define MCSI_SUMS_MAY_MOVE /* (x + y) - y may become x */
 #endif
 
-/* clang takes the builtins that are named after instructions away in time and has portable ones instead. gcc keeps its own. */
+/* clang removes builtins that are named after instructions in time, and has portable ones instead. gcc keeps its own. */
 #if defined(__has_builtin)
 #if __has_builtin(__builtin_elementwise_sqrt)
 #define MCSI_ELEMENTWISE_SQRT
@@ -1623,7 +1683,7 @@ typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #include <math.h>
 #endif
 
-/* MCSI_UNROLL: before a loop of at most 16 rounds, as gcc -O2 keeps those. */
+/* MCSI_UNROLL stands before a loop of at most 16 rounds, which gcc -O2 would leave a loop. */
 #if defined(MCSI_GNU) && !defined(__clang__) && !defined(MCSI_DEVICE) && __GNUC__ >= 8
 #define MCSI_UNROLL _Pragma("GCC unroll 16")
 #else
@@ -1635,7 +1695,7 @@ typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #define MCSI_PREFETCH(p) ((void)(p))
 #endif
 
-/* Those of the library are functions of the host to HIP. */
+/* HIP takes the functions of the C library for functions of the host; kernels have builtins. */
 #if defined(__HIPCC__)
 #define MCSI_COPY(to, from, bytes) __builtin_memcpy(to, from, bytes)
 #define MCSI_FILL(to, byte, bytes) __builtin_memset(to, byte, bytes)
@@ -1648,12 +1708,12 @@ typedef double mcsi_x86_d __attribute__((vector_size(16)));
 #define MCSI_FILL(to, byte, bytes) memset(to, byte, bytes)
 #endif
 
-/* Square root without errno: sqrtf would cost a test and a call in every loop. */
+/* Square roots that do not set errno: sqrtf would cost a test and a call in every loop. */
 MCS_FN float mcsi_sqrt_f(float x) {
 #if defined(MCSI_ELEMENTWISE_SQRT)
     return __builtin_elementwise_sqrt(x);
 #elif defined(MCSI_X86)
-    mcsi_x86_f v = {x, x, x, x}; /* one shuffle; with zeros gcc goes through an integer register and back */
+    mcsi_x86_f v = {x, x, x, x}; /* this is one shuffle; with zeros gcc goes through an integer register */
     v = __builtin_ia32_sqrtss(v);
     return v[0];
 #else
@@ -1673,21 +1733,45 @@ MCS_FN double mcsi_sqrt_d(double x) {
 #endif
 }
 
-#ifndef MCS_NO_WIDE
-typedef uint64_t mcsi4_q __attribute__((vector_size(16)));
-typedef uint64_t mcsi8_q __attribute__((vector_size(32), aligned(16)));
-typedef uint64_t mcsi16_q __attribute__((vector_size(64), aligned(16)));
-typedef double mcsi4_d __attribute__((vector_size(32), aligned(16)));
-typedef double mcsi8_d __attribute__((vector_size(64), aligned(16)));
-typedef double mcsi16_d __attribute__((vector_size(128), aligned(16)));
+/* ---- what is compiled here -------------------------------------------------------------------------------------------
+ * The body is compiled in passes, which have 1, 4, 8 and 16 lanes. The scalar pass makes all public functions of one point.
+ * The others make packets, where MCS_PACKETS asks for them, or loops of array functions, or both. */
+#ifndef MCSI_DECLARED
+#ifndef MCS_NO_TABLES
+#define MCSI_TABLES /* bodies of [tables] and [env] */
+#ifndef MCS_NO_LOBES
+#define MCSI_PRODUCTS /* bodies of [product] */
+#endif
+#endif
+#ifndef MCS_NO_BATCH
+#define MCSI_BATCH /* bodies of array functions */
+#endif
 #endif
 
-/* The passes. This file includes itself once per width; MCSI_W is the number of lanes, MCS_(x) the public name x of the width,
- * MCSI_(x) a private one. On x86 two more passes compile the same bodies for AVX2 and AVX-512, for the `_n` forms alone. */
+/* The base is the pass of loops that every processor runs for which this file is compiled. MCSI_BASE(loop) is a loop of
+ * it, and MCSI_BASE_W is its number of lanes, 0 where there are no loops. Maps use loops without array functions, too,
+ * and the scalar ones will do. */
+#if defined(MCSI_DECLARED)
+#define MCSI_BASE_W 0
+#elif defined(MCS_NO_WIDE) || !defined(MCSI_BATCH)
+#define MCSI_BASE(name) mcsi_##name
+#define MCSI_BASE_W 1
+#elif defined(__AVX512F__) && MCS_MAX_LANES >= 16
+#define MCSI_BASE(name) mcsi16_##name
+#define MCSI_BASE_W 16
+#elif defined(__AVX2__) && MCS_MAX_LANES >= 8
+#define MCSI_BASE(name) mcsi8_##name
+#define MCSI_BASE_W 8
+#else
+#define MCSI_BASE(name) mcsi4_##name
+#define MCSI_BASE_W 4
+#endif
+
+/* On x86 array functions ask the processor what it has beyond the base, and two more passes compile the body for AVX2
+ * and AVX-512. The library of MSVC lacks the query. */
 #define MCSI_TARGET_AVX2 "avx2,fma"
 #define MCSI_TARGET_AVX512 "avx512f,avx512dq,avx512bw,avx512vl"
-#if defined(MCSI_X86) && !defined(MCS_NO_WIDE) && !defined(MCS_NO_BATCH) && \
-    !defined(_MSC_VER) /* whose library lacks the query */
+#if defined(MCSI_X86) && MCSI_BASE_W >= 4 && !defined(_MSC_VER)
 #if !defined(__AVX2__) && MCS_MAX_LANES >= 8
 #define MCSI_PICK_AVX2
 #endif
@@ -1695,20 +1779,62 @@ typedef double mcsi16_d __attribute__((vector_size(128), aligned(16)));
 #define MCSI_PICK_AVX512
 #endif
 #endif
-#define MCSI_FOR_AVX2 __attribute__((target(MCSI_TARGET_AVX2), unused))
-#define MCSI_FOR_AVX512 __attribute__((target(MCSI_TARGET_AVX512), unused))
 #define MCSI_CPU_HAS_AVX2 (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
 #define MCSI_CPU_HAS_AVX512 \
     (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw"))
 
+#ifdef MCSI_BATCH
+MCS_API int mcs_lanes(void) {
+#if defined(MCSI_PICK_AVX512)
+    if (MCSI_CPU_HAS_AVX512) return 16;
+#endif
+#if defined(MCSI_PICK_AVX2)
+    if (MCSI_CPU_HAS_AVX2) return 8;
+#endif
+    return MCSI_BASE_W;
+}
+#endif
+
+#ifndef MCS_NO_WIDE
+/* Lanes of the passes: floats, integers, words, halves of the products of words, doubles. */
+typedef float mcsi4_f __attribute__((vector_size(16)));
+typedef float mcsi8_f __attribute__((vector_size(32), aligned(16)));
+typedef float mcsi16_f __attribute__((vector_size(64), aligned(16)));
+typedef int32_t mcsi4_i __attribute__((vector_size(16)));
+typedef int32_t mcsi8_i __attribute__((vector_size(32), aligned(16)));
+typedef int32_t mcsi16_i __attribute__((vector_size(64), aligned(16)));
+typedef uint32_t mcsi4_u __attribute__((vector_size(16)));
+typedef uint32_t mcsi8_u __attribute__((vector_size(32), aligned(16)));
+typedef uint32_t mcsi16_u __attribute__((vector_size(64), aligned(16)));
+typedef uint64_t mcsi4_q __attribute__((vector_size(16)));
+typedef uint64_t mcsi8_q __attribute__((vector_size(32), aligned(16)));
+typedef uint64_t mcsi16_q __attribute__((vector_size(64), aligned(16)));
+typedef double mcsi4_d __attribute__((vector_size(32), aligned(16)));
+typedef double mcsi8_d __attribute__((vector_size(64), aligned(16)));
+typedef double mcsi16_d __attribute__((vector_size(128), aligned(16)));
+#endif
+/* The same names for the scalar pass, in which a lane is a number. */
+typedef float mcs_f;
+typedef int32_t mcs_i;
+typedef uint32_t mcs_u;
+typedef double mcsi_d;
+
+/* ---- batches: the arrays of one call ---------------------------------------------------------------------------------- */
+
+#if MCSI_BASE_W > 0
 enum { MCSI_IN_MAX = 3, MCSI_OUT_MAX = 5, MCSI_LANES_MAX = 16 };
-/* The arrays of one call: rounds over whole vectors, then one over a copy of the rest, so that nothing beyond n is touched. */
+/* A loop takes whole vectors as long as there are some. Then it takes one more over a copy of what remains, so that it
+ * touches nothing beyond n. */
 typedef struct {
     const float *in[MCSI_IN_MAX];
-    float *out[MCSI_OUT_MAX], *rest_out[MCSI_OUT_MAX];
-    size_t n, i, rest;
-    int more;
-    float in_copy[MCSI_IN_MAX][MCSI_LANES_MAX], out_copy[MCSI_OUT_MAX][MCSI_LANES_MAX];
+    float *out[MCSI_OUT_MAX];      /* NULL where the caller does not want them */
+    float *rest_out[MCSI_OUT_MAX]; /* where the results of the copy belong */
+    size_t n;                      /* how many points `in` and `out` have: those of the call, then those of the copy */
+    size_t i;                      /* the point that the loop is at */
+    size_t rest;                   /* how many points of the copy count; 0 before there is one */
+    int more;                      /* whether there is another turn, see MCSI_EACH */
+    float in_copy[MCSI_IN_MAX][MCSI_LANES_MAX];
+    float out_copy[MCSI_OUT_MAX][MCSI_LANES_MAX];
 } mcsi_batch;
 
 MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const float *in1, const float *in2) {
@@ -1730,7 +1856,9 @@ MCS_FN void mcsi_batch_dir(mcsi_batch *b, size_t n, const float *u1, const float
     b->out[3] = pdf;
 }
 
-/* Not cold: gcc 12 leaves vzeroupper out of cold exits, and SSE code is ten times slower from there on. */
+/* Called when no whole vector remains: the first time it moves the batch to the copy of what remains, the second time it
+ * hands out the results of that. Returns whether the loop has to go on. It is not marked cold: gcc 12 leaves vzeroupper
+ * out of cold exits, and SSE code is ten times slower from there on. */
 MCSI_QUIET
 MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
     const size_t rest = b->n - b->i;
@@ -1758,40 +1886,9 @@ MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
 }
 MCSI_LOUD
 
-/* The pass whose loops array functions use where none of more lanes may be picked at run time. */
-#if defined(MCS_NO_WIDE) || defined(MCS_NO_BATCH)
-#define MCSI_BASE(name) mcsi_##name
-#define MCSI_BASE_W 1
-#elif defined(__AVX512F__) && MCS_MAX_LANES >= 16
-#define MCSI_BASE(name) mcsi16_##name
-#define MCSI_BASE_W 16
-#elif defined(__AVX2__) && MCS_MAX_LANES >= 8
-#define MCSI_BASE(name) mcsi8_##name
-#define MCSI_BASE_W 8
-#else
-#define MCSI_BASE(name) mcsi4_##name
-#define MCSI_BASE_W 4
-#endif
-#ifndef MCS_NO_BATCH
-/* How many lanes the `_n` forms compute at once on this processor: 4, 8 or 16; 1 where there are no vector types. */
-MCS_API int mcs_lanes(void) {
-#if defined(MCSI_PICK_AVX512)
-    if (MCSI_CPU_HAS_AVX512) return 16;
-#endif
-#if defined(MCSI_PICK_AVX2)
-    if (MCSI_CPU_HAS_AVX2) return 8;
-#endif
-    return MCSI_BASE_W;
-}
-#endif
+#endif /* MCSI_BASE_W > 0 */
 
-/* Scalar names of the lane types, so that one body serves all widths. */
-typedef float mcs_f;
-typedef int32_t mcs_i;
-typedef uint32_t mcs_u;
-typedef double mcsi_d;
-
-/* What the passes for more than one lane call by scalar names. */
+/* Types of the scalar pass, for passes in which mcs_vec3 and the like are packets. */
 typedef mcs_vec3 mcsi_scalar_vec3;
 typedef mcs_frame mcsi_scalar_frame;
 #ifndef MCS_NO_LOBES
@@ -1805,6 +1902,7 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
 
 /* The scalar pass is the text below as it stands. */
 #define MCSI_W 1
+#define MCSI_PUBLIC
 #endif /* MCSAMPLE_H */
 
 #ifdef MCSI_W
@@ -1821,10 +1919,13 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
  *
  * MCSI_CORE stands before private functions. They must be inlined, because compilers would return their structs through
  * memory. MCSI_SAMPLE stands before public functions that draw and must be inlined for the same reason, MCSI_FN before
- * the other public functions. Passes that are picked at run time have no public functions; all of theirs are
- * private. */
+ * the other public functions. A pass without MCSI_PUBLIC makes nothing but loops: its functions are private, and those
+ * that no loop calls are left out. MCSI_LOOPS says that a pass makes loops; MCSI_LOOP stands before them. */
+#if MCSI_W == MCSI_BASE_W && !defined(MCSI_LOOPS)
+#define MCSI_LOOPS
+#endif
 #define MCSI_CORE MCSI_INLINE
-#if defined(MCSI_PICKED)
+#if !defined(MCSI_PUBLIC)
 #define MCSI_FN MCSI_INLINE
 #define MCSI_SAMPLE MCSI_INLINE
 #elif MCSI_W == 1
@@ -1837,19 +1938,11 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
 
 /* Tells mistakes of the caller, in the scalar pass alone. */
 #if MCSI_W == 1
+#define MCSI_LOOP MCS_FN
 #define MCSI_REQUIRE(ok) MCS_ASSERT(ok)
 #else
-#define MCSI_REQUIRE(ok) ((void)0)
-#endif
-
-/* MCSI_LOOPS is defined in the passes from whose loops array functions choose; MCSI_LOOP stands before those loops. */
-#if MCSI_W == MCSI_BASE_W && !defined(MCSI_PICKED)
-#define MCSI_LOOPS
-#endif
-#if MCSI_W == 1
-#define MCSI_LOOP MCS_FN
-#else
 #define MCSI_LOOP __attribute__((unused)) MCSI_PRIVATE
+#define MCSI_REQUIRE(ok) ((void)0)
 #endif
 
 /* ==== [lanes] what C has no operator for ==========================================================================
@@ -1943,7 +2036,7 @@ MCSI_CORE mcs_f mcsi_sqrt(mcs_f x) {
 #elif defined(MCSI_AVX512)
     return __builtin_ia32_sqrtps512_mask(x, x, -1, 4);
 #elif defined(MCSI_X86)
-    mcs4_f quarter[MCSI_W / 4]; /* four lanes each */
+    mcsi4_f quarter[MCSI_W / 4]; /* four lanes each */
     MCSI_COPY(quarter, &x, sizeof x);
     for (int k = 0; k < MCSI_W / 4; k++) quarter[k] = __builtin_ia32_sqrtps(quarter[k]);
     MCSI_COPY(&x, quarter, sizeof x);
@@ -2495,12 +2588,6 @@ MCS_FN void mcs_pcg32_advance(mcs_pcg32 *r, uint64_t delta) {
     r->state = all_mul * r->state + all_add;
 }
 #undef MCSI_PCG32_MULTIPLIER
-MCS_API void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
-    for (size_t i = 0; i < n; i++) {
-        const float u = mcs_pcg32_float(r);
-        if (out) out[i] = u;
-    }
-}
 #endif
 
 /* ---- Philox ---- */
@@ -4459,7 +4546,7 @@ MCSI_FN mcs_f mcs_mix_pdf(mcs_f c, mcs_f pf, mcs_f pg) {
 }
 
 #if MCSI_W == 1
-#ifndef MCS_NO_TABLES
+#ifdef MCSI_TABLES
 /* ==== [tables] bodies */
 
 /* ---- memory of the caller's: alignment, sizes, and the only casts ---- */
@@ -5039,12 +5126,12 @@ MCS_API mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t
     return mcsi_alias_pick(t, (uint32_t)(U >> 32), 0.5 * (uint32_t)U, 1);
 }
 
-#endif /* MCS_NO_TABLES */
+#endif /* MCSI_TABLES */
 #endif /* MCSI_W == 1 */
 
 /* ==== [env] bodies */
 
-#ifndef MCS_NO_TABLES
+#ifdef MCSI_TABLES
 /* ---- directions of points, and where directions lie, for all widths ---- */
 
 /* A draw between table and direction. row_rest/row_mass: position within the row, 0 to 1. edge: 1 - cos(theta) of the
@@ -6118,9 +6205,9 @@ MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_
     return mcsi_window_look_up(e, &window, w).pdf;
 }
 #endif /* MCSI_W == 1 */
-#endif /* MCS_NO_TABLES */
+#endif /* MCSI_TABLES */
 
-#if !defined(MCS_NO_TABLES) && !defined(MCS_NO_LOBES)
+#ifdef MCSI_PRODUCTS
 /* ==== [product] bodies */
 
 /* A product is one step above a map: the draw (mcsi_draw) begins with a tile, whose window the map then draws from. In
@@ -7675,7 +7762,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_FN
 #undef MCSI_SAMPLE
 #undef MCSI_CORE
-#undef MCSI_PICKED
+#undef MCSI_PUBLIC
 #undef MCSI_F
 #undef MCSI_I
 #undef MCSI_U
@@ -7703,10 +7790,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_AVX512
 #endif /* the body */
 
-/* ==== the passes for more than one lane ========================================================================================*/
+/* ==== the passes for more than one lane ==================================================================================
+ * This file includes itself once for each of them. */
 #ifndef MCSI_PASSES
 #define MCSI_PASSES
-#ifndef MCS_NO_WIDE
+#if MCSI_PACKETS >= 4 || MCSI_BASE_W >= 4
 /* What the names of the body stand for in the passes for more than one lane. */
 #define mcs_ashikhmin MCS_(ashikhmin)
 #define mcs_ashikhmin_eval MCS_(ashikhmin_eval)
@@ -8070,41 +8158,72 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_weighted MCSI_(weighted)
 #define mcsi_with_sign MCSI_(with_sign)
 
+/* MCSI_W is the number of lanes of a pass, MCS_(x) the public name x of that width, MCSI_(x) a private one. */
+#if MCSI_PACKETS >= 4 || MCSI_BASE_W == 4
 #define MCSI_W 4
+#if MCSI_PACKETS >= 4
+#define MCSI_PUBLIC
 #define MCS_(name) mcs4_##name
-#define MCSI_(name) mcsi4_##name
 #define MCSI_F mcs4_f
 #define MCSI_I mcs4_i
 #define MCSI_U mcs4_u
+#else
+#define MCS_(name) mcsi_4p_##name
+#define MCSI_F mcsi4_f
+#define MCSI_I mcsi4_i
+#define MCSI_U mcsi4_u
+#endif
+#define MCSI_(name) mcsi4_##name
 #define MCSI_D mcsi4_d
 #define MCSI_Q mcsi4_q
 #include MCS_SELF
+#endif
 
+#if MCSI_PACKETS >= 8 || MCSI_BASE_W == 8
 #define MCSI_W 8
+#if MCSI_PACKETS >= 8
+#define MCSI_PUBLIC
 #define MCS_(name) mcs8_##name
-#define MCSI_(name) mcsi8_##name
 #define MCSI_F mcs8_f
 #define MCSI_I mcs8_i
 #define MCSI_U mcs8_u
+#else
+#define MCS_(name) mcsi_8p_##name
+#define MCSI_F mcsi8_f
+#define MCSI_I mcsi8_i
+#define MCSI_U mcsi8_u
+#endif
+#define MCSI_(name) mcsi8_##name
 #define MCSI_D mcsi8_d
 #define MCSI_Q mcsi8_q
 #if defined(MCSI_X86) && defined(__AVX__)
 #define MCSI_AVX
 #endif
 #include MCS_SELF
+#endif
 
+#if MCSI_PACKETS >= 16 || MCSI_BASE_W == 16
 #define MCSI_W 16
+#if MCSI_PACKETS >= 16
+#define MCSI_PUBLIC
 #define MCS_(name) mcs16_##name
-#define MCSI_(name) mcsi16_##name
 #define MCSI_F mcs16_f
 #define MCSI_I mcs16_i
 #define MCSI_U mcs16_u
+#else
+#define MCS_(name) mcsi_16p_##name
+#define MCSI_F mcsi16_f
+#define MCSI_I mcsi16_i
+#define MCSI_U mcsi16_u
+#endif
+#define MCSI_(name) mcsi16_##name
 #define MCSI_D mcsi16_d
 #define MCSI_Q mcsi16_q
 #if defined(MCSI_X86) && defined(__AVX512F__)
 #define MCSI_AVX512
 #endif
 #include MCS_SELF
+#endif
 
 #ifdef MCSI_PICK_AVX2
 #if defined(__clang__)
@@ -8115,12 +8234,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #endif
 #define MCSI_W 8
 #define MCSI_LOOPS
-#define MCSI_PICKED
 #define MCS_(name) mcsi_avx2p_##name
 #define MCSI_(name) mcsi_avx2_##name
-#define MCSI_F mcs8_f
-#define MCSI_I mcs8_i
-#define MCSI_U mcs8_u
+#define MCSI_F mcsi8_f
+#define MCSI_I mcsi8_i
+#define MCSI_U mcsi8_u
 #define MCSI_D mcsi8_d
 #define MCSI_Q mcsi8_q
 #define MCSI_AVX
@@ -8141,12 +8259,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #endif
 #define MCSI_W 16
 #define MCSI_LOOPS
-#define MCSI_PICKED
 #define MCS_(name) mcsi_avx512p_##name
 #define MCSI_(name) mcsi_avx512_##name
-#define MCSI_F mcs16_f
-#define MCSI_I mcs16_i
-#define MCSI_U mcs16_u
+#define MCSI_F mcsi16_f
+#define MCSI_I mcsi16_i
+#define MCSI_U mcsi16_u
 #define MCSI_D mcsi16_d
 #define MCSI_Q mcsi16_q
 #define MCSI_AVX512
@@ -8521,8 +8638,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_with_sign
 #endif
 
-/* ==== array functions ==========================================================================================================
+/* ==== array functions =====================================================================================================
  * Each calls the loop of the widest pass that this processor runs. */
+#ifndef MCSI_DECLARED
 #if defined(MCSI_PICK_AVX512)
 #define MCSI_TRY_AVX512(loop, args)                   \
     if (MCSI_CPU_HAS_AVX512) mcsi_avx512_##loop args; \
@@ -8539,7 +8657,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #endif
 #define MCSI_WIDEST(loop, args) MCSI_TRY_AVX512(loop, args) MCSI_TRY_AVX2(loop, args) MCSI_BASE(loop) args
 
-#ifndef MCS_NO_TABLES
+#ifdef MCSI_TABLES
 MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner) {
     MCSI_WIDEST(env_directions_loop, (f, n, b, turn, inner));
 }
@@ -8547,7 +8665,7 @@ MCS_FN void mcsi_env_angles_n(const mcs_frame *f, size_t n, const float *x, cons
                               mcsi_angles_block *angles) {
     MCSI_WIDEST(env_angles_loop, (f, n, x, y, z, angles));
 }
-#ifndef MCS_NO_LOBES
+#ifdef MCSI_PRODUCTS
 MCS_FN void mcsi_tile_values_n(const mcsi_surface *s, size_t n, const float *tile, float *value) {
     MCSI_WIDEST(tile_values_loop, (s, n, tile, value));
 }
@@ -8562,7 +8680,13 @@ MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l) { MCSI_WIDEST(tile_s
 MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l) { MCSI_WIDEST(tile_bounds_loop, (l)); }
 #endif
 #endif
-#ifndef MCS_NO_BATCH
+MCS_API void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
+    for (size_t i = 0; i < n; i++) {
+        const float u = mcs_pcg32_float(r);
+        if (out) out[i] = u;
+    }
+}
+#ifdef MCSI_BATCH
 MCS_API void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *out) {
     MCSI_WIDEST(philox_fill_loop, (key, counter, n, out));
 }
@@ -8723,7 +8847,8 @@ MCS_API void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n,
     MCSI_WIDEST(ashikhmin_eval_loop, (m, wo, n, x, y, z, value));
 }
 #endif
-#endif
+#endif /* MCSI_BATCH */
+#endif /* MCSI_DECLARED */
 #if defined(MCSI_GNU) && !defined(__cplusplus)
 #pragma GCC diagnostic pop
 #endif

@@ -2,10 +2,9 @@
  * adapters of bits.h. What test_bits.c and test_fenv.c share. With -DMCST_LINKED the adapters are in tests/shared. */
 #ifndef MCST_FUNCTIONS_H
 #define MCST_FUNCTIONS_H
-#include "mcsample.h"
 #define MCST_WIDE
-#include "index.h"
 #include "registry.h"
+#include "index.h"
 
 /* --- the hash: FNV-1a, 64 bits, over the bit patterns, low byte first ------------------------------------------------------- */
 

@@ -9,6 +9,9 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
+#ifdef MCST_WIDE
+#define MCS_PACKETS 16
+#endif
 #include "mcsample.h"
 #include "mcs_test.h"
 #include "oracle.h"

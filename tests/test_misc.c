@@ -2,6 +2,7 @@
 #include <float.h>
 #include <math.h>
 #include "mcs_test.h"
+#define MCS_PACKETS 16
 #include "mcsample.h"
 #include "oracle.h"
 #include "stats.h"

@@ -1,6 +1,7 @@
 /* The point sets: net properties counted, uniform marginals and independent randomisations by chi-square, permutations, array and
  * wide forms against scalar ones, and what all of it is for: the rate at which the error of a smooth integral falls. */
 #include "mcs_test.h"
+#define MCS_PACKETS 16
 #include "mcsample.h"
 #include "stats.h"
 #include <math.h>

@@ -1,6 +1,7 @@
 /* Uniform variates: published reference outputs, jump-ahead, integer to float, batch fills. */
 #include <math.h>
 #include "mcs_test.h"
+#define MCS_PACKETS 16
 #include "mcsample.h"
 #include "stats.h"
 

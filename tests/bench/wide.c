@@ -1,5 +1,6 @@
 /* The 8 wide (-mavx2 -mfma) or 16 wide (-mavx512f and so on) forms of every sampler; with BENCH_W 8 the vector-maths kernels of the
  * header too and, with BENCH_SLEEF, those of SLEEF (https://sleef.org) with the same purpose: 1 ulp, AVX2. */
+#define MCS_PACKETS BENCH_W
 #include "mcsample.h"
 #include "registry.h"
 #include "throughput.h"

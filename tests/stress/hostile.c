@@ -4,6 +4,7 @@
  * size that was asked for, between guards.
  *
  * At full scale (MCS_TEST_SCALE=1) more than 1e9 evaluations; a part is picked with --filter. */
+#define MCS_PACKETS 8
 #include "hostile_rows.h"
 #include "hostile_tables.h"
 #include "hostile_maps.h"
