@@ -17,6 +17,8 @@
 enum { MCST_S = 20, MCST_T = 40, MCST_LINE_BINS = 100, MCST_CELLS = MCST_S * MCST_T };
 
 typedef struct {
+    const mcst_row *row;
+    const float *p;
     enum mcst_coord coord;
     enum { MCST_SELF, MCST_HALF, MCST_MIRROR } frame;
     int s_bins, t_bins;
@@ -79,6 +81,8 @@ static inline void mcst_map_constants(mcst_map *m, const mcst_row *row) {
 static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
     mcst_map m;
     memset(&m, 0, sizeof m);
+    m.row = row;
+    m.p = p;
     m.coord = row->coord;
     m.s_bins = row->dim == 1 ? MCST_LINE_BINS : MCST_S;
     m.t_bins = row->dim == 1 ? 1 : MCST_T;
@@ -175,6 +179,12 @@ static inline double mcst_place_line(const mcst_map *m, double s, double *x) {
 
 /* The point at (s, t) and |d measure / d(s, t)|. */
 static inline double mcst_place(const mcst_map *m, double s, double t, double x[3]) {
+    if (m->coord == MCST_BY_TRUTH) {
+        ld exact[3] = {0, 0, 0};
+        m->row->truth.map(m->p, (ld)s, (ld)t, exact);
+        for (int i = 0; i < 3; i++) x[i] = (double)exact[i];
+        return (double)(1 / m->row->truth.pdf_u(m->p, (ld)s, (ld)t));
+    }
     double c, n;
     double jac = mcst_azimuth(t, &c, &n);
     if (m->t_bins == 1) return mcst_place_line(m, s, x);
@@ -229,7 +239,22 @@ static inline double mcst_place(const mcst_map *m, double s, double t, double x[
     return jac;
 }
 
+static inline int mcst_cell_at(const mcst_map *m, double s, double t) {
+    int i = (int)(s * m->s_bins);
+    int j = (int)(t * m->t_bins);
+    if (!(s > 0)) i = 0;
+    if (i >= m->s_bins) i = m->s_bins - 1;
+    if (j >= m->t_bins) j = m->t_bins - 1;
+    return i * m->t_bins + j;
+}
+
 static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
+    if (m->coord == MCST_BY_TRUTH) {
+        const float at[3] = {(float)x, (float)y, (float)w};
+        ld u[2] = {0, 0};
+        m->row->truth.invert(m->p, at, u);
+        return mcst_cell_at(m, (double)u[0], (double)u[1]);
+    }
     double t = 0;
     double v[3];
     v[0] = x;
@@ -283,12 +308,7 @@ static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
         s = v[2] > 0 ? n / (z * (z + v[2])) : 1;
         t = mcst_diamond(v[0], v[1]);
     }
-    int i = (int)(s * m->s_bins);
-    int j = (int)(t * m->t_bins);
-    if (!(s > 0)) i = 0;
-    if (i >= m->s_bins) i = m->s_bins - 1;
-    if (j >= m->t_bins) j = m->t_bins - 1;
-    return i * m->t_bins + j;
+    return mcst_cell_at(m, s, t);
 }
 
 /* --- the density over the bins ---------------------------------------------------------------------------------------------- */

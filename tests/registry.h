@@ -80,7 +80,8 @@ enum mcst_coord {
     MCST_HEMISPHERE,
     MCST_CONE,
     MCST_COSPOWER,
-    MCST_SLOPES
+    MCST_SLOPES,
+    MCST_BY_TRUTH /* the random numbers of the truth, for a row that has no coordinates of its own: slower */
 };
 
 /* In adapters.h: the forms of one width, and the array forms. */
@@ -134,6 +135,14 @@ typedef struct {
     double least[2], most[2], claim[CLAIMS];
 } mcst_claim;
 
+/* What may be given as parameters. Bad is what the header documents as outside: 1, 0, or -1 where it leaves it open; both
+ * parameters of a linear density being 0 is bad, too. Valid ones are drawn from least to most. */
+typedef struct {
+    int (*bad)(int i, float v);
+    double least[2], most[2];
+    int either_sign; /* the first one may be negative */
+} mcst_domain;
+
 typedef struct {
     const char *name, *function; /* the public sampler is mcs_<function>_sample */
     enum mcst_shape shape;
@@ -152,6 +161,7 @@ typedef struct {
     const mcst_claim *claims; /* narrower ranges first */
     size_t claims_size;
     unsigned vary, traits;
+    mcst_domain domain;
 } mcst_row;
 
 /* --- parameter grids, extremes included ------------------------------------------------------------------------------- */
@@ -176,6 +186,62 @@ static const float mcst_grid_alpha[][2] = {
 static const float mcst_grid_exponents[][2] = {
     {10, 100},    {100, 10}, {0, 0},    {1, 1},       {3, 0.5f},      {100, 100},     {1e3f, 1e3f}, {1e4f, 1e4f},  {1e6f, 1e6f},
     {1e9f, 1e9f}, {0, 100},  {1e4f, 1}, {1e9f, 1e5f}, {1e-3f, 1e-3f}, {1e-2f, 1e-2f}, {1e-3f, 100}, {1e4f, 1e-2f}, {1e-2f, 1e9f}};
+
+/* --- what may be given --------------------------------------------------------------------------------------------------------- */
+
+static inline int mcst_outside(float v, float least, float most) { return !(v >= least && v <= most); }
+static inline int mcst_bad_none(int i, float v) {
+    (void)i;
+    (void)v;
+    return 0;
+}
+static inline int mcst_bad_linear(int i, float v) {
+    (void)i;
+    return !(v >= 0 && v <= FLT_MAX);
+}
+static inline int mcst_bad_radius(int i, float v) { return i == 0 && mcst_outside(v, 1e-18f, 1e18f); }
+static inline int mcst_bad_rate(int i, float v) { return i == 0 && mcst_outside(v, 1e-18f, 1e18f); }
+static inline int mcst_bad_truncexp(int i, float v) {
+    if (i == 1) return mcst_outside(v, 1e-18f, 1e18f);
+    return !(v >= 0) ? 1 : v <= 1e18f ? 0 : -1;
+}
+static inline int mcst_bad_normal(int i, float v) {
+    if (i == 1) return mcst_outside(v, 1e-18f, 1e18f);
+    return !(fabsf(v) <= FLT_MAX) ? 1 : fabsf(v) <= 1e30f ? 0 : -1;
+}
+static inline int mcst_bad_power(int i, float v) { return i == 0 && mcst_outside(v, 0, 1e9f); }
+static inline int mcst_bad_cone(int i, float v) { return i != 0 ? 0 : !(v > 0 && v <= 2) ? 1 : v < 1e-30f ? -1 : 0; }
+static inline int mcst_bad_phong(int i, float v) { return i == 0 && !(v >= 0); }
+static inline int mcst_bad_alpha(int i, float v) {
+    (void)i;
+    return !(v > 0);
+}
+static inline int mcst_bad_exponents(int i, float v) {
+    (void)i;
+    return !(v >= 0);
+}
+#define MCST_DOMAIN_none \
+    { mcst_bad_none, {1e-18, 1e-18}, {1e18, 1e18}, 0 }
+#define MCST_DOMAIN_linear \
+    { mcst_bad_linear, {1e-45, 1e-45}, {3.4e38, 3.4e38}, 0 }
+#define MCST_DOMAIN_radius \
+    { mcst_bad_radius, {1e-18, 1e-18}, {1e18, 1e18}, 0 }
+#define MCST_DOMAIN_rate \
+    { mcst_bad_rate, {1e-18, 1e-18}, {1e18, 1e18}, 0 }
+#define MCST_DOMAIN_truncexp \
+    { mcst_bad_truncexp, {1e-30, 1e-18}, {1e18, 1e18}, 0 }
+#define MCST_DOMAIN_normal \
+    { mcst_bad_normal, {1e-30, 1e-18}, {1e30, 1e18}, 1 }
+#define MCST_DOMAIN_power \
+    { mcst_bad_power, {1e-30, 1e-30}, {1e9, 1e9}, 0 }
+#define MCST_DOMAIN_cone \
+    { mcst_bad_cone, {1e-30, 1e-30}, {2, 2}, 0 }
+#define MCST_DOMAIN_phong \
+    { mcst_bad_phong, {1e-30, 1e-30}, {1e9, 1e9}, 0 }
+#define MCST_DOMAIN_alpha \
+    { mcst_bad_alpha, {1e-7, 1e-7}, {1e4, 1e4}, 0 }
+#define MCST_DOMAIN_exponents \
+    { mcst_bad_exponents, {1e-30, 1e-30}, {1e9, 1e9}, 0 }
 
 /* From the pole over 45 degrees to a cosine of 1e-6, azimuths off the axes. */
 static const float mcst_incidence[][2] = {{1, 0},        {0.95f, 0.4f},  {0.70710678f, 0.7f}, {0.35f, 2.1f}, {0.0871557f, -2.5f},
@@ -280,8 +346,14 @@ static const mcst_claim mcst_claims_ashikhmin[] = {
     mcst_value_n_fn mcstn_##row##_pdf, mcstn_##row##_eval;                                                 \
     mcst_exact_fn mcsto_##row##_eval, mcsto_##row##_weight;
 #define MCST_DECLARE(shape, row, fn, arg, base, coord, grid)                                                \
-    mcst_sample_fn mcst1_##row##_sample, mcst4_##row##_sample, mcst8_##row##_sample, mcst16_##row##_sample; \
-    mcst_value_fn mcst1_##row##_pdf, mcst4_##row##_pdf, mcst8_##row##_pdf, mcst16_##row##_pdf;              \
+    mcst_sample_fn mcst1_##row##_sample; \
+        mcst4_##row##_sample; \
+        mcst8_##row##_sample; \
+        mcst16_##row##_sample; \
+    mcst_value_fn mcst1_##row##_pdf; \
+    mcst4_##row##_pdf; \
+    mcst8_##row##_pdf; \
+    mcst16_##row##_pdf;              \
     mcst_sample_n_fn mcstn_##row;                                                                           \
     mcst_map_fn mcsto_##row##_map;                                                                          \
     mcst_exact_fn mcsto_##row##_pdf;                                                                        \
@@ -358,7 +430,7 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_T_BRDF(row) MCST_TAIL_BRDF(row)
 #define MCST_TABLE(X, shape, row, fn, arg, base, coord, grid, claims, vary, traits) \
     {#row, #fn, MCST_SHAPE_##shape(row), MCST_##coord, MCST_SIZE_##shape, MCST_COUNT_##arg, MCST_WO_##shape, mcst_grid_##grid, \
-     MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row), mcst_claims_##claims, MCST_COUNT(mcst_claims_##claims), vary, traits},
+     MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row), mcst_claims_##claims, MCST_COUNT(mcst_claims_##claims), vary, traits, MCST_DOMAIN_##grid},
 /* clang-format on */
 
 #ifndef MCST_SHARED
@@ -366,8 +438,7 @@ static const mcst_row mcst_rows[] = {MCST_LIST(MCST_TABLE, )};
 enum { MCST_NROWS = MCST_COUNT(mcst_rows) };
 
 static inline const mcst_row *mcst_find(const char *name) {
-    size_t i;
-    for (i = 0; i < MCST_NROWS; i++)
+    for (size_t i = 0; i < MCST_NROWS; i++)
         if (!strcmp(mcst_rows[i].name, name)) return &mcst_rows[i];
     fprintf(stderr, "registry: no row %s\n", name);
     exit(2);
@@ -376,7 +447,9 @@ static inline const mcst_row *mcst_find(const char *name) {
 
 static inline void mcst_fill(const mcst_row *row, float a, float b, float cos_o, float azimuth, float p[MCST_P]) {
     const double s = sqrt((1 - (double)cos_o) * (1 + (double)cos_o));
-    p[0] = a, p[1] = b, p[2] = 0;
+    p[0] = a;
+    p[1] = b;
+    p[2] = 0;
     p[3] = row->has_wo ? (float)(s * cos((double)azimuth)) : 0;
     p[4] = row->has_wo ? (float)(s * sin((double)azimuth)) : 0;
     p[5] = row->has_wo ? cos_o : 1;
@@ -388,7 +461,8 @@ static inline size_t mcst_grid_count(const mcst_row *row) {
 }
 
 static inline void mcst_grid_get(const mcst_row *row, size_t i, float p[MCST_P]) {
-    const float *g = row->grid[i % row->grid_size], *o = mcst_incidence[i / row->grid_size];
+    const float *g = row->grid[i % row->grid_size];
+    const float *o = mcst_incidence[i / row->grid_size];
     mcst_fill(row, g[0], g[1], o[0], o[1], p);
 }
 
@@ -402,8 +476,7 @@ static inline uint64_t mcst_mix(uint64_t *state) {
 }
 
 static inline void mcst_uniform(uint64_t *state, size_t n, float *u1, float *u2) {
-    size_t i;
-    for (i = 0; i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
         const uint64_t z = mcst_mix(state);
         u1[i] = (float)(int32_t)(z >> 40) * 0x1p-24f;
         u2[i] = (float)(int32_t)(z >> 16 & 0xFFFFFF) * 0x1p-24f;

@@ -55,6 +55,7 @@ static void valid_direction(uint64_t *state, int above, float w[3]) {
 
 /* Parameters of a row: of its grid, with their largest and least; or of a function without a row, any positive float. */
 static void valid_parameters(const mcst_row *row, uint64_t *state, float set[3]) {
+    const mcst_domain *d;
     const uint64_t z = mcst_mix(state);
     if (!row) {
         static const float edge[8] = {0, 0x1p-149f, FLT_MIN, 1e-30f, 1, 1e30f, 0x1p126f, 0x1p-24f};
@@ -66,19 +67,12 @@ static void valid_parameters(const mcst_row *row, uint64_t *state, float set[3])
         memcpy(set, row->grid[(z >> 1) % row->grid_size], 2 * sizeof *set);
         return;
     }
-    switch (row->coord) {
-    case MCST_UNIT:
-        set[0] = spread(state, 1e-45, 3.4e38), set[1] = z & 2 ? 0 : z & 4 ? set[0] : spread(state, 1e-45, 3.4e38);
-        break;
-    case MCST_TRUNCATED: set[0] = spread(state, 1e-30, 1e18), set[1] = spread(state, 1e-18, 1e18); break;
-    case MCST_WHOLELINE: set[0] = (z & 2 ? 1.0f : -1.0f) * spread(state, 1e-30, 1e30), set[1] = spread(state, 1e-18, 1e18); break;
-    case MCST_POWER:
-    case MCST_EVENPOWER:
-    case MCST_COSPOWER: set[0] = spread(state, 1e-30, 1e9), set[1] = z & 2 ? set[0] : spread(state, 1e-30, 1e9); break;
-    case MCST_CONE: set[0] = spread(state, 1e-30, 2); break;
-    case MCST_SLOPES: set[0] = spread(state, 1e-7, 1e4), set[1] = z & 2 ? set[0] : spread(state, 1e-7, 1e4); break;
-    default: set[0] = spread(state, 1e-18, 1e18);
-    }
+    d = &row->domain;
+    set[0] = (d->either_sign && !(z & 2) ? -1.0f : 1.0f) * spread(state, d->least[0], d->most[0]);
+    set[1] = spread(state, d->least[1], d->most[1]);
+    if (row->coord == MCST_TRUNCATED || row->coord == MCST_WHOLELINE) return;
+    if (row->coord == MCST_UNIT && z & 2) set[1] = 0;
+    else if (z & (row->coord == MCST_UNIT ? 4 : 2)) set[1] = set[0];
 }
 
 /* Points: mostly samples of the row; else, on a line or plane, about its scale or any float, and a direction that is any. */

@@ -76,7 +76,9 @@ static float between(uint64_t *state, double lo, double hi) {
 static void draw_set(const mcst_row *row, uint64_t *state, float p[MCST_P]) {
     const double lo[MCST_SLOPES] = {1e-5, 1e-18, 1e-18, 1e-3, 1e-3, 1e-3, 1e-3};
     const double hi[MCST_SLOPES] = {1, 1e18, 1e18, 1e3, 1e3, 1e9, 1e9};
-    mcst_fill(row, between(state, lo[row->coord], hi[row->coord]), between(state, 1e-3, 1e3), 1, 0, p);
+    const int own = row->coord >= MCST_SLOPES; /* a line beyond the list has its domain */
+    const float a = between(state, own ? row->domain.least[0] : lo[row->coord], own ? row->domain.most[0] : hi[row->coord]);
+    mcst_fill(row, a, between(state, 1e-3, 1e3), 1, 0, p);
 }
 
 /* No x below that of the u before, by the array form, whose bits the others share. Parameters of `linear` that are of a size are

@@ -443,25 +443,6 @@ static void must_assert(const mcst_row *row, const float *p, const float *u, con
     }
 }
 
-/* Is a value of parameter i outside the documented range of the row? Only values about which the interface leaves no doubt. */
-static int parameter_is_bad(const mcst_row *row, int i, float v) {
-    if (isnan(v)) return 1;
-    if (row->shape == MCST_IS_LOBE || row->shape == MCST_IS_VLOBE || row->shape == MCST_IS_BRDF)
-        return row->coord == MCST_COSPOWER ? v < 0 : v <= 0;
-    switch (row->coord) {
-    case MCST_TENT:
-    case MCST_HALFLINE:
-    case MCST_DISK: return v <= 0;
-    case MCST_CONE: return v <= 0 || v > 2.001f;
-    case MCST_TRUNCATED: return i ? v <= 0 : v < 0;
-    case MCST_WHOLELINE: return i && v <= 0;
-    case MCST_UNIT:
-    case MCST_POWER:
-    case MCST_EVENPOWER: return v < 0;
-    default: return 0;
-    }
-}
-
 static const float fine[2] = {0.3f, 0.6f}, side[3] = {0.36f, 0.48f, 0.8f};
 
 static void check_bad_u(const mcst_row *row, const float *p) {
@@ -521,7 +502,7 @@ static void check_bad_parameters(const mcst_row *row, const float *p) {
     for (int i = 0; i < 7; i++) {
         const float v = i < 6 ? bad_parameter[i] : NAN;
         for (int j = 0; j < row->params; j++) {
-            if (!parameter_is_bad(row, j, v)) continue;
+            if (row->domain.bad(j, v) != 1) continue;
             float q[MCST_P];
             memcpy(q, p, sizeof q);
             q[j] = v;

@@ -135,8 +135,9 @@ typedef struct {
     ld (*text_pdf_u)(const float *p, ld u1, ld u2);
 } sampler;
 
-/* Ward 1992 and Duer have the samples and densities of ward and other weights, so they are not rows. */
-static const sampler samplers[] = {
+/* Rows that the list leaves out are measured without a text. Ward 1992 and Duer have the samples and densities of ward and other
+ * weights: their function is in the list. */
+static const sampler listed[] = {
     {"linear", "linear", ALL, 1, 3, linear_text, 0, 1, NULL, NULL},
     {"tent", "tent", ALL, 2, 0, tent_text, 0, 1, NULL, NULL},
     {"exponential", "exponential", ALL, 2, 0, exponential_text, 0, 1, NULL, NULL},
@@ -174,11 +175,30 @@ static const sampler samplers[] = {
     {"ashikhmin iso", "ashikhmin", ISO, 50, 50, ashikhmin_iso_text, 0, 2, NULL, NULL},
     {"ashikhmin aniso", "ashikhmin", ANISO, 10, 100, ashikhmin_text, 30, 2, NULL, NULL},
 };
-enum { SAMPLERS = sizeof samplers / sizeof samplers[0] };
+enum { LISTED = sizeof listed / sizeof listed[0], SAMPLERS_MAX = LISTED + MCST_NROWS };
+static sampler samplers[SAMPLERS_MAX];
+static int sampler_count;
+
+static int is_listed(const mcst_row *row) {
+    int k;
+    for (k = 0; k < sampler_count; k++)
+        if (!strcmp(mcst_find(samplers[k].row)->function, row->function)) return 1;
+    return 0;
+}
+static void list_samplers(void) {
+    int i;
+    memcpy(samplers, listed, sizeof listed);
+    sampler_count = LISTED;
+    for (i = 0; i < MCST_NROWS; i++) {
+        const mcst_row *const row = &mcst_rows[i];
+        const sampler plain = {row->name, row->name, ALL, row->grid[0][0], row->grid[0][1], NULL, 0, 0, NULL, NULL};
+        if (!is_listed(row)) samplers[sampler_count++] = plain;
+    }
+}
 
 static float u1[BENCH_N], u2[BENCH_N], out_x[BENCH_N], out_y[BENCH_N], out_z[BENCH_N], out_pdf[BENCH_N], out_weight[BENCH_N];
-static double ns[SAMPLERS][FORMS][ROUNDS_MAX];
-static errors error_of[SAMPLERS][FORMS];
+static double ns[SAMPLERS_MAX][FORMS][ROUNDS_MAX];
+static errors error_of[SAMPLERS_MAX][FORMS];
 static int rounds, have[FORMS];
 
 /* Runs a form over n points (a multiple of 16); 0 where it does not exist. */
@@ -186,7 +206,7 @@ static int run_form(const sampler *s, int form, const float *p, size_t n, const 
     const mcst_row *const row = mcst_find(s->row);
     const size_t k = (size_t)(row - mcst_rows);
     float *out[BENCH_OUT] = {out_x, out_y, out_z, out_pdf, NULL};
-    if (!have[form]) return 0;
+    if (!have[form] || (form == TEXT && !s->text)) return 0;
     switch (form) {
     case TEXT: s->text(p, n, a, b, out); break;
     case SCALAR: bench1_forms[k](p, n, a, b, out); break;
@@ -336,12 +356,12 @@ static double seconds_of(const sampler *s, int form, const float *p, int passes)
 }
 
 static void measure_times(double slice) {
-    static int passes[SAMPLERS][FORMS];
+    static int passes[SAMPLERS_MAX][FORMS];
     float p[MCST_P];
     int k, f, r;
     for (r = -1; r < rounds; r++) { /* round -1 warms up and finds out how many passes take a slice of time */
         bench_progress("throughput: round %d of %d", r + 1, rounds);
-        for (k = 0; k < SAMPLERS; k++) {
+        for (k = 0; k < sampler_count; k++) {
             timed_set(&samplers[k], p);
             for (f = 0; f < FORMS; f++) {
                 if (r < 0) {
@@ -564,7 +584,7 @@ static void write_csv(void) {
         "sampler,form,ns_median,ns_min,ns_max,times_faster_than_text,error_unit,error_max,error_rms,pdf_error_max,pdf_error_rms,"
         "not_finite,points,sets_worse_than_text,timed_a,timed_b,error_at_a_b_cos_u1_u2,pdf_error_at_a_b_cos_u1_u2");
     int k, i;
-    for (k = 0; k < SAMPLERS; k++) {
+    for (k = 0; k < sampler_count; k++) {
         const mcst_row *const row = mcst_find(samplers[k].row);
         for (i = 0; i < FORMS; i++) {
             const errors *const e = &error_of[k][i];
@@ -591,10 +611,10 @@ static void write_csv(void) {
 
 /* One mark per form and sampler. The least error drawn is `least`: smaller ones stand on that line. */
 static void write_svg(const char *file, int pdf, const char *ylabel, double least) {
-    double x[FORMS][SAMPLERS], y[FORMS][SAMPLERS], lo[2] = {1, 1}, hi[2] = {0, 0};
+    double x[FORMS][SAMPLERS_MAX], y[FORMS][SAMPLERS_MAX], lo[2] = {1, 1}, hi[2] = {0, 0};
     int n[FORMS] = {0}, k, f;
     svg_plot plot;
-    for (k = 0; k < SAMPLERS; k++) {
+    for (k = 0; k < sampler_count; k++) {
         for (f = 0; f < FORMS; f++) {
             if (!(ns[k][f][0] > 0)) continue;
             x[f][n[f]] = spread_of(ns[k][f]).median;
@@ -606,7 +626,7 @@ static void write_svg(const char *file, int pdf, const char *ylabel, double leas
     svg_begin(&plot, bench_path(file), pdf ? "Run time against error of the density" : "Run time against error of the sample",
               "time per sample with pdf, ns (median)", ylabel, 1, 1, lo[0] / 1.3, hi[0] * 2, lo[1] / 2, hi[1] * 2);
     for (f = 0; f < FORMS; f++) svg_keep_off(&plot, n[f], x[f], y[f]);
-    for (k = 0; k < SAMPLERS; k++) { /* only where there is room between the marks */
+    for (k = 0; k < sampler_count; k++) { /* only where there is room between the marks */
         const double err = pdf ? error_of[k][TEXT].pdf_max : error_of[k][TEXT].max;
         if (err > 50) svg_label(&plot, spread_of(ns[k][TEXT]).median, err, samplers[k].name);
     }
@@ -634,7 +654,7 @@ static void print_tables(void) {
     printf("%-18s", "sampler");
     for (f = 0; f < FORMS; f++) printf(" %7s", f == WEIGHT ? "n+wgt" : form_name[f]);
     printf(" %7s %6s %10s %9s %10s %9s\n", "scalar", "n", "text", "n", "text", "n");
-    for (k = 0; k < SAMPLERS; k++) {
+    for (k = 0; k < sampler_count; k++) {
         const errors *const t = &error_of[k][TEXT], *const n = &error_of[k][ARRAY];
         printf("%-18s", samplers[k].name);
         for (f = 0; f < FORMS; f++) print_ns(ns[k][f][0] > 0 ? spread_of(ns[k][f]).median : 0);
@@ -666,18 +686,18 @@ static void print_targets(void) {
     double against;
     int k, f;
     puts("\ntargets");
-    for (k = 0; k < SAMPLERS; k++)
+    for (k = 0; k < sampler_count; k++)
         if (samplers[k].target > 0)
             verdict("n, times as fast as text", samplers[k].name, speedup(ns[k], TEXT, ARRAY), ">=", samplers[k].target,
                     speedup(ns[k], TEXT, ARRAY) >= samplers[k].target);
-    for (k = 0; k < SAMPLERS; k++)
-        if (samplers[k].scalar_target > 1 || !(speedup(ns[k], TEXT, SCALAR) >= 1))
+    for (k = 0; k < sampler_count; k++)
+        if (samplers[k].text && (samplers[k].scalar_target > 1 || !(speedup(ns[k], TEXT, SCALAR) >= 1)))
             verdict("scalar, times as fast as text", samplers[k].name, speedup(ns[k], TEXT, SCALAR),
                     ">=", samplers[k].scalar_target, speedup(ns[k], TEXT, SCALAR) >= samplers[k].scalar_target);
-    for (k = 0; k < SAMPLERS; k++) {
+    for (k = 0; k < sampler_count; k++) {
         const errors *const e = &error_of[k][ARRAY];
         if (!(e->max <= 4)) verdict("n, largest error, ulp", samplers[k].name, e->max, "<=", 4, 0);
-        if (e->worse) verdict("n, sets with more than text", samplers[k].name, e->worse, "<=", 0, 0);
+        if (samplers[k].text && e->worse) verdict("n, sets with more than text", samplers[k].name, e->worse, "<=", 0, 0);
         if (!(e->pdf_max <= 1)) verdict("n, error of the density", samplers[k].name, e->pdf_max, "<=", 1, 0);
         if (e->bad) verdict("n, results not finite", samplers[k].name, (double)e->bad, "<=", 0, 0);
     }
@@ -706,8 +726,9 @@ int main(int argc, char **argv) {
 #endif
     mcs_pcg32_fill_n(&rng, BENCH_N, u1);
     mcs_pcg32_fill_n(&rng, BENCH_N, u2);
-    for (k = 0; k < SAMPLERS; k++) {
-        bench_progress("throughput: errors of %s, %d of %d", samplers[k].name, k + 1, SAMPLERS);
+    list_samplers();
+    for (k = 0; k < sampler_count; k++) {
+        bench_progress("throughput: errors of %s, %d of %d", samplers[k].name, k + 1, sampler_count);
         measure_errors(&samplers[k], error_of[k]);
     }
     measure_times(slice);

@@ -314,7 +314,8 @@ int main(int argc, char **argv) {
     mcst_start(argc, argv);
     for (size_t i = 0; i < MCST_NROWS; i++) {
         const mcst_row *row = &mcst_rows[i];
-        for (size_t j = 0; row->dim == 3 && j < row->claims_size; j++) {
+        if (row->dim < 3 || !exact_has(row)) continue;
+        for (size_t j = 0; j < row->claims_size; j++) {
             claim = &row->claims[j];
             char group[64];
             snprintf(group, sizeof group, row->params ? "%s %g to %g" : "%s", row->name, claim->least[0],

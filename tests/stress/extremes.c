@@ -454,6 +454,7 @@ int main(int argc, char **argv) {
         tally *t = all[i];
         float p[MCST_P];
         char group[64];
+        if (!exact_has(row)) continue;
         t[1].beyond = 1;
         snprintf(group, sizeof group, "%s oracle", row->name);
         mcst_group(group);

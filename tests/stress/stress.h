@@ -27,23 +27,7 @@ static inline float st_hostile(uint64_t z) {
 }
 
 /* Is parameter i outside the range that the header documents for the row? -1: the header leaves it open. */
-static inline int st_parameter_bad(const mcst_row *row, int i, float v) {
-    if (isnan(v)) return 1;
-    if (row->coord == MCST_SLOPES) return !(v > 0);
-    if (row->coord == MCST_COSPOWER) return !(v >= 0);
-    switch (row->coord) {
-    case MCST_TENT:
-    case MCST_HALFLINE:
-    case MCST_DISK: return !(v >= 1e-18f && v <= 1e18f);
-    case MCST_TRUNCATED: return i ? !(v >= 1e-18f && v <= 1e18f) : v < 0 ? 1 : v <= 1e18f ? 0 : -1;
-    case MCST_WHOLELINE: return i ? !(v >= 1e-18f && v <= 1e18f) : fabsf(v) <= 1e30f ? 0 : isinf(v) ? 1 : -1;
-    case MCST_CONE: return v <= 0 || v > 2 ? 1 : v < 1e-30f ? -1 : 0;
-    case MCST_POWER:
-    case MCST_EVENPOWER: return !(v >= 0 && v <= 1e9f);
-    case MCST_UNIT: return v < 0 || isinf(v); /* linear; both 0 is bad, too */
-    default: return 0;
-    }
-}
+static inline int st_parameter_bad(const mcst_row *row, int i, float v) { return row->domain.bad(i, v); }
 
 /* 1: no direction by the header (squared length not within (1/4, 4), NaN), 0: a direction, -1: too near the limits to say. */
 static inline int st_direction_bad(float x, float y, float z) {
