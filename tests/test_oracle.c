@@ -112,8 +112,7 @@ static double stretched_length(const float *p, o_vec3 h) {
  * wider alpha times |n| against the length of that vector. */
 static double magnification(const float *p, const mcst_row *row, const ld *x) {
     const o_vec3 v = o_vec(x[0], x[1], x[2]);
-    return fmax((double)p[0], (double)p[1]) *
-           stretched_length(p, row->shape == MCST_IS_BRDF ? o_half(mcst_o3(p + 3), v) : v);
+    return fmax((double)p[0], (double)p[1]) * stretched_length(p, row->shape == MCST_IS_BRDF ? o_half(mcst_o3(p + 3), v) : v);
 }
 
 static void describe(const mcst_row *row, const float *p) {

@@ -97,84 +97,96 @@ enum { ROOM = N + 8 };
 /* Which of x, y, z, pdf, weight the array form writes. */
 static int writes(const mcst_row *row, int k) { return k < row->dim || k == 3 || (k == 4 && row->shape == MCST_IS_BRDF); }
 
-static void check_arrays(const mcst_row *row, const float *p, uint64_t *state) {
-    float u1[ROOM], u2[ROOM], want[5][N], buffer[5][ROOM], value[2][N];
+/* What an array form wrote at `to`, beginning with entry `first` of a row of guards: `want`, n of them, and nothing else. */
+static void check_written(const char *what, const float *to, size_t first, const float *want, size_t n) {
+    size_t i;
+    for (i = 0; i < ROOM; i++) {
+        if (i >= first && i < first + n)
+            CHECK(same(to[i], want[i - first], arrays_contract), "%s[%zu] of %zu: %.9g, scalar %.9g", what, i - first, n,
+                  (double)to[i], (double)want[i - first]);
+        else CHECK(to[i] == guard, "%s: wrote at %zu of %zu", what, i - first, n);
+    }
+}
+
+/* Of every n, now and then without some outputs, from places of every alignment. Fills want: x, y, z, pdf, weight. */
+static void check_sample_n(const mcst_row *row, const float *p, uint64_t *state, const float *u1, const float *u2, int shift,
+                           float want[5][N]) {
+    float buffer[5][ROOM];
+    const float *v1 = u1 + shift, *v2 = u2 + (shift * 2) % 4;
     size_t n, i;
-    int k, shift;
-    for (i = 0; i < ROOM; i++) u1[i] = any_u(state), u2[i] = any_u(state);
-    for (shift = 0; shift < 4; shift++) {
-        for (i = 0; i < N; i++) {
-            float out[5] = {0};
-            row->fn[0].sample(p, &u1[i + (size_t)shift], &u2[i + (size_t)((shift * 2) % 4)], out);
-            for (k = 0; k < 5; k++) want[k][i] = out[k];
-        }
-        for (n = 0; n <= N; n++) {
-            const unsigned missing =
-                n % 6 ? 0 : 1 + (unsigned)(mcst_mix(state) % 31); /* now and then some outputs are not wanted */
-            float *out[5];
-            for (k = 0; k < 5; k++) {
-                for (i = 0; i < ROOM; i++) buffer[k][i] = guard;
-                out[k] = missing >> k & 1 ? NULL : buffer[k] + (shift + k) % 4;
-            }
-            row->sample_n(p, n, u1 + shift, u2 + (shift * 2) % 4, out);
-            for (k = 0; k < 5; k++) {
-                const size_t first = (size_t)((shift + k) % 4), count = out[k] && writes(row, k) ? n : 0;
-                for (i = 0; i < ROOM; i++) {
-                    if (i >= first && i < first + count)
-                        CHECK(same(buffer[k][i], want[k][i - first], arrays_contract), "n %zu, output %d[%zu]: %.9g, scalar %.9g",
-                              n, k, i - first, (double)buffer[k][i], (double)want[k][i - first]);
-                    else CHECK(buffer[k][i] == guard, "n %zu, output %d: wrote at %zu of %zu", n, k, i - first, n);
-                }
-            }
-        }
+    int k;
+    for (i = 0; i < N; i++) {
+        float out[5] = {0};
+        row->fn[0].sample(p, &v1[i], &v2[i], out);
+        for (k = 0; k < 5; k++) want[k][i] = out[k];
     }
-    /* in place: two of the outputs are the inputs, as given and crossed */
-    for (shift = 0; shift < 2; shift++) {
-        float a[N], b[N], rest[3][N];
-        float *out[5] = {NULL, rest[0], rest[0], rest[1], rest[2]};
-        const int first = 0, second = row->dim > 1 ? 1 : 3;
-        memcpy(a, u1, sizeof a);
-        memcpy(b, u2, sizeof b);
-        out[first] = shift ? b : a, out[second] = shift ? a : b;
-        row->sample_n(p, N, a, b, out);
-        for (i = 0; i < N; i++) {
-            float one[5] = {0};
-            row->fn[0].sample(p, &u1[i], &u2[i], one);
-            for (k = 0; k < 5; k++)
-                if (writes(row, k))
-                    CHECK(same(out[k][i], one[k], arrays_contract), "in place%s, output %d[%zu]: %.9g, scalar %.9g",
-                          shift ? ", crossed" : "", k, i, (double)out[k][i], (double)one[k]);
-        }
-    }
-    if (!row->pdf_n) return;
     for (n = 0; n <= N; n++) {
-        float f[ROOM];
-        for (k = 0; k < 2; k++) {
-            const size_t first = n % 4;
-            for (i = 0; i < ROOM; i++) f[i] = guard;
-            for (i = 0; i < n; i++) {
-                const float x[3] = {want[0][i], want[1][i], want[2][i]};
-                (k ? row->fn[0].eval : row->fn[0].pdf)(p, x, &value[k][i]);
-            }
-            (k ? row->eval_n : row->pdf_n)(p, n, want[0], want[1], want[2], f + first);
-            for (i = 0; i < ROOM; i++) {
-                if (i >= first && i < first + n)
-                    CHECK(same(f[i], value[k][i - first], arrays_contract), "%s_n, n %zu, [%zu]: %.9g, scalar %.9g",
-                          k ? "eval" : "pdf", n, i - first, (double)f[i], (double)value[k][i - first]);
-                else CHECK(f[i] == guard, "%s_n, n %zu: wrote at %zu", k ? "eval" : "pdf", n, i - first);
-            }
+        const unsigned missing = n % 6 ? 0 : 1 + (unsigned)(mcst_mix(state) % 31);
+        float *out[5];
+        for (k = 0; k < 5; k++) {
+            for (i = 0; i < ROOM; i++) buffer[k][i] = guard;
+            out[k] = missing >> k & 1 ? NULL : buffer[k] + (shift + k) % 4;
+        }
+        row->sample_n(p, n, v1, v2, out);
+        for (k = 0; k < 5; k++) {
+            char what[16];
+            snprintf(what, sizeof what, "output %d", k);
+            check_written(what, buffer[k], (size_t)((shift + k) % 4), want[k], out[k] && writes(row, k) ? n : 0);
         }
     }
-    {
-        float x[N], y[N], z[N]; /* in place */
-        memcpy(x, want[0], sizeof x);
-        memcpy(y, want[1], sizeof y);
-        memcpy(z, want[2], sizeof z);
-        row->pdf_n(p, N, x, y, z, y);
-        for (i = 0; i < N; i++)
-            CHECK(same(y[i], value[0][i], arrays_contract), "pdf_n in place [%zu]: %.9g, scalar %.9g", i, (double)y[i],
-                  (double)value[0][i]);
+}
+
+/* In place: two of the outputs are the inputs, as given or crossed. */
+static void check_in_place(const mcst_row *row, const float *p, const float *u1, const float *u2, int crossed) {
+    float a[N], b[N], rest[3][N];
+    float *out[5] = {NULL, rest[0], rest[0], rest[1], rest[2]};
+    const int first = 0, second = row->dim > 1 ? 1 : 3;
+    size_t i;
+    int k;
+    memcpy(a, u1, sizeof a);
+    memcpy(b, u2, sizeof b);
+    out[first] = crossed ? b : a, out[second] = crossed ? a : b;
+    row->sample_n(p, N, a, b, out);
+    for (i = 0; i < N; i++) {
+        float one[5] = {0};
+        row->fn[0].sample(p, &u1[i], &u2[i], one);
+        for (k = 0; k < 5; k++)
+            if (writes(row, k))
+                CHECK(same(out[k][i], one[k], arrays_contract), "in place%s, output %d[%zu]: %.9g, scalar %.9g",
+                      crossed ? ", crossed" : "", k, i, (double)out[k][i], (double)one[k]);
     }
+}
+
+/* pdf_n and eval_n at the points x[0..2]; pdf_n in place, too. */
+static void check_values_n(const mcst_row *row, const float *p, float x[5][N]) {
+    float value[2][N], y[N], f[ROOM];
+    size_t n, i;
+    int k;
+    for (i = 0; i < N; i++) {
+        const float at[3] = {x[0][i], x[1][i], x[2][i]};
+        row->fn[0].pdf(p, at, &value[0][i]);
+        row->fn[0].eval(p, at, &value[1][i]);
+    }
+    for (n = 0; n <= N; n++)
+        for (k = 0; k < 2; k++) {
+            for (i = 0; i < ROOM; i++) f[i] = guard;
+            (k ? row->eval_n : row->pdf_n)(p, n, x[0], x[1], x[2], f + n % 4);
+            check_written(k ? "eval_n" : "pdf_n", f, n % 4, value[k], n);
+        }
+    memcpy(y, x[1], sizeof y);
+    row->pdf_n(p, N, x[0], y, x[2], y);
+    for (i = 0; i < N; i++)
+        CHECK(same(y[i], value[0][i], arrays_contract), "pdf_n in place [%zu]: %.9g, scalar %.9g", i, (double)y[i],
+              (double)value[0][i]);
+}
+
+static void check_arrays(const mcst_row *row, const float *p, uint64_t *state) {
+    float u1[ROOM], u2[ROOM], want[5][N];
+    int i;
+    for (i = 0; i < ROOM; i++) u1[i] = any_u(state), u2[i] = any_u(state);
+    for (i = 0; i < 4; i++) check_sample_n(row, p, state, u1, u2, i, want);
+    for (i = 0; i < 2; i++) check_in_place(row, p, u1, u2, i);
+    if (row->pdf_n) check_values_n(row, p, want);
 }
 
 /* --- is the registry complete? ------------------------------------------------------------------------------------------------ */

@@ -178,72 +178,105 @@ static double ks_back(const double *counts, double n) {
     return ks_p(fmax(0, d - 65 * 0x1p-24), n);
 }
 
-static void check_row(const mcst_row *row, double n, double level) {
-    static double mass[MCST_CELLS + 1], wrong[MCST_CELLS + 1], o[MCST_CELLS + 1], e[MCST_CELLS + 1], w[MCST_CELLS + 1];
-    const mcst_set *set = &row->chi[0];
-    const int brdf = row->shape == MCST_IS_BRDF, full = mcst_scale() >= 1;
-    double so[MCST_LINE_BINS + 1] = {0}, se[MCST_LINE_BINS + 1] = {0}, to[MCST_T + 1] = {0}, te[MCST_T + 1] = {0};
-    double p_chi2, p_s, p_t = 1, p_u1 = 1, p_u2 = 1, p_stray, stray = 0, done, lambda99;
+/* What was drawn: groups of cells, observed and expected. */
+static struct {
+    const mcst_row *row;
     float p[MCST_P];
     mcst_map map;
-    int i, j, kind, cells, groups, dof;
-    const clock_t began = clock();
-    mcst_fill(row, set->a, set->b, set->cos_o, set->azimuth, p);
-    map = mcst_map_make(row, p);
-    cells = map.s_bins * map.t_bins;
-    done = draw(row, p, &map, n, mcst_seed_for(row->name, "deep", 0));
-    CHECK(done > 0, "a sample is not finite, or comes back outside [0,1)");
-    if (!(done > 0)) return;
+    double mass[MCST_CELLS + 1], o[MCST_CELLS + 1], e[MCST_CELLS + 1], done;
+    int cells, brdf, groups, dof;
+} drawn;
 
-    mass[cells] = fmax(0, 1 - mcst_masses(row, p, 1e-8, mass));
-    for (i = 0; i <= cells; i++) {
-        expected[i] = i < cells || brdf ? mass[i] * done : 0;
-        if (i < cells && mass[i] == 0) stray += observed[i], observed[i] = 0;
-        so[i / map.t_bins] += observed[i], se[i / map.t_bins] += expected[i];
-        to[i < cells ? i % map.t_bins : map.t_bins] += observed[i], te[i < cells ? i % map.t_bins : map.t_bins] += expected[i];
+/* Fills expected; returns how many samples fell where the density is 0. Marginals: the p of Kolmogorov-Smirnov along s and t. */
+static double check_marginals(double level, double *p_s, double *p_t) {
+    const mcst_map *map = &drawn.map;
+    double so[MCST_LINE_BINS + 1] = {0}, se[MCST_LINE_BINS + 1] = {0}, to[MCST_T + 1] = {0}, te[MCST_T + 1] = {0}, stray = 0;
+    int i;
+    for (i = 0; i <= drawn.cells; i++) {
+        const int t = i < drawn.cells ? i % map->t_bins : map->t_bins;
+        expected[i] = i < drawn.cells || drawn.brdf ? drawn.mass[i] * drawn.done : 0;
+        if (i < drawn.cells && drawn.mass[i] == 0) {
+            stray += observed[i];
+            observed[i] = 0;
+        }
+        so[i / map->t_bins] += observed[i];
+        se[i / map->t_bins] += expected[i];
+        to[t] += observed[i];
+        te[t] += expected[i];
     }
-    p_s = mcst_ks_bins(so, se, (size_t)(map.s_bins + brdf), done);
-    if (map.t_bins > 1) p_t = mcst_ks_bins(to, te, (size_t)(map.t_bins + brdf), done);
+    *p_s = mcst_ks_bins(so, se, (size_t)(map->s_bins + drawn.brdf), drawn.done);
+    *p_t = map->t_bins > 1 ? mcst_ks_bins(to, te, (size_t)(map->t_bins + drawn.brdf), drawn.done) : 1;
+    CHECK(*p_s >= level, "KS along s p = %g", *p_s);
+    CHECK(*p_t >= level, "KS along t p = %g", *p_t);
+    return stray;
+}
+
+/* The samples against the right density. */
+static void check_right(double level) {
+    const mcst_row *row = drawn.row;
+    double p_chi2, p_s, p_t, p_u1 = 1, p_u2 = 1, p_stray;
+    const double stray = check_marginals(level, &p_s, &p_t);
     /* As in mcst_fit_xy: what may fall into cells that the quadrature takes for dark. */
-    p_stray = stray > 0 ? 1 - gamma_q(stray, (1e-8 * map.t_bins + map.noise) * done) : 1;
+    p_stray = stray > 0 ? 1 - gamma_q(stray, (1e-8 * drawn.map.t_bins + drawn.map.noise) * drawn.done) : 1;
     if (row->fn[0].invert) {
         p_u1 = ks_back(back[0], taken_back);
         if (row->inputs == 2) p_u2 = ks_back(back[1], taken_back);
     }
-    groups = make_groups(&map, mass, done, brdf);
-    gather(observed, cells + brdf, o);
-    gather(expected, cells + brdf, e);
-    p_chi2 = chi2_test(o, e, (size_t)groups, NULL, &dof);
+    drawn.groups = make_groups(&drawn.map, drawn.mass, drawn.done, drawn.brdf);
+    gather(observed, drawn.cells + drawn.brdf, drawn.o);
+    gather(expected, drawn.cells + drawn.brdf, drawn.e);
+    p_chi2 = chi2_test(drawn.o, drawn.e, (size_t)drawn.groups, NULL, &drawn.dof);
     printf("  %-14s %.3g samples, %d degrees of freedom; p: chi-square %.3g, stray %.3g, KS s %.3g t %.3g u1 %.3g u2 %.3g\n",
-           row->name, done, dof, p_chi2, p_stray, p_s, p_t, p_u1, p_u2);
+           row->name, drawn.done, drawn.dof, p_chi2, p_stray, p_s, p_t, p_u1, p_u2);
     CHECK(p_chi2 >= level, "chi-square p = %g", p_chi2);
     CHECK(p_stray >= level, "%g samples where the density is 0, p = %g", stray, p_stray);
-    CHECK(p_s >= level, "KS along s p = %g", p_s);
-    CHECK(p_t >= level, "KS along t p = %g", p_t);
     CHECK(p_u1 >= level, "KS of u1 p = %g", p_u1);
     CHECK(p_u2 >= level, "KS of u2 p = %g", p_u2);
+}
 
-    right = row, varied = row->vary;
-    lambda99 = visible(dof, level);
-    for (kind = 0; kind < KINDS; kind++) {
-        double value[SHIFTS], lambda = 0, eps99;
-        if (kind == WIDTH_OFF ? !row->vary : kind == TILT_AROUND && map.t_bins == 1) continue;
-        for (j = 0; j < SHIFTS; j++) {
-            wrong_masses((enum kind)kind, row, p, &map, shifts[j], mass, wrong);
-            for (i = 0; i <= cells; i++) wrong[i] *= done;
-            gather(wrong, cells + brdf, w);
-            value[j] = chi2_test(o, w, (size_t)groups, NULL, NULL);
-            for (lambda = i = 0; i < groups; i++)
-                if (e[i] >= 5) lambda += (w[i] - e[i]) * (w[i] - e[i]) / e[i];
-            if (full && shifts[j] >= 0.003)
-                CHECK(value[j] < level, "%s off by %g: survived, p = %g", kind_name[kind], shifts[j], value[j]);
-        }
-        eps99 = shifts[SHIFTS - 1] * sqrt(lambda99 / lambda);
-        if (full) CHECK(eps99 <= 0.003, "%s: seen 99 times in 100 only from %g on", kind_name[kind], eps99);
-        printf("  %-14s %-9s p at 0.1 %%: %-9.3g 0.3 %%: %-9.3g 1 %%: %-9.3g seen 99 times in 100 from %.3f %% on, %.2f %% in make "
-               "test\n",
-               "", kind_name[kind], value[0], value[1], value[2], 100 * eps99, 100 * eps99 * sqrt(done / samples_of_make_test));
+/* The same samples against densities that are off; lambda99: the noncentrality that is seen 99 times in 100. */
+static void check_wrong(enum kind kind, double level, double lambda99) {
+    static double wrong[MCST_CELLS + 1], w[MCST_CELLS + 1];
+    const int full = mcst_scale() >= 1;
+    double value[SHIFTS], lambda = 0, eps99;
+    int i, j;
+    for (j = 0; j < SHIFTS; j++) {
+        wrong_masses(kind, drawn.row, drawn.p, &drawn.map, shifts[j], drawn.mass, wrong);
+        for (i = 0; i <= drawn.cells; i++) wrong[i] *= drawn.done;
+        gather(wrong, drawn.cells + drawn.brdf, w);
+        value[j] = chi2_test(drawn.o, w, (size_t)drawn.groups, NULL, NULL);
+        for (lambda = i = 0; i < drawn.groups; i++)
+            if (drawn.e[i] >= 5) lambda += (w[i] - drawn.e[i]) * (w[i] - drawn.e[i]) / drawn.e[i];
+        if (full && shifts[j] >= 0.003)
+            CHECK(value[j] < level, "%s off by %g: survived, p = %g", kind_name[kind], shifts[j], value[j]);
     }
+    eps99 = shifts[SHIFTS - 1] * sqrt(lambda99 / lambda);
+    if (full) CHECK(eps99 <= 0.003, "%s: seen 99 times in 100 only from %g on", kind_name[kind], eps99);
+    printf("  %-14s %-9s p at 0.1 %%: %-9.3g 0.3 %%: %-9.3g 1 %%: %-9.3g seen 99 times in 100 from %.3f %% on, %.2f %% in make "
+           "test\n",
+           "", kind_name[kind], value[0], value[1], value[2], 100 * eps99, 100 * eps99 * sqrt(drawn.done / samples_of_make_test));
+}
+
+static void check_row(const mcst_row *row, double n, double level) {
+    const mcst_set *set = &row->chi[0];
+    const clock_t began = clock();
+    double lambda99;
+    int kind;
+    drawn.row = row;
+    drawn.brdf = row->shape == MCST_IS_BRDF;
+    mcst_fill(row, set->a, set->b, set->cos_o, set->azimuth, drawn.p);
+    drawn.map = mcst_map_make(row, drawn.p);
+    drawn.cells = drawn.map.s_bins * drawn.map.t_bins;
+    drawn.done = draw(row, drawn.p, &drawn.map, n, mcst_seed_for(row->name, "deep", 0));
+    CHECK(drawn.done > 0, "a sample is not finite, or comes back outside [0,1)");
+    if (!(drawn.done > 0)) return;
+    drawn.mass[drawn.cells] = fmax(0, 1 - mcst_masses(row, drawn.p, 1e-8, drawn.mass));
+    check_right(level);
+    right = row, varied = row->vary;
+    lambda99 = visible(drawn.dof, level);
+    for (kind = 0; kind < KINDS; kind++)
+        if (kind == WIDTH_OFF ? row->vary != 0 : kind != TILT_AROUND || drawn.map.t_bins > 1)
+            check_wrong((enum kind)kind, level, lambda99);
     printf("  %-14s %.1f s\n", "", (double)(clock() - began) / CLOCKS_PER_SEC);
     fflush(stdout);
 }

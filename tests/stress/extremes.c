@@ -441,74 +441,83 @@ static void print_tally(const char *name, const tally *t, int head) {
     fflush(stdout);
 }
 
+/* The density of the oracle at random points. */
+static void check_oracle(const mcst_row *row) {
+    uint64_t seed = mcst_seed_for(row->name, "oracle", 0);
+    size_t j;
+    for (j = 0; j < 20; j++) { /* away from seams; wo is unit to 2^-24, the area is to that power 4 */
+        setting s;
+        float u1, u2, p[MCST_P];
+        double got;
+        mcst_uniform(&seed, 1, &u1, &u2);
+        mcst_fill(row, row->grid[j % row->grid_size][0], row->grid[j % row->grid_size][1], 0.2f + 0.7f * u2, 4 * u1, p);
+        s = setting_of(row, p);
+        u1 = 0.05f + 0.4f * u1, u2 = 0.55f + 0.4f * u2;
+        got = (double)density_times_area(row, &s, u1, u2);
+        CHECK(fabs(got - 1) <= 1e-6 || (got == 0 && row->shape == MCST_IS_BRDF), "p %g %g, u %g %g: %.9g", (double)p[0],
+              (double)p[1], (double)u1, (double)u2, got);
+    }
+}
+
+static float list[64][2]; /* settings of a row */
+
+static void check_settings(const mcst_row *row, tally *t) {
+    const size_t settings = settings_of(row, list), incidences = row->has_wo ? MCST_COUNT(incidence) : 1;
+    size_t j, k;
+    for (j = 0; j < settings; j++) {
+        if (!mcst_case("%g %g", (double)list[j][0], (double)list[j][1])) continue;
+        for (k = 0; k < incidences; k++) {
+            float p[MCST_P];
+            mcst_fill(row, list[j][0], list[j][1], incidence[k][0], incidence[k][1], p);
+            check_setting(row, p, mcst_seed_for(row->name, "extremes", j * MCST_COUNT(incidence) + k), mcst_scale(), t);
+        }
+    }
+    if (t->evaluations > 0 && mcst_case("NaN, infinities, lengths, densities of 0"))
+        CHECK(t->nans == 0 && t->infinities == 0 && t->not_unit == 0 && t->zero == 0,
+              "%.0f NaN, %.0f infinite, %.0f not unit, %.0f of density 0", t->nans, t->infinities, t->not_unit, t->zero);
+}
+
+static void check_masses(const mcst_row *row) {
+    const size_t settings = settings_of(row, list);
+    size_t j;
+    for (j = 0; j < settings; j++) {
+        mcst_mass m;
+        float p[MCST_P];
+        mcst_fill(row, list[j][0], list[j][1], j % 2 ? 0.1f : 0.9f, 0.7f, p);
+        if (row->coord == MCST_SLOPES && (p[0] < 1e-7f || p[0] > 1e4f)) continue; /* clamped: bins.h does not know */
+        if (row->coord == MCST_COSPOWER && p[0] > 1e9f) continue;
+        if (!mcst_mass_resolved(row, p)) continue;
+        if (!mcst_case("%s %g %g", row->name, (double)list[j][0], (double)list[j][1])) continue;
+        m = mcst_mass_of(row, p);
+        CHECK(fabs(m.integral - m.lit) <= m.tolerance, "integral %.8f, not lost %.8f (%g, tolerance %g)", m.integral, m.lit,
+              m.integral - m.lit, m.tolerance);
+    }
+}
+
 int main(int argc, char **argv) {
-    const double scale = mcst_scale();
-    static float list[64][2];
     static tally all[MCST_NROWS][2];
-    size_t i, j, k;
+    int i, j;
     exact_start();
     mcst_start(argc, argv);
     for (i = 0; i < MCST_NROWS; i++) {
         const mcst_row *row = &mcst_rows[i];
-        const size_t settings = settings_of(row, list);
-        tally *t = all[i];
-        float p[MCST_P];
         char group[64];
         if (!exact_has(row)) continue;
-        t[1].beyond = 1;
+        all[i][1].beyond = 1;
         snprintf(group, sizeof group, "%s oracle", row->name);
         mcst_group(group);
-        if (mcst_case("density times area of the map")) {
-            uint64_t seed = mcst_seed_for(row->name, "oracle", 0);
-            for (j = 0; j < 20; j++) { /* away from seams; wo is unit to 2^-24, the area is to that power 4 */
-                setting s;
-                float u1, u2;
-                double got;
-                mcst_uniform(&seed, 1, &u1, &u2);
-                mcst_fill(row, row->grid[j % row->grid_size][0], row->grid[j % row->grid_size][1], 0.2f + 0.7f * u2, 4 * u1, p);
-                s = setting_of(row, p);
-                u1 = 0.05f + 0.4f * u1, u2 = 0.55f + 0.4f * u2;
-                got = (double)density_times_area(row, &s, u1, u2);
-                CHECK(fabs(got - 1) <= 1e-6 || (got == 0 && row->shape == MCST_IS_BRDF), "p %g %g, u %g %g: %.9g", (double)p[0],
-                      (double)p[1], (double)u1, (double)u2, got);
-            }
-        }
+        if (mcst_case("density times area of the map")) check_oracle(row);
         mcst_group(row->name);
-        for (j = 0; j < settings; j++) {
-            if (!mcst_case("%g %g", (double)list[j][0], (double)list[j][1])) continue;
-            for (k = 0; k < (row->has_wo ? MCST_COUNT(incidence) : 1); k++) {
-                mcst_fill(row, list[j][0], list[j][1], incidence[k][0], incidence[k][1], p);
-                check_setting(row, p, mcst_seed_for(row->name, "extremes", j * MCST_COUNT(incidence) + k), scale, t);
-            }
-        }
-        if (t->evaluations > 0 && mcst_case("NaN, infinities, lengths, densities of 0"))
-            CHECK(t->nans == 0 && t->infinities == 0 && t->not_unit == 0 && t->zero == 0,
-                  "%.0f NaN, %.0f infinite, %.0f not unit, %.0f of density 0", t->nans, t->infinities, t->not_unit, t->zero);
+        check_settings(row, all[i]);
     }
     mcst_group("mass");
-    for (i = 0; i < MCST_NROWS; i++) {
-        const mcst_row *row = &mcst_rows[i];
-        const size_t settings = settings_of(row, list);
-        for (j = 0; j < settings; j++) {
-            mcst_mass m;
-            float p[MCST_P];
-            mcst_fill(row, list[j][0], list[j][1], j % 2 ? 0.1f : 0.9f, 0.7f, p);
-            if (row->coord == MCST_SLOPES && (p[0] < 1e-7f || p[0] > 1e4f)) continue; /* clamped: bins.h does not know */
-            if (row->coord == MCST_COSPOWER && p[0] > 1e9f) continue;
-            if (!mcst_mass_resolved(row, p)) continue;
-            if (!mcst_case("%s %g %g", row->name, (double)list[j][0], (double)list[j][1])) continue;
-            m = mcst_mass_of(row, p);
-            CHECK(fabs(m.integral - m.lit) <= m.tolerance, "integral %.8f, not lost %.8f (%g, tolerance %g)",
-                  m.integral, m.lit, m.integral - m.lit, m.tolerance);
-        }
-    }
+    for (i = 0; i < MCST_NROWS; i++) check_masses(&mcst_rows[i]);
     mcst_group("");
-    if (!mcst.list) {
-        if (mcst_masses_skipped) printf("SKIPPED: %d masses, named above\n", mcst_masses_skipped);
-        print_tally("", NULL, 1);
-        for (i = 0; i < MCST_NROWS; i++)
-            for (j = 0; j < (mcst_rows[i].dim == 3 ? 2 : 1); j++)
-                if (all[i][0].evaluations > 0) print_tally(j ? "  beyond" : mcst_rows[i].name, &all[i][j], 0);
-    }
+    if (mcst.list) return mcst_finish();
+    if (mcst_masses_skipped) printf("SKIPPED: %d masses, named above\n", mcst_masses_skipped);
+    print_tally("", NULL, 1);
+    for (i = 0; i < MCST_NROWS; i++)
+        for (j = 0; j < (mcst_rows[i].dim == 3 ? 2 : 1); j++)
+            if (all[i][0].evaluations > 0) print_tally(j ? "  beyond" : mcst_rows[i].name, &all[i][j], 0);
     return mcst_finish();
 }
