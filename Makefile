@@ -63,7 +63,7 @@ test: ## build and run every tests/test_*.c (the default); FILTER=text and SEED=
 	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS) $(EXACT)'
 	+@$(SUBMAKE) test-binaries
 	@$(if $(STRESS_CUT),$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath'))
-	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(STRESS_CUT) $(TEST_BINS)
+	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS) $(STRESS_CUT)
 
 stress: ## every float, deep statistics, extremes, hostile input at full size: an hour; parts that passed are not run again
 	@$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath')
