@@ -345,15 +345,9 @@ static const mcst_claim mcst_claims_ashikhmin[] = {
     mcst_value_fn mcst1_##row##_weight, mcst4_##row##_weight, mcst8_##row##_weight, mcst16_##row##_weight; \
     mcst_value_n_fn mcstn_##row##_pdf, mcstn_##row##_eval;                                                 \
     mcst_exact_fn mcsto_##row##_eval, mcsto_##row##_weight;
-#define MCST_DECLARE(shape, row, fn, arg, base, coord, grid)                                                \
-    mcst_sample_fn mcst1_##row##_sample; \
-        mcst4_##row##_sample; \
-        mcst8_##row##_sample; \
-        mcst16_##row##_sample; \
-    mcst_value_fn mcst1_##row##_pdf; \
-    mcst4_##row##_pdf; \
-    mcst8_##row##_pdf; \
-    mcst16_##row##_pdf;              \
+#define MCST_DECLARE(shape, row, fn, arg, base, coord, grid)                                                    \
+    mcst_sample_fn mcst1_##row##_sample, mcst4_##row##_sample, mcst8_##row##_sample, mcst16_##row##_sample; \
+    mcst_value_fn mcst1_##row##_pdf, mcst4_##row##_pdf, mcst8_##row##_pdf, mcst16_##row##_pdf;              \
     mcst_sample_n_fn mcstn_##row;                                                                           \
     mcst_map_fn mcsto_##row##_map;                                                                          \
     mcst_exact_fn mcsto_##row##_pdf;                                                                        \

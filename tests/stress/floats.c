@@ -9,7 +9,7 @@
  * MCS_TEST_SCALE below 1 takes every k-th number, k the next prime; the numbers around the ends and the seams of a range are always
  * all taken. A few sweeps that repeat others with another parameter take every 11th at full scale, too: the table has the
  * counts. */
-#define MCS_PACKETS 16
+#define MCST_WIDE
 #include "claims.h"
 
 enum { BLOCK = 4096, WIDTHS = 4, SEAMS = 8, AROUND = 64 };
