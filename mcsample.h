@@ -4764,7 +4764,7 @@ MCSI_LOUD
 /* ---- entries of a pwc table: of a random number, of random bits, of x ---- */
 
 enum { MCSI_CELLS_MAX = 1 << 28 };
-/* Offsets in a table of n cells, in bytes; the vertices are those of pwl. The guide is that of mcsi_guide_shift(n, 1). */
+/* Offsets in a table of n cells, in bytes. The guide is that of mcsi_guide_shift(n, 1). Only pwl has vertices. */
 typedef struct {
     size_t sums, guide, vertices, pwc_bytes, pwl_bytes;
 } mcsi_pwc_offsets;
@@ -5026,7 +5026,7 @@ MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float 
 
 /* ---- [tables] alias ---- */
 
-/* weight is an entry's share of n 2^31, exact. Column i keeps `cut` of its 2^31 for entry i; the rest is entry `alias`. */
+/* weight: an entry's share of n 2^31, exact. Column i keeps `cut` of its 2^31 for entry i; the rest is entry `alias`. */
 typedef struct {
     uint64_t weight;
     uint32_t cut, alias;
