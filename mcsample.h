@@ -1491,65 +1491,96 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
 #endif
 #endif
 
-/* ==== [product] environment times reflection times cosine ======================================================================
- * Directions for direct lighting, drawn almost in proportion to the whole integrand L f cos (without occlusion) instead of to one
- * of its factors. The map is cut into tiles (rows x 2 rows); a tile is drawn by its light times the reflection towards that light,
- * then a point in it by the light and, bilinearly, by the reflection towards the corners. Domain (u1, u2), codomain unit world
- * directions, density per solid angle, exact.
+/* ==== [product] environment times reflection times cosine ============================================================
+ * Directions for direct lighting, drawn almost in proportion to the whole integrand L f cos instead of to one of its
+ * factors. Occlusion is not known here. The map is cut into tiles. A tile is drawn by its light times the reflection
+ * towards that light; then a point in it, by the light and by the reflection towards the tile's corners.
  *
- *   mcs_tiles_bytes(e, rows), mcs_tiles_build(t, bytes, e, rows)    once per map; rows 16, 32 or 64 (16: 11 degrees a tile)
- *   mcs_reflection               what the surface does with light: frame (normal, tangent in world space), wo (local, to the eye),
- *                                alpha_x, alpha_y of its lobe and the lobe's profile: MCS_PROFILE_GGX (0), _GAUSS (Ward, Beckmann;
- *                                Ashikhmin-Shirley as alpha sqrt(2/(n + 2))), _PHONG (alpha sqrt(1/(2n + 4)), one for both); matte:
- *                                the matte part of its reflectance, 0 to 1. Only the variance depends on how like it is.
- *   prepared form, for several samples at a point: about 17 KB for 16 rows
- *     mcs_product_bytes(rows), mcs_product_build(p, bytes, t, e, &reflection); MCS_PRODUCT_BYTES(rows) is a constant, for the stack
- *     mcs_product_build_weights(p, bytes, t, e, weight)             any reflection: weight[rows * 2 rows], one per tile, to be
- *                                evaluated about mcs_tiles_direction(t, e, k); > 0 wherever the reflection may be; bad ones as in
- *                                [tables]
- *     mcs_product_sample(p, u1, u2) -> mcs_texel, mcs_product_pdf(p, w),
- *     mcs_product_sample_n(p, n, u1, u2, x, y, z, pdf, col, row)     results may be NULL
- *   one-shot form, for one sample at a point: no table, from 4 x 8 patches down to a tile
- *     mcs_oneshot_sample(t, e, &reflection, u1, u2) -> mcs_texel, mcs_oneshot_pdf(t, e, &reflection, w)
+ *   tiles       mcs_tiles_build, once per map.
+ *   prepared    mcs_product_build, once per shading point; then mcs_product_sample. For several samples at a point, and
+ *               for narrow lobes (see below), which it follows more closely.
+ *   one-shot    mcs_oneshot_sample, with no table. For one sample at a point: it costs more, but nothing is built.
+ *   of weights  mcs_product_build_weights, for reflections that mcs_reflection cannot describe: one weight per tile.
  *
- * Support: every direction above the surface from which light comes can be drawn: tiles that the horizon may cross, judged by the
- * distance of a tile's corners from its mean direction, weigh at least a ten-thousandth of what a white surface would make of them.
- * Below the horizon only parts of tiles that it crosses are drawn. Frames must be orthonormal. A product keeps pointers to t and e,
- * and holds for the e->frame that it was built with. Bad u or a bad direction give pdf 0, as does a surface that no light reaches
- * (build returns MCS_UNIFORM); a black map counts as even light, as in [env].
- * Narrow lobes (4 pi alpha_x alpha_y cos(theta_o) below 8 mean tiles): in the prepared form the tiles that by their mean
- * direction or a corner weigh more than a 256th of all, the 32 heaviest at most, have the reflection on a grid of 8 x 8 places
- * among their light (the outer ones a hundredth of it inside), are bilinear in its 7 x 7 cells and weigh what that says; the others
- * weigh less where the corners are darker than the mean direction. A lobe narrower than the cells gets a share (p->brdf_share) of
- * the samples for itself,
- * (1 - matte) m/(1 + m), at most 0.95, where m + 0.03 is a fourteenth of the mean solid angle of a tile over
- * 4 pi alpha_x alpha_y cos(theta_o), that of the lobe (one-shot: m + 0.3 is the whole of it; both three times as much for _GAUSS
- * and _PHONG, which have no tails): directions by mcs_ggx_vndf, mcs_ward or mcs_phong; the density is that of the mixture, and what
- * the lobe sends below the surface is lost. To join samplers of one's own by MIS, set p->brdf_share to 0.
- * For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified, which gains little below several thousand
- * samples, as every tile has a residue of its own.
- * Tile weights: light E times reflection towards its mean direction; matte (c + r)^2/(4 pi r), or c/pi where c >= r, c the cosine
- * and r 1.5 times the spread s of the light about that direction; lobe: with alpha^2 + s^2/4. Tile probabilities are integers.
- * Within a tile the density is that of the light times a bilinear function of the place among the light (the parts of the tile's
- * light above, and to the left within the row) that follows the reflection towards the corners, as far as the light reaches them:
- * so it is continuous within a tile, and varies within a texel. _pdf of a sample is its own to the rounding of that place, 2^-21 of
- * the map's texels. Cost of a sample: that of the environment's, two short searches, 2 sqrt, 5 div; one-shot also the reflection
- * towards 48 tiles and patches and 4 corners (40 with 32 rows, 64 with 64). Sources: Clarberg and Akenine-Moeller 2008, "Practical
- * product importance sampling for direct illumination"; Cline et al. 2006, "Two stage importance sampling"; bilinear warping:
- * Pharr, Jakob, Humphreys 2023, A.5. */
+ *   t           tiles of the map
+ *   e           the map
+ *   p           a product
+ *   r           what the surface does with light
+ *   u1, u2      random numbers in [0,1)
+ *   w           a unit direction in world space
+ *
+ * Objects are built in memory of yours (8-byte aligned, as many bytes as the function _bytes says) and then constant,
+ * but for what is said below. They hold no pointers: a copy of the bytes is as good, in a file or on a graphics
+ * processor. What an object was built from goes to every call. The same arguments make the same bytes, all of them.
+ *
+ *   rows        tiles              bytes of a product     bytes of tiles: map 1024 x 512     4096 x 2048
+ *   16          16 x 32            16,512                 0.72 MB                            1.4 MB
+ *   32          32 x 64            36,928                 2.4 MB                             3.8 MB
+ *   64          64 x 128           117,696                8.7 MB                             11.5 MB
+ *
+ * 16 is enough for most: a tile then spans 11 degrees. More rows make products better and slower to build.
+ *
+ * Builders return MCS_OK, also where all is black; MCS_ERR_ARG for NULL or memory that is not aligned; MCS_ERR_SIZE for
+ * a number of rows other than 16, 32 and 64; MCS_ERR_MEMORY for too few bytes. After an error nothing was written.
+ *
+ * Support: every direction above the surface from which light comes can be drawn. Tiles that the horizon may cross, by
+ * the distance of their corners from the mean direction of their light, weigh at least a ten-thousandth of what a white
+ * matte surface would make of them. Directions below the horizon are drawn only in tiles that it crosses. A black map
+ * counts as even light, as in [env].
+ *
+ * Narrow lobes. A lobe is narrow when its solid angle, A = 4 pi alpha_x alpha_y cos(theta_o), is below 8 mean tiles.
+ * The prepared form then evaluates the reflection on a grid of 8 x 8 points in each heavy tile: at most 32 tiles, those
+ * that by their mean direction or a corner may weigh more than 1/256 of all. If the lobe is narrower still, a share of
+ * the samples (p->brdf_share) comes from the lobe itself, by mcs_ggx_vndf, mcs_ward or mcs_phong; the density is that
+ * of the mixture. What the lobe sends below the surface is lost: its density is 0. With T the mean solid angle of a
+ * tile, and c = 1 (GGX) or 3 (the others, which have no tails), the share is (1 - matte) m/(1 + m), where m/(1 + m) is
+ * at most 0.95, and
+ *
+ *   m = c T/(14 A) - 0.03     prepared
+ *   m = c T/A - 0.3           one-shot
+ *
+ * For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified. That gains little below
+ * several thousand samples, as every tile has a residue of its own.
+ *
+ * Density:  per solid angle, exact for what is drawn: tiles have integer probabilities. Within a tile it is continuous;
+ *           it jumps between tiles, and varies within a texel. The density of a sample is that of mcs_product_pdf but
+ *           for the rounding of the sample's position, 2^-21 of the map's texels.
+ * Bad:      u outside [0,1) or a bad direction gives density 0 and a finite direction. So does a wo below the surface;
+ *           where all light is below it, only the lobe's share has a density. Parameters out of range are taken as the
+ *           nearer end, NaN as the lower one.
+ * Cost:     a sample takes that of the map and two short searches, 2 square roots and 5 divisions; one-shot also the
+ *           reflection towards 48 tiles and patches (40 with 32 rows, 64 with 64) and 4 corners. README.md has times.
+ * Source:   Clarberg and Akenine-Moeller 2008, "Practical product importance sampling for direct illumination"; Cline,
+ *           Egbert, Talbot, Cardon 2006, "Two stage importance sampling for direct lighting"; bilinear warping: Pharr,
+ *           Jakob, Humphreys 2023, A.5. */
 #if !defined(MCS_NO_TABLES) && !defined(MCS_NO_LOBES)
+
+/* The tiles of a map: `rows` rows and `cols` = 2 rows columns, as even in texels as can be. Tile (row, col) has the
+ * number col rows + row. */
 typedef struct {
-    uint32_t rows, cols, window_bytes, unused;
-} mcs_tiles; /* then field[MCSI_TILE_FIELDS] of tiles; the same of 4 x 8 patches of the map, of the 4 x 4 parts of each of them and,
-                where these are not tiles yet, of the tiles in each part; corner[3][cols][rows + 1] (x, y, z); of each tile
-                around[3][2][2], its corners, and node[3][MCSI_NODES][MCSI_NODES]; windows */
+    uint32_t rows, cols;
+    uint32_t window_bytes, unused; /* private */
+} mcs_tiles;                       /* more lies behind it: see mcsi_tiles_offsets */
+
+/* The shape of a lobe. */
 typedef enum { MCS_PROFILE_GGX, MCS_PROFILE_GAUSS, MCS_PROFILE_PHONG } mcs_profile;
+
+/* What the surface does with light. It only steers the samples: a poor match raises the variance, it never biases.
+ *
+ *   profile              for                    alpha_x, alpha_y
+ *   MCS_PROFILE_GGX      GGX                    as in mcs_ggx_make
+ *   MCS_PROFILE_GAUSS    Ward, Beckmann         as in their _make
+ *                        Ashikhmin-Shirley      sqrt(2/(nu + 2)), sqrt(2/(nv + 2))
+ *   MCS_PROFILE_PHONG    Phong                  sqrt(1/(2 n + 4)), both */
 typedef struct {
-    mcs_frame frame;
-    mcs_vec3 wo;
-    float alpha_x, alpha_y, matte;
-    mcs_profile profile;
+    mcs_frame frame; /* the surface in world space, orthonormal; n is its normal */
+    mcs_vec3 wo;     /* the unit direction to the eye, in this frame; wo.z > 0 */
+    /* Widths of the lobe: tiles are weighed by alphas within [1e-4, 1e4], samples of the lobe go down to 1e-7. */
+    float alpha_x, alpha_y;
+    float matte;         /* weight of the diffuse part, 0 to 1; the lobe has the rest */
+    mcs_profile profile; /* any other value counts as MCS_PROFILE_GGX */
 } mcs_reflection;
+
 /* A lobe to draw from. Private. */
 typedef struct {
     mcs_frame frame;
@@ -1567,9 +1598,8 @@ typedef struct {
     LIST(float, value, 2 * (R) * (R))              /* [cols][rows]: reflection towards tiles */                   \
     LIST(float, corner, 2 * (R) * ((R) + 1))       /* [cols][rows + 1]: reflection towards their corners */       \
     LIST(float, row_weight, (R))                   /* weights of rows */                                          \
-    LIST(float, grid,                                                                                             \
-         MCSI_GRIDS *(MCSI_GRID + MCSI_NODES)) /* of each heavy tile of a narrow lobe: as in mcsi_grid_build */   \
-    LIST(uint8_t, grid_of, 2 * (R) * (R))      /* [cols][rows]: 1 + number of the tile's grid, 0: none */
+    LIST(float, grid, (MCSI_GRID + MCSI_NODES) * MCSI_GRIDS) /* of heavy tiles: see mcsi_grid_build */            \
+    LIST(uint8_t, grid_of, 2 * (R) * (R))                    /* [cols][rows]: 1 + number of the tile's grid, 0: none */
 /* Where these lists begin, in bytes, and where the last one ends. Private. */
 typedef struct {
 #define MCSI_PRODUCT_OFFSET(type, name, n) uint32_t name;
@@ -1577,33 +1607,64 @@ typedef struct {
 #undef MCSI_PRODUCT_OFFSET
     uint32_t bytes;
 } mcsi_product_offsets;
+/* A product: prepared for one point. */
 typedef struct {
-    float brdf_share;
-    uint32_t dark; /* 1: no light reaches wo by this surface */
-    uint32_t rows, cols, warped;
+    float brdf_share; /* the share of samples that come from the lobe itself; it may be set to 0 after the build, to
+                         combine the product with samplers of your own by MIS */
+    uint32_t dark; /* 1: no light reaches wo by this surface, wo is bad, or all weights are 0: samples carry no light */
+    /* private: */
+    uint32_t rows, cols; /* of tiles */
+    uint32_t warped;     /* 0: built of weights; within tiles, the density is that of the light */
     mcsi_product_offsets at;
     double row_total; /* shares of all rows over 2^31 */
     mcsi_lobe lobe;
 } mcs_product;
 #define MCSI_PRODUCT_AND(type, name, length) +(length) * sizeof(type)
+/* mcs_product_bytes(rows) as a constant, for arrays on the stack (in a union with an mcs_product, which aligns them).
+ * */
 #define MCS_PRODUCT_BYTES(rows) (sizeof(mcs_product) MCSI_PRODUCT_LISTS(MCSI_PRODUCT_AND, rows))
+
+/* ---- tiles: once per map ---- */
+
+/* Bytes of the tiles of a map; 0 when e is NULL, and for rows other than 16, 32 and 64. */
 MCS_API size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows);
+/* Builds tiles of a finished map, which may be turned (e->frame) afterwards: tiles know directions in the map's
+ * own frame only. */
 MCS_API mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows);
+/* The world direction in which the light of tile k lies, k < rows cols; any larger k counts as the last. It is the
+ * middle of a tile that has no light. */
 MCS_API mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k);
+
+/* ---- the prepared form: a product per point ---- */
+
+/* Bytes of a product; 0 for rows other than 16, 32 and 64. */
 MCS_API size_t mcs_product_bytes(uint32_t rows);
+/* Builds the product of a map and a reflection. It holds for the orientation (e->frame) that the map has now. */
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r);
+/* Builds the product of a map and any reflection. weight has rows cols entries, one per tile: the reflection times the
+ * cosine about mcs_tiles_direction(t, e, k), in any unit. It must be > 0 wherever the reflection may be. Negative
+ * entries and NaN count as 0, +infinity as FLT_MAX. The lobe gets no share. */
 MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                              const float *weight);
+/* Draws a world direction. Its texel is where its light is to be looked up. MCS_ASSERT tells tiles of another size than
+ * p was built from; nothing else protects from tiles or maps that p was not built from. */
 MCS_API mcs_texel mcs_product_sample(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, float u1, float u2);
+/* The density with which mcs_product_sample draws w. */
 MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w);
-MCS_API mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2);
-MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
+/* n samples. Each result, x, y, z (components of w), pdf, col and row (of the texel), holds n numbers or is NULL. */
 MCS_API void mcs_product_sample_n(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t n, const float *u1,
                                   const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
                                   uint32_t *row);
 #endif
+
+/* ---- the one-shot form: nothing is built but tiles ---- */
+
+/* Draws a world direction, from patches of the map down to a tile. */
+MCS_API mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2);
+/* The density with which mcs_oneshot_sample draws w. It is another one than that of mcs_product_pdf. */
+MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w);
 #endif
 
 /* ==== [estimator] running mean, variance and standard error ========================================================
@@ -6964,8 +7025,10 @@ MCSI_LOOP void mcsi_tile_shares_loop(const mcsi_product_lists *l) {
 #if MCSI_W == 1
 MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l); /* by the widest loop */
 
-MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e) {
-    if (!p || !t || !e || ((uintptr_t)p & MCSI_ALIGN)) return MCS_ERR_ARG;
+/* `source`: the reflection or the weights. */
+MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+                                     const void *source) {
+    if (!p || !t || !e || !source || ((uintptr_t)p & MCSI_ALIGN)) return MCS_ERR_ARG;
     if (bytes < mcs_product_bytes(t->rows)) return MCS_ERR_MEMORY;
     const mcsi_product_offsets o = mcsi_product_layout(t->rows);
     MCSI_FILL(p, 0, sizeof *p);
@@ -7244,9 +7307,8 @@ MCSI_CORE float mcsi_tiles_u(float share, float u1) {
 #if MCSI_W == 1
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r) {
-    const mcs_status status = mcsi_product_start(p, bytes, t, e);
+    const mcs_status status = mcsi_product_start(p, bytes, t, e, r);
     if (status) return status;
-    if (!r) return MCS_ERR_ARG;
     const mcsi_surface s = mcsi_surface_make(e, r);
     if (!s.reflects) {
         MCSI_FILL(MCSI_WRITE(char, p, sizeof *p), 0, mcs_product_bytes(t->rows) - sizeof *p);
@@ -7268,9 +7330,8 @@ MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_til
 }
 MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                              const float *weight) {
-    const mcs_status status = mcsi_product_start(p, bytes, t, e);
+    const mcs_status status = mcsi_product_start(p, bytes, t, e, weight);
     if (status) return status;
-    if (!weight) return MCS_ERR_ARG;
     const size_t n = mcsi_tiles_count(t);
     float *value = MCSI_WRITE(float, p, p->at.value);
     float top = 0.0f;
