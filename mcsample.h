@@ -10,7 +10,8 @@
  *
  * Copy this file into the project and include it where it is needed. It is C99 and C++11. Nothing has to be built and
  * nothing has to be initialised. All functions are static inline, and those that are not used leave no code. Link libm
- * where the compiler calls a function for square roots. The switches stand below, under "configuration".
+ * where the compiler calls a function for square roots. A large project may declare in its files what is large and
+ * compile it in one: see MCS_DECLARE below, under "configuration", where the other switches stand, too.
  *
  * ---- Ten lines ----
  *
@@ -74,7 +75,8 @@
  *               array of an input. BRDFs take one material and one wo for all n. The widest unit of the processor is
  *               found at run time; mcs_lanes tells it.
  *
- * Lanes         mcs4_X, mcs8_X and mcs16_X do for 4, 8 and 16 points what mcs_X does for one. They exist for mcs_u01,
+ * Lanes         mcs4_X, mcs8_X and mcs16_X do for 4, 8 and 16 points what mcs_X does for one. MCS_PACKETS asks for
+ *               them: 8 gives those of 4 and of 8 lanes. They exist for mcs_u01,
  *               mcs_u01_open, mcs_sobol, mcs_sobol_bits, mcs_r2, mcs_hash, mcs_set, mcs_load, mcs_store, and for every
  *               function of [1d] to [mis] that has no _n. float becomes mcs8_f, bits and indices become mcs8_u, int32_t
  *               becomes mcs8_i, where true is -1, and a struct mcs_T becomes mcs8_T. The dimension and the seed of a
@@ -146,35 +148,37 @@
 #define MCS_VERSION 100 /* major * 10000 + minor * 100 + patch */
 #define MCS_VERSION_STRING "0.1.0"
 
-/* ---- configuration: define these before the include ---------------------------------------------------------------
- * There are two ways to include the header. Where nothing is defined every function is inline and nothing is linked.
- * A large project compiles less often what is large:
- * MCS_DECLARE        defined in every file: array functions, tables, maps and products are only declared there, as
- *                    functions of C; samplers for one point and for packets stay inline   (default: all is inline)
- * MCS_IMPLEMENTATION defined in one file, too, before anything includes the header: they are compiled there. That file
- *                    may be C or C++; the switches below have to be the same in all files.
+/* ---- configuration: define these before the include ----
+ *
+ * There are two ways to include the header. Where nothing is defined, every function is inline and nothing is linked.
+ * In the declared way a large project compiles once what is large.
+ *
+ * MCS_DECLARE         Define it in every file. Array functions, tables, maps and products are only declared there, as
+ *                     functions of C. Samplers of one point and of packets stay inline.
+ * MCS_IMPLEMENTATION  Define it in one file, before anything includes the header. They are compiled there. That file
+ *                     may be C or C++. The switches below have to be the same in all files.
  *
  * These add something or leave it out. Functions that are not used leave no code in any case: what is left out saves
- * compile time alone.
- * MCS_PACKETS     4, 8 or 16: functions of so many lanes exist (mcs8_ggx_pdf), and those of fewer   (default: none)
- * MCS_NO_WIDE     no vector types: array functions loop over one point at a time, and there are no packets (default:
- *                 off; on where the compiler has no vector types, for kernels of graphics processors, and where this
- *                 file was pasted into another one, so that it cannot include itself)
- * MCS_NO_BATCH    no array functions (`_n`) but mcs_pcg32_fill_n                                      (default: off)
- * MCS_NO_1D       leaves out [1d], the densities on a line                                            (default: off)
- * MCS_NO_LOBES    leaves out [microfacet], the BRDFs and [product]                                    (default: off)
- * MCS_NO_TABLES   leaves out [tables], [env] and [product]                                            (default: off)
+ * compile time alone. None of them is on by default.
+ *
+ * MCS_PACKETS         4, 8 or 16. The functions of so many lanes exist, mcs8_ggx_pdf say, and those of fewer.
+ * MCS_NO_WIDE         No vector types. Array functions loop over one point at a time, and there are no packets. It is
+ *                     on by itself where the compiler has no vector types, for kernels of graphics processors, and
+ *                     where this file was pasted into another one, so that it cannot include itself.
+ * MCS_NO_BATCH        No array functions but mcs_pcg32_fill_n.
+ * MCS_NO_1D           No [1d].
+ * MCS_NO_LOBES        No [microfacet], no BRDFs and no [product].
+ * MCS_NO_TABLES       No [tables], no [env] and no [product].
  *
  * These change how functions are compiled.
- * MCS_MAX_LANES   4, 8 or 16: the widest unit of x86 that array functions use: SSE2, AVX2 or AVX-512. mcs_lanes() tells
- *                 which one it is                                                                      (default: 16)
- * MCS_ASSERT      is called with conditions on arguments, as "mistakes" above explains; assert, say    (default: nothing)
- * MCS_FN          the linkage of every public function: nothing makes a library of a C file that includes this, inline
- *                 lets a module of C++ export them                                                     (default: static inline)
- * MCS_API         the linkage of what MCS_DECLARE declares; in C++ it has to say extern "C"   (default: MCS_FN, or
- *                 extern with MCS_DECLARE)
- * MCS_SELF        the name by which this file includes itself, for a copy that has another name (default:
- *                 "mcsample.h") */
+ *
+ * MCS_MAX_LANES       The widest unit that array functions use on x86: 4 is SSE2, 8 is AVX2, 16, the default, AVX-512.
+ * MCS_ASSERT          Called with conditions on arguments; see "Mistakes" above. assert is a good value.
+ * MCS_FN              The linkage of every public function, static inline by default. Defined as nothing, it makes a
+ *                     library of a C file that includes this one. Defined as inline, it lets a C++ module export them.
+ * MCS_API             The linkage of what MCS_DECLARE declares: MCS_FN by default, extern with MCS_DECLARE. In C++ it
+ *                     has to say extern "C".
+ * MCS_SELF            The name under which the header includes itself. Only a renamed copy needs it. */
 
 #if defined(MCS_IMPLEMENTATION) && !defined(MCS_DECLARE)
 #define MCS_DECLARE
@@ -189,7 +193,7 @@
 #define MCS_SELF "mcsample.h"
 #endif
 
-/* ---- platform: the only place that knows compilers and instruction sets -------------------------------------------- */
+/* ---- platform: the only place that knows compilers and instruction sets ---- */
 
 /* The attributes and vector types of gcc. clang has them, too, even where it passes for MSVC and does not define
  * __GNUC__. */
@@ -233,13 +237,15 @@
 #define MCSI_DECLARED
 #endif
 
-/* ---- linkage ---------------------------------------------------------------------------------------------------------
+/* ---- linkage
+ * ---------------------------------------------------------------------------------------------------------
  * MCS_FN        stands before public functions that are inline everywhere, and before private ones that may stay calls.
- * MCS_API       stands before public functions that a project may compile once: array functions, tables, maps, products.
+ * MCS_API       stands before public functions that a project may compile once: array functions, tables, maps,
+ *               products.
  * MCSI_PRIVATE  is the linkage of the other private functions. They are static, except in C++ where MCS_FN is given: a
  *               module cannot export what calls static functions.
- * MCSI_INLINE   stands before private functions that have to be inlined. Compilers would leave some of them as calls that
- *               return structs through memory.
+ * MCSI_INLINE   stands before private functions that have to be inlined. Compilers would leave some of them as calls
+ *               that return structs through memory.
  * MCSI_HOT      stands before public functions of the same kind.
  * MCSI_APART    stands before functions that have a body of their own. They are declared inline all the same, so that
  *               they vanish where nothing calls them. gcc warns of both together, unless MCSI_QUIET stands before the
@@ -334,7 +340,6 @@ typedef struct {
 /* What functions return that build a table or check one. Below 0 are errors. */
 typedef enum {
     MCS_OK = 0,
-    MCS_UNIFORM = 1,
     MCS_ERR_ARG = -1,    /* a pointer is NULL or not aligned */
     MCS_ERR_SIZE = -2,   /* a count, width or height is out of its range */
     MCS_ERR_MEMORY = -3, /* there are fewer bytes than the table needs */
@@ -889,8 +894,8 @@ typedef struct {
     mcsi_slopes s;
     mcs_ward_model model;
 } mcs_ward;
-/* alpha_x, alpha_y: the widths of the slopes, > 0. model: which of the three BRDFs; a number that stands for none of them
- * counts as MCS_WARD_1992. */
+/* alpha_x, alpha_y: the widths of the slopes, > 0. model: which of the three BRDFs; a number that stands for none of
+ * them counts as MCS_WARD_1992. */
 MCS_FN mcs_ward mcs_ward_make(float alpha_x, float alpha_y, mcs_ward_model model);
 
 /* ---- the BRDF ---- */
@@ -1437,7 +1442,8 @@ MCS_API mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im);
 /* A part of a build: rows [y0, y1). Threads may build other rows of the same map at the same time. Errors as in
  * mcs_env_build; MCS_ERR_SIZE also where y0 > y1 or y1 > h. */
 MCS_API mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1);
-/* The end of a build, after every row was built. Bits are those of mcs_env_build, whatever the parts. Errors as there. */
+/* The end of a build, after every row was built. Bits are those of mcs_env_build, whatever the parts. Errors as there.
+ */
 MCS_API mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im);
 /* Whether memory (a file read or mapped) is a map. MCS_ERR_MEMORY when it is cut short, MCS_ERR_ARG when e is NULL or
  * misaligned, else MCS_ERR_FORMAT. MCS_OK promises that all bytes but e->frame are those of a build, by a checksum of
@@ -1712,13 +1718,14 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 /* ================================================================================================================== */
 
 #if defined(MCSI_GNU) && !defined(__cplusplus)
-/* The header declares variables at their first use, as C99 and C++ allow. Some projects let the compiler warn of that. */
+/* The header declares variables at their first use, as C99 and C++ allow. Some projects let the compiler warn of that.
+ */
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdeclaration-after-statement"
 #endif
 #if defined(MCSI_GNU)
-/* gcc notes that functions which pass wide vectors depend on the instruction set. Here all of them are inlined. The note
- * comes at the end of the file, so it stays off for the rest of the including file, too. */
+/* gcc notes that functions which pass wide vectors depend on the instruction set. Here all of them are inlined. The
+ * note comes at the end of the file, so it stays off for the rest of the including file, too. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
@@ -1726,7 +1733,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 #define MCSI_SUMS_MAY_MOVE /* (x + y) - y may become x */
 #endif
 
-/* clang removes builtins that are named after instructions in time, and has portable ones instead. gcc keeps its own. */
+/* clang removes builtins that are named after instructions in time, and has portable ones instead. gcc keeps its own.
+ */
 #if defined(__has_builtin)
 #if __has_builtin(__builtin_elementwise_sqrt)
 #define MCSI_ELEMENTWISE_SQRT
@@ -1794,9 +1802,10 @@ MCS_FN double mcsi_sqrt_d(double x) {
 #endif
 }
 
-/* ---- what is compiled here -------------------------------------------------------------------------------------------
- * The body is compiled in passes, which have 1, 4, 8 and 16 lanes. The scalar pass makes all public functions of one point.
- * The others make packets, where MCS_PACKETS asks for them, or loops of array functions, or both. */
+/* ---- what is compiled here
+ * ------------------------------------------------------------------------------------------- The body is compiled in
+ * passes, which have 1, 4, 8 and 16 lanes. The scalar pass makes all public functions of one point. The others make
+ * packets, where MCS_PACKETS asks for them, or loops of array functions, or both. */
 #ifndef MCSI_DECLARED
 #ifndef MCS_NO_TABLES
 #define MCSI_TABLES /* bodies of [tables] and [env] */
@@ -1880,7 +1889,8 @@ typedef int32_t mcs_i;
 typedef uint32_t mcs_u;
 typedef double mcsi_d;
 
-/* ---- batches: the arrays of one call ---------------------------------------------------------------------------------- */
+/* ---- batches: the arrays of one call
+ * ---------------------------------------------------------------------------------- */
 
 #if MCSI_BASE_W > 0
 enum { MCSI_IN_MAX = 3, MCSI_OUT_MAX = 5, MCSI_LANES_MAX = 16 };
@@ -1917,9 +1927,9 @@ MCS_FN void mcsi_batch_dir(mcsi_batch *b, size_t n, const float *u1, const float
     b->out[3] = pdf;
 }
 
-/* Called when no whole vector remains: the first time it moves the batch to the copy of what remains, the second time it
- * hands out the results of that. Returns whether the loop has to go on. It is not marked cold: gcc 12 leaves vzeroupper
- * out of cold exits, and SSE code is ten times slower from there on. */
+/* Called when no whole vector remains: the first time it moves the batch to the copy of what remains, the second time
+ * it hands out the results of that. Returns whether the loop has to go on. It is not marked cold: gcc 12 leaves
+ * vzeroupper out of cold exits, and SSE code is ten times slower from there on. */
 MCSI_QUIET
 MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
     const size_t rest = b->n - b->i;
@@ -3551,7 +3561,7 @@ MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d
     }
 #endif
 
-/* ==== [phong] bodies */
+/* ==== [phong] bodies ============================================================================================== */
 
 #if MCSI_W > 1
 typedef struct {
@@ -3793,7 +3803,7 @@ MCSI_CORE mcs_brdf mcsi_weighted(mcs_brdf s, mcs_f weight) {
     return s;
 }
 
-/* ==== [ward] bodies */
+/* ==== [ward] bodies =============================================================================================== */
 
 #if MCSI_W > 1
 typedef struct {
@@ -3923,7 +3933,7 @@ MCSI_LOOP_VALUE(ward_pdf, ward)
 MCSI_LOOP_VALUE(ward_eval, ward)
 #endif
 
-/* ==== [beckmann] bodies */
+/* ==== [beckmann] bodies =========================================================================================== */
 
 #if MCSI_W > 1
 typedef struct {
@@ -4005,7 +4015,7 @@ MCSI_LOOP_VALUE(beckmann_pdf, beckmann)
 MCSI_LOOP_VALUE(beckmann_eval, beckmann)
 #endif
 
-/* ==== [ggx] bodies */
+/* ==== [ggx] bodies ================================================================================================ */
 
 #if MCSI_W > 1
 typedef struct {
@@ -4421,7 +4431,7 @@ MCSI_LOOP_SAMPLE(ggx_bounded, ggx)
 MCSI_LOOP_VALUE(ggx_bounded_pdf, ggx)
 #endif
 
-/* ==== [ashikhmin] bodies */
+/* ==== [ashikhmin] bodies ========================================================================================== */
 
 #if MCSI_W > 1
 typedef struct {
@@ -4607,8 +4617,12 @@ MCSI_FN mcs_f mcs_mix_pdf(mcs_f c, mcs_f pf, mcs_f pg) {
 }
 
 #if MCSI_W == 1
+/* ================================================================================================================== */
+/* PART IV: TABLES, IMAGE-BASED LIGHTING, ESTIMATES                                                                   */
+/* ================================================================================================================== */
+
 #ifdef MCSI_TABLES
-/* ==== [tables] bodies */
+/* ==== [tables] bodies ============================================================================================= */
 
 /* ---- memory of the caller's: alignment, sizes, and the only casts ---- */
 
@@ -5087,7 +5101,8 @@ MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float 
 
 /* ---- [tables] alias ---- */
 
-/* weight: an entry's share of n 2^31, exact. Column i keeps `cut` of its 2^31 for entry i; the rest is entry `alias`. */
+/* weight: an entry's share of n 2^31, exact. Column i keeps `cut` of its 2^31 for entry i; the rest is entry `alias`.
+ */
 typedef struct {
     uint64_t weight;
     uint32_t cut, alias;
@@ -5190,7 +5205,7 @@ MCS_API mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t
 #endif /* MCSI_TABLES */
 #endif /* MCSI_W == 1 */
 
-/* ==== [env] bodies */
+/* ==== [env] bodies ================================================================================================ */
 
 #ifdef MCSI_TABLES
 /* ---- directions of points, and where directions lie, for all widths ---- */
@@ -6269,7 +6284,7 @@ MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_
 #endif /* MCSI_TABLES */
 
 #ifdef MCSI_PRODUCTS
-/* ==== [product] bodies */
+/* ==== [product] bodies ============================================================================================ */
 
 /* A product is one step above a map: the draw (mcsi_draw) begins with a tile, whose window the map then draws from. In
  * between, u1 and u2 are warped, so that the density follows the reflection within the tile, too. */
@@ -7851,8 +7866,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_AVX512
 #endif /* the body */
 
-/* ==== the passes for more than one lane ==================================================================================
- * This file includes itself once for each of them. */
+/* ==== the passes for more than one lane
+ * ================================================================================== This file includes itself once for
+ * each of them. */
 #ifndef MCSI_PASSES
 #define MCSI_PASSES
 #if MCSI_PACKETS >= 4 || MCSI_BASE_W >= 4
@@ -8699,8 +8715,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_with_sign
 #endif
 
-/* ==== array functions =====================================================================================================
- * Each calls the loop of the widest pass that this processor runs. */
+/* ==== array functions
+ * ===================================================================================================== Each calls the
+ * loop of the widest pass that this processor runs. */
 #ifndef MCSI_DECLARED
 #if defined(MCSI_PICK_AVX512)
 #define MCSI_TRY_AVX512(loop, args)                   \
@@ -8919,14 +8936,15 @@ MCS_API void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n,
  *
  * Copyright (c) 2026 The mcsample.h authors
  *
- * Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated documentation files
- * (the "Software"), to deal in the Software without restriction, including without limitation the rights to use, copy, modify,
- * merge, publish, distribute, sublicense, and/or sell copies of the Software, and to permit persons to whom the Software is
- * furnished to do so, subject to the following conditions:
+ * Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated
+ * documentation files (the "Software"), to deal in the Software without restriction, including without limitation the
+ * rights to use, copy, modify, merge, publish, distribute, sublicense, and/or sell copies of the Software, and to
+ * permit persons to whom the Software is furnished to do so, subject to the following conditions:
  *
- * The above copyright notice and this permission notice shall be included in all copies or substantial portions of the Software.
+ * The above copyright notice and this permission notice shall be included in all copies or substantial portions of the
+ * Software.
  *
- * THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES
- * OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR COPYRIGHT HOLDERS BE
- * LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN
- * CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE. */
+ * THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE
+ * WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR
+ * COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR
+ * OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE. */
