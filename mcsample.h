@@ -2479,12 +2479,14 @@ typedef struct {
 } mcs_frame;
 #endif
 
+#ifdef MCSI_PUBLIC
 MCSI_CORE mcs_vec2 mcsi_vec2(mcs_f x, mcs_f y) {
     mcs_vec2 v;
     v.x = x;
     v.y = y;
     return v;
 }
+#endif
 MCSI_CORE mcs_vec3 mcsi_vec3(mcs_f x, mcs_f y, mcs_f z) {
     mcs_vec3 v;
     v.x = x;
@@ -2553,6 +2555,7 @@ MCSI_CORE mcs_vec3 mcsi_sane_upper(mcs_vec3 w, mcs_i *ok) {
                      mcsi_sel(good, w.z, mcs_set(1.0f)));
 }
 
+#ifdef MCSI_PUBLIC
 /* What an inverse of two dimensions returns: (u1, u2) clamped into [0, 1 - 2^-24], (0, 0) where ok is not set. */
 MCSI_CORE mcs_vec2 mcsi_uv(mcs_i ok, mcs_f u1, mcs_f u2) {
     const mcs_f largest = mcs_set(0.99999994f);
@@ -2560,6 +2563,7 @@ MCSI_CORE mcs_vec2 mcsi_uv(mcs_i ok, mcs_f u1, mcs_f u2) {
     return mcsi_vec2(mcsi_sel(ok, mcsi_min(mcsi_max(u1, zero), largest), zero),
                      mcsi_sel(ok, mcsi_min(mcsi_max(u2, zero), largest), zero));
 }
+#endif
 
 /* ==== [loops] what the loops of array functions consist of ======================================================== */
 
@@ -2616,7 +2620,9 @@ MCSI_CORE void mcsi_out_brdf(const mcsi_batch *b, mcs_brdf s) {
 /* ==== [rng] bodies ================================================================================================ */
 
 MCSI_FN mcs_f mcs_u01(mcs_u bits) { return mcsi_to_float((mcs_i)(bits >> 8)) * 5.9604644775390625e-08f; }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_u01_open(mcs_u bits) { return (mcsi_to_float((mcs_i)(bits >> 9)) + 0.5f) * 1.1920928955078125e-07f; }
+#endif
 
 #if MCSI_W == 1
 /* ---- PCG32 ----
@@ -2769,6 +2775,7 @@ MCSI_LOOP void mcsi_philox_fill_loop(uint64_t key, uint64_t counter, size_t n, f
 
 /* ==== [points] bodies ============================================================================================= */
 
+#ifdef MCSI_PUBLIC
 /* A bijection of 32 bits that changes half of them on average for each bit that changes. */
 MCSI_CORE mcs_u mcsi_mix(mcs_u x) {
     x = (x ^ (x >> 17)) * 0xed5ad4bbu;
@@ -2777,6 +2784,7 @@ MCSI_CORE mcs_u mcsi_mix(mcs_u x) {
     return x ^ (x >> 14);
 }
 MCSI_FN mcs_u mcs_hash(mcs_u a, mcs_u b) { return mcsi_mix(a ^ mcsi_mix(b + 0x9e3779b9u)); }
+#endif
 /* The hash of what is scalar in every pass. */
 #if MCSI_W == 1
 MCS_FN uint32_t mcsi_scalar_hash(uint32_t a, uint32_t b) { return mcs_hash(a, b); }
@@ -2848,11 +2856,13 @@ MCSI_LOOP void mcsi_sobol_loop(uint32_t first, uint32_t dim, uint32_t seed, size
 
 /* ---- the other points ---- */
 
+#ifdef MCSI_PUBLIC
 /* The steps are 2^32/g and 2^32/g^2, where g = 1.3247 is the plastic number, the root of g^3 = g + 1. */
 MCSI_FN mcs_vec2 mcs_r2(mcs_u index, uint32_t seed) {
     return mcsi_vec2(mcs_u01(index * 3242174889u + mcsi_scalar_hash(0u, seed)),
                      mcs_u01(index * 2447445414u + mcsi_scalar_hash(1u, seed)));
 }
+#endif
 
 #if MCSI_W == 1
 /* A count of strata or slabs within [1, 2^20]. */
@@ -2905,10 +2915,12 @@ MCSI_CORE mcs_sample1 mcsi_sample1(mcs_i ok, mcs_f x, mcs_f pdf) {
     s.pdf = mcsi_sane_result(ok, pdf);
     return s;
 }
+#ifdef MCSI_PUBLIC
 /* What an inverse returns: u clamped into [0, 1 - 2^-24], 0 where ok is not set. */
 MCSI_CORE mcs_f mcsi_inverted(mcs_i ok, mcs_f u) {
     return mcsi_sel(ok, mcsi_min(mcsi_max(u, mcs_set(0.0f)), mcs_set(0.99999994f)), mcs_set(0.0f));
 }
+#endif
 /* u of a map that is unbounded at 0: at least 2^-25, the middle of the first of 2^24 cells. */
 MCSI_CORE mcs_f mcsi_off_zero(mcs_f u) { return mcsi_max(u, mcs_set(2.98023224e-08f)); }
 
@@ -2955,6 +2967,7 @@ MCSI_SAMPLE mcs_sample1 mcs_linear_sample(mcs_f a, mcs_f b, mcs_f u) {
     const mcs_f better = mcsi_stored(x + 0.5f * MCSI_NARROW(missing) * (inverse * (ends.a + divisor)));
     return mcsi_sample1(ok, mcsi_min(better, mcs_set(1.0f)), r * (2.0f / (ends.a + ends.b)));
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_linear_pdf(mcs_f a, mcs_f b, mcs_f x) {
     const mcsi_linear ends = mcsi_linear_make(a, b);
     const mcs_f t = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1.0f));
@@ -2966,6 +2979,7 @@ MCSI_FN mcs_f mcs_linear_invert(mcs_f a, mcs_f b, mcs_f x) {
     x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1.0f));
     return mcsi_inverted(ends.ok, x * ((ends.a * (2.0f - x) + ends.b * x) / (ends.a + ends.b)));
 }
+#endif
 
 /* ---- tent ----
  * With v = 2 min(u, 1 - u), the distance to the nearer end is r sqrt(v). The density is that distance over r^2. */
@@ -2978,6 +2992,7 @@ MCSI_SAMPLE mcs_sample1 mcs_tent_sample(mcs_f r, mcs_f u) {
     const mcs_f q = mcsi_sqrt(v);
     return mcsi_sample1(ok, mcsi_with_sign(r * (1.0f - q), u - 0.5f), q / r);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_tent_pdf(mcs_f r, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(r);
     MCSI_REQUIRE(ok);
@@ -2990,6 +3005,7 @@ MCSI_FN mcs_f mcs_tent_invert(mcs_f r, mcs_f x) {
     const mcs_f outside = 0.5f * q * q; /* the mass beyond x on its side */
     return mcsi_inverted(ok & (x == x), mcsi_sel(x < 0.0f, outside, 1.0f - outside));
 }
+#endif
 
 /* ---- exponential: x = -ln(1 - u) / rate, where e^(-rate x) = 1 - u ---- */
 
@@ -2999,6 +3015,7 @@ MCSI_SAMPLE mcs_sample1 mcs_exponential_sample(mcs_f rate, mcs_f u) {
     u = mcsi_sane_u(u, &ok);
     return mcsi_sample1(ok, mcsi_log1m(u) / -rate, rate * (1.0f - u));
 }
+#ifdef MCSI_PUBLIC
 /* At 1e20 the density is 0 for every rate. */
 MCSI_FN mcs_f mcs_exponential_pdf(mcs_f rate, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(rate);
@@ -3014,6 +3031,7 @@ MCSI_FN mcs_f mcs_exponential_invert(mcs_f rate, mcs_f x) {
     mcsi_exp_both(-mcsi_min(mcsi_max(rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &minus_u);
     return mcsi_inverted(ok, -minus_u);
 }
+#endif
 
 /* ---- truncexp ----
  * With e = e^(-rate m), P(x) = u is e^(-rate x) = 1 - u (1 - e). */
@@ -3050,6 +3068,7 @@ MCSI_SAMPLE mcs_sample1 mcs_truncexp_sample(mcs_f rate, mcs_f m, mcs_f u) {
     const mcs_f x = mcsi_min(mcsi_log_of_sum(w, lacking) / -d.rate, m);
     return mcsi_sample1(ok, mcsi_sel(d.flat, u * m, x), mcsi_sel(d.flat, 1.0f / m, w * (d.rate / d.one_minus_e)));
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_truncexp_pdf(mcs_f rate, mcs_f m, mcs_f x) {
     const mcsi_truncexp d = mcsi_truncexp_make(rate, m);
     const mcs_f t = mcsi_min(mcsi_max(x, mcs_set(0.0f)), m);
@@ -3063,14 +3082,17 @@ MCSI_FN mcs_f mcs_truncexp_invert(mcs_f rate, mcs_f m, mcs_f x) {
     mcsi_exp_both(-mcsi_min(mcsi_max(d.rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &minus_p);
     return mcsi_inverted(d.ok, mcsi_sel(d.flat, x / m, -minus_p / d.one_minus_e));
 }
+#endif
 
 /* ---- normal and logistic ---- */
 
 MCSI_CORE mcs_i mcsi_bell_ok(mcs_f mean, mcs_f scale) { return mcsi_scale_ok(scale) & (mcsi_abs(mean) <= 1e30f); }
+#ifdef MCSI_PUBLIC
 /* |x - mean| / scale, but at most 200, where both densities are 0. */
 MCSI_CORE mcs_f mcsi_deviation(mcs_f mean, mcs_f scale, mcs_f x) {
     return mcsi_min(mcsi_abs(x - mean), 200.0f * scale) / scale;
 }
+#endif
 
 MCSI_SAMPLE mcs_sample1 mcs_normal_sample(mcs_f mean, mcs_f sd, mcs_f u) {
     mcs_i ok = mcsi_bell_ok(mean, sd);
@@ -3079,6 +3101,7 @@ MCSI_SAMPLE mcs_sample1 mcs_normal_sample(mcs_f mean, mcs_f sd, mcs_f u) {
     const mcs_f z = mcsi_normal_quantile(mcsi_off_zero(u));
     return mcsi_sample1(ok, mean + sd * z, mcsi_exp_neg(-0.5f * z * z) * (0.398942280f / sd)); /* 1/sqrt(2 pi) */
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_normal_pdf(mcs_f mean, mcs_f sd, mcs_f x) {
     const mcs_i ok = mcsi_bell_ok(mean, sd);
     MCSI_REQUIRE(ok);
@@ -3091,6 +3114,7 @@ MCSI_FN mcs_f mcs_normal_invert(mcs_f mean, mcs_f sd, mcs_f x) {
     const mcs_f tail = mcsi_normal_tail(mcsi_deviation(mean, sd, x));
     return mcsi_inverted(ok & (x == x), mcsi_sel(x < mean, tail, 1.0f - tail));
 }
+#endif
 
 /* P(x) = 1/(1 + e^-z), so that z = ln(u / (1 - u)) and the density is u (1 - u) / scale. */
 MCSI_SAMPLE mcs_sample1 mcs_logistic_sample(mcs_f mean, mcs_f scale, mcs_f u) {
@@ -3099,6 +3123,7 @@ MCSI_SAMPLE mcs_sample1 mcs_logistic_sample(mcs_f mean, mcs_f scale, mcs_f u) {
     const mcs_f v = mcsi_off_zero(mcsi_sane_u(u, &ok));
     return mcsi_sample1(ok, mean + scale * mcsi_log(v / (1.0f - v)), v * (1.0f - v) / scale);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_logistic_pdf(mcs_f mean, mcs_f scale, mcs_f x) {
     const mcs_i ok = mcsi_bell_ok(mean, scale);
     MCSI_REQUIRE(ok);
@@ -3111,12 +3136,15 @@ MCSI_FN mcs_f mcs_logistic_invert(mcs_f mean, mcs_f scale, mcs_f x) {
     const mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, scale, x));
     return mcsi_inverted(ok & (x == x), mcsi_sel(x < mean, e, mcs_set(1.0f)) / (1.0f + e));
 }
+#endif
 
 /* ---- power and evenpower ---- */
 
 MCSI_CORE mcs_i mcsi_exponent_ok(mcs_f e) { return (e >= 0.0f) & (e <= 1e9f); }
+#ifdef MCSI_PUBLIC
 /* x^(e + plus), x in [0,1]. */
 MCSI_CORE mcs_f mcsi_power(mcs_f e, double plus, mcs_f x) { return mcsi_pow_unit(x, e, plus, 0, NULL); }
+#endif
 /* P(x) = x^(e+1) = u. With x the root, the density (e + 1) x^e is (e + 1) u / x. */
 MCSI_CORE mcs_sample1 mcsi_root(mcs_f e, mcs_f u) {
     mcs_f u_over_x;
@@ -3134,6 +3162,7 @@ MCSI_SAMPLE mcs_sample1 mcs_power_sample(mcs_f e, mcs_f u) {
     const mcs_sample1 s = mcsi_root(e, u);
     return mcsi_sample1(ok, s.x, s.pdf);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_power_pdf(mcs_f e, mcs_f x) {
     mcs_i ok = mcsi_exponent_ok(e);
     MCSI_REQUIRE(ok);
@@ -3148,6 +3177,7 @@ MCSI_FN mcs_f mcs_power_invert(mcs_f e, mcs_f x) {
     e = mcsi_sane_parameter(ok, e, 0.0f, 1e9f);
     return mcsi_inverted(ok, mcsi_power(e, 1.0, mcsi_sane_parameter(ok, x, 0.0f, 1.0f)));
 }
+#endif
 
 /* x is the signed root of 2 u - 1. */
 MCSI_SAMPLE mcs_sample1 mcs_evenpower_sample(mcs_f e, mcs_f u) {
@@ -3158,6 +3188,7 @@ MCSI_SAMPLE mcs_sample1 mcs_evenpower_sample(mcs_f e, mcs_f u) {
     const mcs_sample1 s = mcsi_root(e, mcsi_abs(signed_u));
     return mcsi_sample1(ok, mcsi_with_sign(s.x, signed_u), 0.5f * s.pdf);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_evenpower_pdf(mcs_f e, mcs_f x) { return 0.5f * mcs_power_pdf(e, mcsi_abs(x)); }
 MCSI_FN mcs_f mcs_evenpower_invert(mcs_f e, mcs_f x) {
     mcs_i ok = mcsi_exponent_ok(e);
@@ -3167,6 +3198,7 @@ MCSI_FN mcs_f mcs_evenpower_invert(mcs_f e, mcs_f x) {
     const mcs_f from_centre = 0.5f * mcsi_power(e, 1.0, mcsi_sane_parameter(ok, mcsi_abs(x), 0.0f, 1.0f));
     return mcsi_inverted(ok, mcsi_sel(x < 0.0f, 0.5f - from_centre, 0.5f + from_centre));
 }
+#endif
 
 #ifdef MCSI_LOOPS
 /* The loops of the densities with one parameter and of those with two. */
@@ -3214,6 +3246,7 @@ MCSI_CORE mcs_sample2 mcsi_polar(mcs_i ok, mcs_f radius, mcs_f r, mcs_f turns) {
     s.pdf = mcsi_sane_result(ok, MCSI_1_PI / radius / radius);
     return s;
 }
+#ifdef MCSI_PUBLIC
 /* A coordinate in units of the radius, but no further than 4, which is outside and has a square. */
 MCSI_CORE mcs_f mcsi_in_radii(mcs_f radius, mcs_f x) {
     return mcsi_min(mcsi_max(x, -4.0f * radius), 4.0f * radius) / radius;
@@ -3225,6 +3258,7 @@ MCSI_CORE mcs_f mcsi_disk_pdf(mcs_f radius, mcs_f x, mcs_f y) {
     const mcs_f q = mcsi_in_radii(radius, y);
     return mcsi_sane_result(mcsi_scale_ok(radius) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / radius / radius);
 }
+#endif
 
 MCSI_SAMPLE mcs_sample2 mcs_disk_sample(mcs_f radius, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
@@ -3232,6 +3266,7 @@ MCSI_SAMPLE mcs_sample2 mcs_disk_sample(mcs_f radius, mcs_f u1, mcs_f u2) {
     u2 = mcsi_sane_u(u2, &ok);
     return mcsi_polar(ok, radius, mcsi_sqrt(u1), u2);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_disk_pdf(mcs_f radius, mcs_f x, mcs_f y) { return mcsi_disk_pdf(radius, x, y); }
 MCSI_FN mcs_vec2 mcs_disk_invert(mcs_f radius, mcs_f x, mcs_f y) {
     MCSI_REQUIRE(mcsi_scale_ok(radius));
@@ -3239,6 +3274,7 @@ MCSI_FN mcs_vec2 mcs_disk_invert(mcs_f radius, mcs_f x, mcs_f y) {
     const mcs_f q = mcsi_in_radii(radius, y);
     return mcsi_uv(mcsi_scale_ok(radius) & (p * p + q * q < 4.0f), p * p + q * q, mcsi_atan2_turns(q, p));
 }
+#endif
 
 /* The square [-1,1]^2 is cut into four triangles by its diagonals. A point whose longer coordinate is r, positive or
  * negative, goes to the distance r from the origin, and the shorter one over r tells the angle from that axis, in
@@ -3256,6 +3292,7 @@ MCSI_SAMPLE mcs_sample2 mcs_concentric_sample(mcs_f radius, mcs_f u1, mcs_f u2) 
     const mcs_f angle = 0.125f * (across / mcsi_sel(r == 0.0f, mcs_set(1.0f), r));
     return mcsi_polar(ok, radius, r, axis + angle);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_concentric_pdf(mcs_f radius, mcs_f x, mcs_f y) { return mcsi_disk_pdf(radius, x, y); }
 MCSI_FN mcs_vec2 mcs_concentric_invert(mcs_f radius, mcs_f x, mcs_f y) {
     MCSI_REQUIRE(mcsi_scale_ok(radius));
@@ -3272,6 +3309,7 @@ MCSI_FN mcs_vec2 mcs_concentric_invert(mcs_f radius, mcs_f x, mcs_f y) {
     return mcsi_uv(mcsi_scale_ok(radius) & (r2 < 4.0f), 0.5f + 0.5f * mcsi_sel(along_x, longer, shorter),
                    0.5f + 0.5f * mcsi_sel(along_x, shorter, longer));
 }
+#endif
 
 /* ==== [sphere] bodies =============================================================================================
  * Where z = 1 - t with t linear in u1, the sine is sqrt(t (2 - t)), which keeps its digits at both poles. */
@@ -3285,11 +3323,13 @@ MCSI_CORE mcs_dir mcsi_around_z(mcs_i ok, mcs_f sine, mcs_f z, mcs_f turns, mcs_
     d.pdf = mcsi_sane_result(ok, pdf);
     return d;
 }
+#ifdef MCSI_PUBLIC
 /* 1 - cos(theta) of a direction, accurate near +z: sin^2 / (1 + cos) above the horizon. */
 MCSI_CORE mcs_f mcsi_one_minus_z(mcs_vec3 w) {
     const mcs_f sin2 = w.x * w.x + w.y * w.y;
     return mcsi_sel(w.z > 0.0f, sin2 / (1.0f + mcsi_abs(w.z)), 1.0f - w.z);
 }
+#endif
 
 MCSI_SAMPLE mcs_dir mcs_sphere_sample(mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
@@ -3297,6 +3337,7 @@ MCSI_SAMPLE mcs_dir mcs_sphere_sample(mcs_f u1, mcs_f u2) {
     u2 = mcsi_sane_u(u2, &ok);
     return mcsi_around_z(ok, 2.0f * mcsi_sqrt(u1 * (1.0f - u1)), 1.0f - 2.0f * u1, u2, mcs_set(MCSI_1_4PI));
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_sphere_pdf(mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     mcsi_sane_direction(w, &ok);
@@ -3307,6 +3348,7 @@ MCSI_FN mcs_vec2 mcs_sphere_invert(mcs_vec3 w) {
     w = mcsi_sane_direction(w, &ok);
     return mcsi_uv(ok, 0.5f * mcsi_one_minus_z(w), mcsi_atan2_turns(w.y, w.x));
 }
+#endif
 
 MCSI_SAMPLE mcs_dir mcs_hemisphere_sample(mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
@@ -3314,6 +3356,7 @@ MCSI_SAMPLE mcs_dir mcs_hemisphere_sample(mcs_f u1, mcs_f u2) {
     u2 = mcsi_sane_u(u2, &ok);
     return mcsi_around_z(ok, mcsi_sqrt(u1 * (2.0f - u1)), 1.0f - u1, u2, mcs_set(MCSI_1_2PI));
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_hemisphere_pdf(mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     mcsi_sane_upper(w, &ok);
@@ -3324,6 +3367,7 @@ MCSI_FN mcs_vec2 mcs_hemisphere_invert(mcs_vec3 w) {
     w = mcsi_sane_upper(w, &ok);
     return mcsi_uv(ok, mcsi_one_minus_z(w), mcsi_atan2_turns(w.y, w.x));
 }
+#endif
 
 MCSI_SAMPLE mcs_dir mcs_cosine_sample(mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
@@ -3332,6 +3376,7 @@ MCSI_SAMPLE mcs_dir mcs_cosine_sample(mcs_f u1, mcs_f u2) {
     const mcs_f z = mcsi_sqrt(1.0f - u1);
     return mcsi_around_z(ok, mcsi_sqrt(u1), z, u2, MCSI_1_PI * z);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_cosine_pdf(mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     mcsi_sane_upper(w, &ok);
@@ -3348,6 +3393,7 @@ MCSI_FN mcs_f mcs_cone_from_sin2(mcs_f sin2) {
     const mcs_f s = mcsi_min(mcsi_max(sin2, mcs_set(0.0f)), mcs_set(1.0f));
     return s / (1.0f + mcsi_sqrt(1.0f - s));
 }
+#endif
 MCSI_CORE mcs_i mcsi_cone_ok(mcs_f k) { return (k >= 1e-30f) & (k <= 2.0f); }
 /* With t = k u1, 2 - t is (2 - k) + k (1 - u1), which keeps its digits where k is 2. */
 MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
@@ -3359,6 +3405,7 @@ MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
     const mcs_f t = k * u1;
     return mcsi_around_z(ok, mcsi_sqrt(t * ((2.0f - k) + k * (1.0f - u1))), 1.0f - t, u2, MCSI_1_2PI / k);
 }
+#ifdef MCSI_PUBLIC
 /* A sampled direction may be rounded to just outside of the rim. */
 MCSI_FN mcs_f mcs_cone_pdf(mcs_f k, mcs_vec3 w) {
     mcs_i ok = mcsi_cone_ok(k);
@@ -3372,6 +3419,7 @@ MCSI_FN mcs_vec2 mcs_cone_invert(mcs_f k, mcs_vec3 w) {
     w = mcsi_sane_direction(w, &ok);
     return mcsi_uv(ok, mcsi_one_minus_z(w) / k, mcsi_atan2_turns(w.y, w.x));
 }
+#endif
 
 #ifdef MCSI_LOOPS
 /* The loops of disks and of directions without a parameter. */
@@ -3431,6 +3479,7 @@ MCSI_CORE mcs_vec3 mcsi_to_world(const mcs_frame *f, mcs_vec3 v) {
 MCSI_CORE mcs_vec3 mcsi_to_local(const mcs_frame *f, mcs_vec3 v) {
     return mcsi_vec3(mcsi_dot(f->s, v), mcsi_dot(f->t, v), mcsi_dot(f->n, v));
 }
+#ifdef MCSI_PUBLIC
 /* A component as it is, but 0 where it is NaN or beyond 1e37: sums of three products stay finite. */
 MCSI_CORE mcs_f mcsi_finite(mcs_f x) { return mcsi_sel(mcsi_abs(x) <= 1e37f, x, mcs_set(0.0f)); }
 MCSI_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v) {
@@ -3439,6 +3488,7 @@ MCSI_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v) {
 MCSI_FN mcs_vec3 mcs_to_local(const mcs_frame *f, mcs_vec3 v) {
     return mcsi_to_local(f, mcsi_vec3(mcsi_finite(v.x), mcsi_finite(v.y), mcsi_finite(v.z)));
 }
+#endif
 
 #ifndef MCS_NO_LOBES
 /* ==== [microfacet] bodies =========================================================================================
@@ -3446,6 +3496,7 @@ MCSI_FN mcs_vec3 mcs_to_local(const mcs_frame *f, mcs_vec3 v) {
  * (Sterbenz), and ratios of its components need no length. */
 
 MCSI_CORE mcs_vec3 mcsi_sum(mcs_vec3 a, mcs_vec3 b) { return mcsi_vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_vec3 mcs_reflect(mcs_vec3 wo, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
     wo = mcsi_sane_direction(wo, &ok);
@@ -3485,6 +3536,7 @@ MCSI_FN mcs_f mcs_schlick(mcs_f f0, mcs_f cos_d) {
     const mcs_f m2 = m * m;
     return f0 + (1.0f - f0) * (m2 * m2 * m);
 }
+#endif
 
 /* ---- what all lobes use ---- */
 
@@ -3572,6 +3624,7 @@ typedef struct {
     mcs_f weight_norm;  /* (n + 2) / (n + 1) */
 } mcs_phong;
 #endif
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_phong mcs_phong_make(mcs_f n) {
     const mcs_i ok = n >= 0.0f;
     const mcs_f zero = mcs_set(0.0f);
@@ -3584,6 +3637,7 @@ MCSI_FN mcs_phong mcs_phong_make(mcs_f n) {
     m.weight_norm = mcsi_sel(ok, (m.n + 2.0f) * m.inv_n_plus_1, zero);
     return m;
 }
+#endif
 
 /* Powers of cos(theta) are computed from tan^2(theta): ln(cos) is -ln(1 + tan^2) / 2. A cosine near 1 cannot hold a
  * narrow lobe: powf(cos, n) is 35 % off at n = 1e7. */
@@ -3591,6 +3645,7 @@ MCSI_CORE mcs_f mcsi_tan2(mcs_vec3 w) { return (w.x * w.x + w.y * w.y) / (w.z * 
 MCSI_CORE mcs_f mcsi_cos_power(mcs_f power, mcs_f tan2) {
     return mcsi_exp_neg(-0.5f * power * mcsi_log1p(mcsi_min(tan2, mcs_set(1e37f))));
 }
+#ifdef MCSI_PUBLIC
 /* 1 - cos^power, without cancellation where that is small. */
 MCSI_CORE mcs_f mcsi_one_minus_cos_power(mcs_f power, mcs_f tan2) {
     const mcs_f log_power = -0.5f * power * mcsi_log1p(mcsi_min(tan2, mcs_set(1e37f)));
@@ -3598,6 +3653,7 @@ MCSI_CORE mcs_f mcsi_one_minus_cos_power(mcs_f power, mcs_f tan2) {
     mcsi_exp_both(mcsi_max(log_power, mcs_set(-80.0f)), &minus_one);
     return -minus_one;
 }
+#endif
 
 /* cos(theta) = c = exp(L) with L = ln(1 - u1) / (n + 1). The sine is sqrt((1 - c) (1 + c)), where 1 - c is -expm1(L),
  * which holds the angle of a narrow lobe. The density needs no power: c^n = c^(n+1) / c = (1 - u1) / c. */
@@ -3610,6 +3666,7 @@ MCSI_SAMPLE mcs_dir mcs_phong_lobe_sample(const mcs_phong *m, mcs_f u1, mcs_f u2
     const mcs_f sine = mcsi_sqrt(-c_minus_1 * (2.0f + c_minus_1));
     return mcsi_around_z(ok, sine, c, u2, m->lobe_norm * (1.0f - u1) / c);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_phong_lobe_pdf(const mcs_phong *m, mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     w = mcsi_sane_upper(w, &ok);
@@ -3620,6 +3677,7 @@ MCSI_FN mcs_vec2 mcs_phong_lobe_invert(const mcs_phong *m, mcs_vec3 w) {
     w = mcsi_sane_upper(w, &ok);
     return mcsi_uv(ok, mcsi_one_minus_cos_power(m->n + 1.0f, mcsi_tan2(w)), mcsi_atan2_turns(w.y, w.x));
 }
+#endif
 
 /* The direction to which a mirror reflects wo: R. */
 MCSI_CORE mcs_vec3 mcsi_mirror_direction(mcs_vec3 wo) { return mcsi_vec3(-wo.x, -wo.y, wo.z); }
@@ -3655,6 +3713,7 @@ MCSI_FN mcs_f mcs_phong_eval(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
     const mcs_f power = mcsi_phong_cos_power(m, wo, wi, &ok);
     return mcsi_sane_result(ok, m->brdf_norm * power);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_phong_weight(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
     wo = mcsi_sane_upper(wo, &ok);
@@ -3662,6 +3721,7 @@ MCSI_FN mcs_f mcs_phong_weight(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
     const mcs_i in_lobe = mcsi_exact_dot(mcsi_mirror_direction(wo), wi) > 0.0f;
     return mcsi_sane_result(ok & in_lobe, m->weight_norm * wi.z);
 }
+#endif
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_phong mcsi_phong_spread(const mcsi_scalar_phong *m) {
     mcs_phong all;
@@ -3754,9 +3814,11 @@ MCSI_CORE mcs_f mcsi_slope_square(const mcsi_slopes *m, mcs_vec3 h) {
  * there. */
 MCSI_CORE mcs_f mcsi_secant2(mcs_vec3 h) { return mcsi_min(mcsi_dot(h, h) / (h.z * h.z), mcs_set(1e18f)); }
 
+#ifdef MCSI_PUBLIC
 MCSI_CORE mcs_vec2 mcsi_slope_invert(const mcsi_slopes *m, mcs_i ok, mcs_vec3 h, mcs_f u1) {
     return mcsi_uv(ok & (m->norm > 0.0f), u1, mcsi_atan2_turns(h.y * m->inv_alpha_y, h.x * m->inv_alpha_x));
 }
+#endif
 
 /* p for a given wo. */
 typedef struct {
@@ -3811,12 +3873,14 @@ typedef struct {
     mcs_ward_model model;
 } mcs_ward;
 #endif
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_ward mcs_ward_make(mcs_f alpha_x, mcs_f alpha_y, mcs_ward_model model) {
     mcs_ward m;
     m.s = mcsi_slopes_make(alpha_x, alpha_y);
     m.model = model;
     return m;
 }
+#endif
 
 /* ---- the Gaussian of slopes, which Ward and Beckmann share ----
  * The radius is r = sqrt(-ln(1 - u1)). With e = r^2, 1 - u1 is exp(-e), and p_h is norm exp(-e) / cos^3(theta_h). */
@@ -3836,6 +3900,7 @@ MCSI_CORE mcs_dir mcsi_gauss_h_sample(const mcsi_slopes *m, mcs_f u1, mcs_f u2) 
 /* exp(-e) of a direction of any length. */
 MCSI_CORE mcs_f mcsi_gauss(const mcsi_slopes *m, mcs_vec3 h) { return mcsi_exp_neg(-mcsi_slope_square(m, h)); }
 
+#ifdef MCSI_PUBLIC
 /* In the densities the norm comes last: for large alphas it is so small that norm exp(-e) would underflow where the
  * density does not. */
 MCSI_CORE mcs_f mcsi_gauss_h_pdf(const mcsi_slopes *m, mcs_vec3 h) {
@@ -3844,6 +3909,7 @@ MCSI_CORE mcs_f mcsi_gauss_h_pdf(const mcsi_slopes *m, mcs_vec3 h) {
     const mcs_f secant2 = mcsi_secant2(h);
     return mcsi_sane_result(ok, m->norm * (mcsi_gauss(m, h) * (secant2 * mcsi_sqrt(secant2))));
 }
+#endif
 /* With H = wo + wi, wo.h is |H| / 2 and cos(theta_h) is H.z / |H|: p_h / (4 wo.h) = norm exp(-e) |H|^2 / (2 H.z^3). */
 MCSI_CORE mcs_f mcsi_gauss_pdf(const mcsi_slopes *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
@@ -3852,6 +3918,7 @@ MCSI_CORE mcs_f mcsi_gauss_pdf(const mcsi_slopes *m, mcs_vec3 wo, mcs_vec3 wi) {
     const mcs_vec3 h = mcsi_sum(wo, wi);
     return mcsi_sane_result(ok, m->norm * (mcsi_gauss(m, h) * mcsi_secant2(h) / (2.0f * h.z)));
 }
+#ifdef MCSI_PUBLIC
 /* u1 = 1 - exp(-e). */
 MCSI_CORE mcs_vec2 mcsi_gauss_h_invert(const mcsi_slopes *m, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
@@ -3860,6 +3927,7 @@ MCSI_CORE mcs_vec2 mcsi_gauss_h_invert(const mcsi_slopes *m, mcs_vec3 h) {
     mcsi_exp_both(-mcsi_min(mcsi_slope_square(m, h), mcs_set(80.0f)), &minus_one);
     return mcsi_slope_invert(m, ok, h, -minus_one);
 }
+#endif
 /* norm g / divisor, for values of BRDFs; g is a multiple of exp(-e). Both sides are taken 2^40 times as large: for
  * alphas of thousands norm exp(-e) may be subnormal where the quotient is not. */
 MCSI_CORE mcs_f mcsi_gauss_over(const mcsi_slopes *m, mcs_f g, mcs_f divisor) {
@@ -3871,8 +3939,10 @@ MCSI_CORE mcs_f mcsi_gauss_over(const mcsi_slopes *m, mcs_f g, mcs_f divisor) {
 MCSI_SAMPLE mcs_dir mcs_ward_h_sample(const mcs_ward *m, mcs_f u1, mcs_f u2) {
     return mcsi_gauss_h_sample(&m->s, u1, u2);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_ward_h_pdf(const mcs_ward *m, mcs_vec3 h) { return mcsi_gauss_h_pdf(&m->s, h); }
 MCSI_FN mcs_vec2 mcs_ward_h_invert(const mcs_ward *m, mcs_vec3 h) { return mcsi_gauss_h_invert(&m->s, h); }
+#endif
 
 /* f wi.z / density of a sample. norm exp(-e) is a factor of both and cancels. */
 MCSI_CORE mcs_f mcsi_ward_sample_weight(mcs_ward_model model, mcs_vec3 wo, mcs_vec3 wi, const mcsi_slope_half *h) {
@@ -3906,6 +3976,7 @@ MCSI_FN mcs_f mcs_ward_eval(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
     wi = mcsi_sane_upper(wi, &ok);
     return mcsi_sane_result(ok, mcsi_ward_value(m, wo, wi));
 }
+#ifdef MCSI_PUBLIC
 /* f wi.z / density of given directions. With H = wo + wi, H.z is wo.z + wi.z, and wo.p / |p|^4 is H.z^3 / (2 |H|^2). */
 MCSI_CORE mcs_f mcsi_ward_weight(mcs_ward_model model, mcs_vec3 wo, mcs_vec3 wi) {
     const mcs_vec3 h = mcsi_sum(wo, wi);
@@ -3920,6 +3991,7 @@ MCSI_FN mcs_f mcs_ward_weight(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
     wi = mcsi_sane_upper(wi, &ok);
     return mcsi_sane_result(ok, mcsi_ward_weight(m->model, wo, wi));
 }
+#endif
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_ward mcsi_ward_spread(const mcsi_scalar_ward *m) {
     mcs_ward all;
@@ -3940,11 +4012,13 @@ typedef struct {
     mcsi_slopes s;
 } mcs_beckmann;
 #endif
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_beckmann mcs_beckmann_make(mcs_f alpha_x, mcs_f alpha_y) {
     mcs_beckmann m;
     m.s = mcsi_slopes_make(alpha_x, alpha_y);
     return m;
 }
+#endif
 
 /* w.z L(w). With t = |(alpha_x w.x, alpha_y w.y)| and a = w.z / t, L is exp(-a^2) / (2 a sqrt(pi)) - erfc(a) / 2.
  * Times w.z it stays finite at the horizon. It is 0 for a = 1000 and more; below the horizon it has no meaning, but is
@@ -3968,8 +4042,10 @@ MCSI_CORE mcs_f mcsi_beckmann_g2_divisor(const mcsi_slopes *m, mcs_vec3 wo, mcs_
 MCSI_SAMPLE mcs_dir mcs_beckmann_h_sample(const mcs_beckmann *m, mcs_f u1, mcs_f u2) {
     return mcsi_gauss_h_sample(&m->s, u1, u2);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_beckmann_h_pdf(const mcs_beckmann *m, mcs_vec3 h) { return mcsi_gauss_h_pdf(&m->s, h); }
 MCSI_FN mcs_vec2 mcs_beckmann_h_invert(const mcs_beckmann *m, mcs_vec3 h) { return mcsi_gauss_h_invert(&m->s, h); }
+#endif
 
 /* The weight is G2 (wo.h) / (wo.z cos(theta_h)), and wo.h / cos(theta_h) is wo.p. */
 MCSI_SAMPLE mcs_brdf mcs_beckmann_sample(const mcs_beckmann *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
@@ -3994,6 +4070,7 @@ MCSI_FN mcs_f mcs_beckmann_eval(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi)
     const mcs_f divisor = 4.0f * mcsi_beckmann_g2_divisor(&m->s, wo, wi);
     return mcsi_sane_result(ok, mcsi_gauss_over(&m->s, mcsi_gauss(&m->s, h) * (secant2 * secant2), divisor));
 }
+#ifdef MCSI_PUBLIC
 /* With H = wo + wi, wo.h / cos(theta_h) is |H|^2 / (2 H.z). */
 MCSI_FN mcs_f mcs_beckmann_weight(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = m->s.norm > 0.0f;
@@ -4003,6 +4080,7 @@ MCSI_FN mcs_f mcs_beckmann_weight(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 w
     const mcs_f divisor = 2.0f * mcsi_beckmann_g2_divisor(&m->s, wo, wi);
     return mcsi_sane_result(ok, wi.z * (mcsi_dot(h, h) / h.z) / divisor);
 }
+#endif
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_beckmann mcsi_beckmann_spread(const mcsi_scalar_beckmann *m) {
     mcs_beckmann all;
@@ -4035,7 +4113,9 @@ MCSI_FN mcs_ggx mcs_ggx_make(mcs_f alpha_x, mcs_f alpha_y) {
     m.detour_below = mcsi_sel(limit > shortest, limit * limit, mcs_set(0.0f));
     return m;
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_i mcs_is_mirror(mcs_f alpha_x, mcs_f alpha_y) { return (alpha_x < 1e-7f) & (alpha_y < 1e-7f); }
+#endif
 
 /* ---- the BRDF and its factors ---- */
 
@@ -4057,6 +4137,7 @@ MCSI_CORE mcs_f mcsi_ggx_t(const mcsi_slopes *m, mcs_vec3 w) {
 MCSI_CORE mcs_f mcsi_ggx_g2_divisor(const mcsi_slopes *m, mcs_vec3 wo, mcs_vec3 wi) {
     return wo.z * mcsi_ggx_t(m, wi) + wi.z * mcsi_ggx_t(m, wo);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_ggx_d(const mcs_ggx *m, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
     h = mcsi_sane_upper(h, &ok);
@@ -4073,6 +4154,7 @@ MCSI_FN mcs_f mcs_ggx_g2(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     wi = mcsi_sane_upper(wi, &ok);
     return mcsi_sane_result(ok, 2.0f * wo.z * wi.z / mcsi_ggx_g2_divisor(&m->s, wo, wi));
 }
+#endif
 MCSI_FN mcs_f mcs_ggx_eval(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();
     wo = mcsi_sane_upper(wo, &ok);
@@ -4097,6 +4179,7 @@ MCSI_SAMPLE mcs_dir mcs_ggx_h_sample(const mcs_ggx *m, mcs_f u1, mcs_f u2) {
     const mcsi_slope_radius radius = mcsi_ggx_radius(&m->s, u1, &ok);
     return mcsi_slope_h_sample(&m->s, ok, radius, u2);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_ggx_h_pdf(const mcs_ggx *m, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
     h = mcsi_sane_upper(h, &ok);
@@ -4109,6 +4192,7 @@ MCSI_FN mcs_vec2 mcs_ggx_h_invert(const mcs_ggx *m, mcs_vec3 h) {
     const mcs_f r2 = mcsi_min(mcsi_slope_square(&m->s, h), mcs_set(1e30f));
     return mcsi_slope_invert(&m->s, ok, h, r2 / (1.0f + r2));
 }
+#endif
 /* The weight is G2 (wo.h) / (wo.z cos(theta_h)), and wo.h / cos(theta_h) is wo.p. */
 MCSI_SAMPLE mcs_brdf mcs_ggx_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
@@ -4128,6 +4212,7 @@ MCSI_FN mcs_f mcs_ggx_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     const mcs_vec3 h = mcsi_sum(wo, wi);
     return mcsi_sane_result(ok, mcsi_ggx_d(&m->s, h) * (h.z / (2.0f * mcsi_dot(h, h))));
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_ggx_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = m->s.norm > 0.0f;
     wo = mcsi_sane_upper(wo, &ok);
@@ -4135,6 +4220,7 @@ MCSI_FN mcs_f mcs_ggx_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     const mcs_vec3 h = mcsi_sum(wo, wi);
     return mcsi_sane_result(ok, wi.z * (mcsi_dot(h, h) / h.z) / mcsi_ggx_g2_divisor(&m->s, wo, wi));
 }
+#endif
 
 /* ---- visible normals ----
  * Stretching by alpha turns the lobe into a unit sphere that is seen from i = (alpha_x wo.x, alpha_y wo.y, wo.z) / t
@@ -4325,6 +4411,7 @@ MCSI_CORE mcs_f mcsi_ggx_cap_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi, int
     const mcsi_ggx_cap cap = mcsi_ggx_cap_make(&m->s, wo, bounded);
     return mcsi_sane_result(ok, mcsi_ggx_d(&m->s, mcsi_sum(wo, wi)) / (2.0f * cap.k_wo_z_plus_t));
 }
+#ifdef MCSI_PUBLIC
 MCSI_CORE mcs_f mcsi_ggx_cap_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi, int bounded) {
     mcs_i ok = m->s.norm > 0.0f;
     wo = mcsi_sane_upper(wo, &ok);
@@ -4332,6 +4419,7 @@ MCSI_CORE mcs_f mcsi_ggx_cap_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi, 
     const mcsi_ggx_cap cap = mcsi_ggx_cap_make(&m->s, wo, bounded);
     return mcsi_sane_result(ok, mcsi_ggx_cap_ratio(&m->s, &cap, wo, wi, wi.z));
 }
+#endif
 /* The density of h is 2 D (wo.h) / (k wo.z + t), with wo.h = wo.p / |p|. */
 MCSI_CORE mcs_dir mcsi_ggx_cap_h_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2, int bounded) {
     mcs_i ok = mcsi_always();
@@ -4347,6 +4435,7 @@ MCSI_CORE mcs_dir mcsi_ggx_cap_h_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1,
     d.pdf = mcsi_sane_result(ok, m->s.norm * cap.t / cap.k_wo_z_plus_t * (h.p2 * inv_length * q));
     return d;
 }
+#ifdef MCSI_PUBLIC
 /* For a given h, h_std is the multiple of s = (h.x/alpha_x, h.y/alpha_y, h.z) with i.h_std = |h_std|^2 / 2. As i.s is
  * wo.h / t, the multiple is 2 (wo.h) / (t |s|^2). c = h_std - i lies in the cap where h_std.z >= i.z - b; the factor
  * 0.999999 leaves a margin for rounding. */
@@ -4373,6 +4462,7 @@ MCSI_CORE mcs_vec2 mcsi_ggx_cap_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3
     const mcs_f cosine = c.x * cap.azimuth_x + c.y * cap.azimuth_y;
     return mcsi_uv(ok & (multiple > 0.0f), mcsi_atan2_turns(sine, cosine), mcsi_one_minus_z(c) / cap.one_plus_b);
 }
+#endif
 
 /* ---- the two families of visible normals ---- */
 
@@ -4382,36 +4472,44 @@ MCSI_SAMPLE mcs_brdf mcs_ggx_bounded_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f
 MCSI_FN mcs_f mcs_ggx_bounded_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_ggx_cap_pdf(m, wo, wi, MCSI_GGX_BOUNDED);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_ggx_bounded_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_ggx_cap_weight(m, wo, wi, MCSI_GGX_BOUNDED);
 }
+#endif
 MCSI_SAMPLE mcs_dir mcs_ggx_bounded_h_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     return mcsi_ggx_cap_h_sample(m, wo, u1, u2, MCSI_GGX_BOUNDED);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_ggx_bounded_h_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) {
     return mcsi_ggx_cap_h_pdf(m, wo, h, MCSI_GGX_BOUNDED);
 }
 MCSI_FN mcs_vec2 mcs_ggx_bounded_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) {
     return mcsi_ggx_cap_h_invert(m, wo, h, MCSI_GGX_BOUNDED);
 }
+#endif
 MCSI_SAMPLE mcs_brdf mcs_ggx_vndf_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     return mcsi_ggx_cap_sample(m, wo, u1, u2, MCSI_GGX_VISIBLE);
 }
 MCSI_FN mcs_f mcs_ggx_vndf_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_ggx_cap_pdf(m, wo, wi, MCSI_GGX_VISIBLE);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_ggx_vndf_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_ggx_cap_weight(m, wo, wi, MCSI_GGX_VISIBLE);
 }
+#endif
 MCSI_SAMPLE mcs_dir mcs_ggx_vndf_h_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
     return mcsi_ggx_cap_h_sample(m, wo, u1, u2, MCSI_GGX_VISIBLE);
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_ggx_vndf_h_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) {
     return mcsi_ggx_cap_h_pdf(m, wo, h, MCSI_GGX_VISIBLE);
 }
 MCSI_FN mcs_vec2 mcs_ggx_vndf_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h) {
     return mcsi_ggx_cap_h_invert(m, wo, h, MCSI_GGX_VISIBLE);
 }
+#endif
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_ggx mcsi_ggx_spread(const mcsi_scalar_ggx *m) {
     mcs_ggx all;
@@ -4441,6 +4539,7 @@ typedef struct {
     mcs_f norm;                         /* sqrt((nu + 1) (nv + 1)) / (2 pi), 0 for bad exponents */
 } mcs_ashikhmin;
 #endif
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_ashikhmin mcs_ashikhmin_make(mcs_f nu, mcs_f nv) {
     const mcs_i ok = (nu >= 0.0f) & (nv >= 0.0f);
     MCSI_REQUIRE(ok);
@@ -4453,6 +4552,7 @@ MCSI_FN mcs_ashikhmin mcs_ashikhmin_make(mcs_f nu, mcs_f nv) {
     m.norm = mcsi_sel(ok, mcsi_sqrt(m.nu + 1.0f) * mcsi_sqrt(m.nv + 1.0f) * MCSI_1_2PI, mcs_set(0.0f));
     return m;
 }
+#endif
 /* The exponent s at the azimuth of h, a direction of any length; 0 at the pole, where it does not matter. The factor
  * 2^30 keeps squares from underflow. */
 MCSI_CORE mcs_f mcsi_ashikhmin_exponent(const mcs_ashikhmin *m, mcs_vec3 h) {
@@ -4510,6 +4610,7 @@ MCSI_SAMPLE mcs_dir mcs_ashikhmin_h_sample(const mcs_ashikhmin *m, mcs_f u1, mcs
     d.pdf = mcsi_sane_result(ok, drawn.density_cos / drawn.h.z);
     return d;
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_ashikhmin_h_pdf(const mcs_ashikhmin *m, mcs_vec3 h) {
     mcs_i ok = mcsi_always();
     h = mcsi_sane_upper(h, &ok);
@@ -4522,6 +4623,7 @@ MCSI_FN mcs_vec2 mcs_ashikhmin_h_invert(const mcs_ashikhmin *m, mcs_vec3 h) {
     const mcs_f u1 = mcsi_one_minus_cos_power(mcsi_ashikhmin_exponent(m, h) + 1.0f, mcsi_tan2(h));
     return mcsi_uv(ok, u1, mcsi_atan2_turns(h.y, h.x * m->stretch));
 }
+#endif
 
 /* wo.h of the lanes `where` again, with the sum of x and y in double. The structs come by value: a vector that
  * is indexed cannot stay in a register. */
@@ -4566,12 +4668,14 @@ MCSI_FN mcs_f mcs_ashikhmin_eval(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 w
     const mcs_f pdf = mcs_ashikhmin_pdf(m, wo, wi);
     return mcsi_sane_result(pdf > 0.0f, pdf / mcsi_max(wo.z, wi.z));
 }
+#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_ashikhmin_weight(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = m->norm > 0.0f;
     wo = mcsi_sane_upper(wo, &ok);
     wi = mcsi_sane_upper(wi, &ok);
     return mcsi_sane_result(ok, wi.z / mcsi_max(wo.z, wi.z));
 }
+#endif
 #ifdef MCSI_LOOPS
 MCSI_CORE mcs_ashikhmin mcsi_ashikhmin_spread(const mcsi_scalar_ashikhmin *m) {
     mcs_ashikhmin all;
@@ -4592,6 +4696,7 @@ MCSI_LOOP_VALUE(ashikhmin_eval, ashikhmin)
 
 /* ==== [mis] bodies ================================================================================================ */
 
+#ifdef MCSI_PUBLIC
 /* pg/pf, from which both heuristics are computed, as squares of densities overflow. *ok is set where both densities are
  * good. Equal densities give 1, and so do two infinite ones. */
 MCSI_CORE mcs_f mcsi_mis_ratio(mcs_f pf, mcs_f pg, mcs_i *ok) {
@@ -4615,6 +4720,7 @@ MCSI_FN mcs_f mcs_mix_pdf(mcs_f c, mcs_f pf, mcs_f pg) {
     c = mcsi_min(mcsi_max(c, mcs_set(0.0f)), mcs_set(1.0f));
     return mcsi_sane_result(ok, c * mcsi_sane_result(pf > 0.0f, pf) + (1.0f - c) * mcsi_sane_result(pg > 0.0f, pg));
 }
+#endif
 
 #if MCSI_W == 1
 /* ================================================================================================================== */
@@ -6880,11 +6986,13 @@ MCSI_CORE mcsi_warp mcsi_warp_make(const mcsi_warp_source *s) {
     w.v11 = (w.v11 + least) * scale;
     return w;
 }
+#ifdef MCSI_PUBLIC
 MCSI_CORE mcs_f mcsi_warp_density(const mcsi_warp *w, mcs_f t1, mcs_f t2) {
     const mcs_f a = w->v00 + t2 * (w->v01 - w->v00);
     const mcs_f b = w->v10 + t2 * (w->v11 - w->v10);
     return a + t1 * (b - a);
 }
+#endif
 /* Draws from a density that goes linearly from a at 0 to b at 1. */
 MCSI_CORE mcs_f mcsi_warp_linear(mcs_f a, mcs_f b, mcs_f u) {
     return mcsi_min(u * (a + b) / (a + mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b))), mcs_set(0.99999994f));
