@@ -21,8 +21,9 @@ MCST_HD static inline uint64_t bits_hash(uint64_t hash, const void *words, size_
     return hash;
 }
 
-/* --- the size of inputs and results: BLOCKS parameter sets with BLOCK cases each, so that an array form has two vectors of 8 and a rest --- */
+/* --- the size of inputs and results ----------------------------------------------------------------------------------------- */
 
+/* BLOCKS parameter sets with BLOCK cases each, so that an array form has two vectors of 8 and a rest. */
 enum { BLOCK = 19, BLOCKS = 128, CASES = BLOCK * BLOCKS, BITS_IN = 14, BITS_OUT = 10, P = 0, WO = 3, U = 6, X = 8, WORDS = 11 };
 
 MCST_HD static inline float from_bits(uint32_t bits) {

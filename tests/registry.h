@@ -123,8 +123,8 @@ enum {
     MCST_VISIBLE = 16  /* visible normals */
 };
 
-/* The figures of accuracy that mcsample.h states, as numbers: test_oracle.c holds the header to them on its grids, and looks up that
- * the header states them (claims.h); stress/climb.c searches for inputs that break them.
+/* The figures of accuracy that mcsample.h states, as numbers: test_oracle.c holds the header to them on its grids, and looks up
+ * that the header states them (claims.h); stress/climb.c searches for inputs that break them.
  *
  * A density is judged in E = 1e-6 (1 + |ln(pdf/peak)|), of Gaussian half-vectors given h or wi in 1e-6 (1 + e), e their exponent;
  * weights in 1e-6; the length of a direction by its distance from 1 in 2^-24. */
@@ -136,7 +136,8 @@ typedef struct {
 } mcst_claim;
 
 /* What may be given as parameters. Bad is what the header documents as outside: 1, 0, or -1 where it leaves it open; both
- * parameters of a linear density being 0 is bad, too. Valid ones are drawn from least to most. */
+ * parameters of a linear density being 0 is bad, too. Valid ones are drawn from least to most; 0: there is
+ * no second one. */
 typedef struct {
     int (*bad)(int i, float v);
     double least[2], most[2];
@@ -187,7 +188,7 @@ static const float mcst_grid_exponents[][2] = {
     {10, 100},    {100, 10}, {0, 0},    {1, 1},       {3, 0.5f},      {100, 100},     {1e3f, 1e3f}, {1e4f, 1e4f},  {1e6f, 1e6f},
     {1e9f, 1e9f}, {0, 100},  {1e4f, 1}, {1e9f, 1e5f}, {1e-3f, 1e-3f}, {1e-2f, 1e-2f}, {1e-3f, 100}, {1e4f, 1e-2f}, {1e-2f, 1e9f}};
 
-/* --- what may be given --------------------------------------------------------------------------------------------------------- */
+/* --- what may be given -------------------------------------------------------------------------------------------------------- */
 
 static inline int mcst_outside(float v, float least, float most) { return !(v >= least && v <= most); }
 static inline int mcst_bad_none(int i, float v) {
@@ -220,28 +221,19 @@ static inline int mcst_bad_exponents(int i, float v) {
     (void)i;
     return !(v >= 0);
 }
-#define MCST_DOMAIN_none \
-    { mcst_bad_none, {1e-18, 1e-18}, {1e18, 1e18}, 0 }
-#define MCST_DOMAIN_linear \
-    { mcst_bad_linear, {1e-45, 1e-45}, {3.4e38, 3.4e38}, 0 }
-#define MCST_DOMAIN_radius \
-    { mcst_bad_radius, {1e-18, 1e-18}, {1e18, 1e18}, 0 }
-#define MCST_DOMAIN_rate \
-    { mcst_bad_rate, {1e-18, 1e-18}, {1e18, 1e18}, 0 }
-#define MCST_DOMAIN_truncexp \
-    { mcst_bad_truncexp, {1e-30, 1e-18}, {1e18, 1e18}, 0 }
-#define MCST_DOMAIN_normal \
-    { mcst_bad_normal, {1e-30, 1e-18}, {1e30, 1e18}, 1 }
-#define MCST_DOMAIN_power \
-    { mcst_bad_power, {1e-30, 1e-30}, {1e9, 1e9}, 0 }
-#define MCST_DOMAIN_cone \
-    { mcst_bad_cone, {1e-30, 1e-30}, {2, 2}, 0 }
-#define MCST_DOMAIN_phong \
-    { mcst_bad_phong, {1e-30, 1e-30}, {1e9, 1e9}, 0 }
-#define MCST_DOMAIN_alpha \
-    { mcst_bad_alpha, {1e-7, 1e-7}, {1e4, 1e4}, 0 }
-#define MCST_DOMAIN_exponents \
-    { mcst_bad_exponents, {1e-30, 1e-30}, {1e9, 1e9}, 0 }
+/* clang-format off */
+#define MCST_DOMAIN_none {mcst_bad_none, {1e-18, 0}, {1e18, 0}, 0}
+#define MCST_DOMAIN_linear {mcst_bad_linear, {1e-45, 1e-45}, {3.4e38, 3.4e38}, 0}
+#define MCST_DOMAIN_radius {mcst_bad_radius, {1e-18, 0}, {1e18, 0}, 0}
+#define MCST_DOMAIN_rate {mcst_bad_rate, {1e-18, 0}, {1e18, 0}, 0}
+#define MCST_DOMAIN_truncexp {mcst_bad_truncexp, {1e-30, 1e-18}, {1e18, 1e18}, 0}
+#define MCST_DOMAIN_normal {mcst_bad_normal, {1e-30, 1e-18}, {1e30, 1e18}, 1}
+#define MCST_DOMAIN_power {mcst_bad_power, {1e-30, 1e-30}, {1e9, 1e9}, 0}
+#define MCST_DOMAIN_cone {mcst_bad_cone, {1e-30, 0}, {2, 0}, 0}
+#define MCST_DOMAIN_phong {mcst_bad_phong, {1e-30, 1e-30}, {1e9, 1e9}, 0}
+#define MCST_DOMAIN_alpha {mcst_bad_alpha, {1e-7, 1e-7}, {1e4, 1e4}, 0}
+#define MCST_DOMAIN_exponents {mcst_bad_exponents, {1e-30, 1e-30}, {1e9, 1e9}, 0}
+/* clang-format on */
 
 /* From the pole over 45 degrees to a cosine of 1e-6, azimuths off the axes. */
 static const float mcst_incidence[][2] = {{1, 0},        {0.95f, 0.4f},  {0.70710678f, 0.7f}, {0.35f, 2.1f}, {0.0871557f, -2.5f},
@@ -424,7 +416,8 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_T_BRDF(row) MCST_TAIL_BRDF(row)
 #define MCST_TABLE(X, shape, row, fn, arg, base, coord, grid, claims, vary, traits) \
     {#row, #fn, MCST_SHAPE_##shape(row), MCST_##coord, MCST_SIZE_##shape, MCST_COUNT_##arg, MCST_WO_##shape, mcst_grid_##grid, \
-     MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row), mcst_claims_##claims, MCST_COUNT(mcst_claims_##claims), vary, traits, MCST_DOMAIN_##grid},
+     MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row), \
+     mcst_claims_##claims, MCST_COUNT(mcst_claims_##claims), vary, traits, MCST_DOMAIN_##grid},
 /* clang-format on */
 
 #ifndef MCST_SHARED

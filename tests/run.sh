@@ -20,8 +20,10 @@ worker() {
         mkdir "$tmp/$i" 2>/dev/null || continue
         {
             case $program in */*) ;; *) program=./$program ;; esac
-            case $program in */stress/*) export MCS_TEST_SCALE="${MCS_STRESS_SCALE:-0.002}" ;; esac
-            "$program" ${FILTER:+--filter "$FILTER"} ${SEED:+--seed "$SEED"}
+            ( # the scale is that of this program alone
+                case $program in */stress/*) export MCS_TEST_SCALE="${MCS_STRESS_SCALE:-0.002}" ;; esac
+                "$program" ${FILTER:+--filter "$FILTER"} ${SEED:+--seed "$SEED"}
+            )
             echo $? >"$tmp/$i/status"
         } >"$tmp/$i/output" 2>&1
         echo "$i $program"

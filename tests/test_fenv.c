@@ -69,10 +69,10 @@ static void valid_parameters(const mcst_row *row, uint64_t *state, float set[3])
     }
     d = &row->domain;
     set[0] = (d->either_sign && !(z & 2) ? -1.0f : 1.0f) * spread(state, d->least[0], d->most[0]);
-    set[1] = spread(state, d->least[1], d->most[1]);
-    if (row->coord == MCST_TRUNCATED || row->coord == MCST_WHOLELINE) return;
-    if (row->coord == MCST_UNIT && z & 2) set[1] = 0;
-    else if (z & (row->coord == MCST_UNIT ? 4 : 2)) set[1] = set[0];
+    if (d->least[1] == 0) return;
+    if (row->coord == MCST_UNIT && z & 2) return;
+    if (row->coord != MCST_TRUNCATED && row->coord != MCST_WHOLELINE && z & (row->coord == MCST_UNIT ? 4 : 2)) set[1] = set[0];
+    else set[1] = spread(state, d->least[1], d->most[1]);
 }
 
 /* Points: mostly samples of the row; else, on a line or plane, about its scale or any float, and a direction that is any. */

@@ -556,8 +556,8 @@ static const struct kernel {
 
 /* Limits of a line's x in ulp and of its density in E, as the header states them. */
 static double x_limit_of(const mcst_row *of) { return of->traits & MCST_QUANTILE ? 7 : 4; }
-/* The normal distribution: 0.38 E for deviations that are powers of 2; the quotient of others rounds once more, 2^-24 of 1.7 E where
- * that is worst. */
+/* The normal distribution: 0.38 E for deviations that are powers of 2; the quotient of others rounds once more, 2^-24 of 1.7 E
+ * where that is worst. */
 static double pdf_limit_of(const mcst_row *of) { return of->claims[0].claim[CLAIM_PDF_U]; }
 
 /* sin(theta) of a lobe within 1e-6 of itself, of the others every coordinate within 2^-23 of the radius. */
