@@ -7846,6 +7846,7 @@ MCSI_CORE int mcsi_oneshot_start(const mcs_tiles *t, const mcs_env *e, const mcs
     if (!o->surface.reflects) return 0;
     o->share = mcsi_oneshot_lobe_share(&o->surface, t);
     if (o->share > 0.0f) o->lobe = mcsi_lobe_make(r, &o->surface);
+    else MCSI_FILL(&o->lobe, 0, sizeof o->lobe); /* gcc does not see that it is not read then */
     return 1;
 }
 /* Texel and density of world direction w, the lobe's share included. */
