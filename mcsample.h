@@ -6398,33 +6398,26 @@ MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_
 /* ---- [product] the map, as products draw from it ---- */
 
 #if MCSI_W == 1
-/* Shares of row y of the map, of 2^31. */
-MCSI_CORE uint32_t mcsi_env_row_mass(const mcs_env *e, uint32_t y) {
-    const mcsi_window all = mcsi_env_whole(e);
-    return mcsi_cdf_mass(&all.rows, y);
-}
 /* The direction of a draw, in the map's own frame. */
 MCSI_CORE mcs_vec3 mcsi_window_direction(const mcs_env *e, const mcsi_window *r, mcsi_draw d) {
     mcs_texel x;
-    const mcsi_env_point point = r->uniform ? mcsi_window_draw_uniform(e, r, &d) : mcsi_window_draw_point(e, r, &d, &x);
+    const mcsi_env_point p = r->uniform ? mcsi_window_draw_uniform(e, r, &d) : mcsi_window_draw_point(e, r, &d, &x);
     mcs_frame axes;
     MCSI_FILL(&axes, 0, sizeof axes);
     axes.s.x = axes.t.y = axes.n.z = 1.0f;
-    return mcsi_env_direction(&axes, &point, e->turn, e->inner);
+    return mcsi_env_direction(&axes, &p, e->turn, e->inner);
 }
 /* Whether row `row` of the map has light within the window. */
 MCSI_CORE int mcsi_window_row_is_lit(const mcsi_window *r, uint32_t row) {
     return r->uniform || mcsi_cdf_mass(&r->rows, row - r->row0) != 0;
 }
-/* Density per solid angle at a spot of the window, which lies in a lit row, when the window is drawn from with
- * `density`. */
+/* Density per solid angle at a spot of the window, in a lit row, when the window itself is drawn with `density`. */
 MCSI_CORE float mcsi_window_density_at(const mcs_env *e, const mcsi_window *r, const mcsi_spot *spot, double density) {
     if (r->uniform) return (float)(density * (double)mcsi_window_uniform_pdf(e, r));
     const uint32_t *sums = mcsi_env_sums(e, spot->row) + spot->col;
     return (float)((sums[1] - sums[0]) * (density * mcsi_window_row_density(r, spot->row - r->row0)));
 }
-/* A position among the light of a window: t1 of the row's light comes before it, t2 of all light is in rows above it.
- * */
+/* A position among the light of a window: t1 of the row's light lies before it, t2 of all light in rows above it. */
 typedef struct {
     float t1, t2;
 } mcsi_position;
@@ -6609,7 +6602,8 @@ MCS_FN void mcsi_patch_add_row(const mcs_env *e, uint32_t row, mcsi_patch *p) {
     p->area += height;
     p->across += height * sine;
     p->up += height * (1.0 - t);
-    const uint32_t mass = mcsi_env_row_mass(e, row);
+    const mcsi_cdf rows = mcsi_env_rows(e);
+    const uint32_t mass = mcsi_cdf_mass(&rows, row);
     if (!e->uniform && mass == 0) return;
     const uint32_t *sums = mcsi_env_sums(e, row);
     double light = 0.0;
@@ -6693,10 +6687,7 @@ MCSI_CORE double mcsi_node_position(uint32_t k) {
 MCS_FN void mcsi_tile_nodes(const mcs_env *e, const mcs_env_window *m, float *node) {
     const mcsi_window window = mcsi_window_of(e, m);
     for (uint32_t k = 0; k < MCSI_GRID; k++) {
-        mcsi_draw d;
-        d.u1 = mcsi_node_position(k / MCSI_NODES);
-        d.u2 = mcsi_node_position(k % MCSI_NODES);
-        d.density = 1.0;
+        const mcsi_draw d = mcsi_draw_make(mcsi_node_position(k / MCSI_NODES), mcsi_node_position(k % MCSI_NODES), 1.0);
         const mcs_vec3 w = mcsi_window_direction(e, &window, d);
         node[k] = w.x;
         node[MCSI_GRID + k] = w.y;
@@ -7041,11 +7032,7 @@ MCSI_LOOP void mcsi_warps_loop(size_t n, mcsi_warp_block *b) {
 MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b); /* by the widest loop */
 
 MCSI_CORE mcsi_draw mcsi_draw_of(float u1, float u2) {
-    mcsi_draw d;
-    d.u1 = (double)u1 * MCSI_ONE;
-    d.u2 = (double)u2 * MCSI_ONE;
-    d.density = 1.0;
-    return d;
+    return mcsi_draw_make((double)u1 * MCSI_ONE, (double)u2 * MCSI_ONE, 1.0);
 }
 /* A number in [0, 2^31) as one in [0, 1]. */
 MCSI_CORE float mcsi_part_of_one(double u) { return (float)(u * (1.0 / MCSI_ONE)); }
@@ -7819,8 +7806,7 @@ MCSI_CORE mcsi_warp mcsi_oneshot_warp(const mcs_tiles *t, const mcsi_surface *s,
 /* Density of the tiles at a spot, without the lobe's share. */
 MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_surface *s, const mcsi_spot *spot) {
     mcsi_descent way;
-    way.d.u1 = way.d.u2 = 0.0;
-    way.d.density = 1.0;
+    way.d = mcsi_draw_make(0.0, 0.0, 1.0);
     way.tile = mcsi_tile_of_spot(t, e, spot);
     way.given = 1;
     const float value = mcsi_oneshot_tile(t, s, &way);
