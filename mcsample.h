@@ -3641,7 +3641,7 @@ MCSI_FN mcs_phong mcs_phong_make(mcs_f n) {
 
 /* Powers of cos(theta) are computed from tan^2(theta): ln(cos) is -ln(1 + tan^2) / 2. A cosine near 1 cannot hold a
  * narrow lobe: powf(cos, n) is 35 % off at n = 1e7. */
-MCSI_CORE mcs_f mcsi_tan2(mcs_vec3 w) { return (w.x * w.x + w.y * w.y) / (w.z * w.z); }
+MCSI_CORE mcs_f mcsi_tan2(mcs_vec3 w) { return mcsi_quotient(w.x * w.x + w.y * w.y, w.z * w.z); }
 MCSI_CORE mcs_f mcsi_cos_power(mcs_f power, mcs_f tan2) {
     return mcsi_exp_neg(-0.5f * power * mcsi_log1p(mcsi_min(tan2, mcs_set(1e37f))));
 }
@@ -3859,6 +3859,9 @@ MCSI_CORE mcs_brdf mcsi_slope_brdf(mcs_i ok, mcs_vec3 wi, const mcsi_slope_half 
     const mcs_f pdf = g * (h->p2 * h->p2) / mcsi_sel(above, 4.0f * h->wo_p, mcs_set(1.0f));
     return mcsi_brdf(ok & above, wi, pdf, mcs_set(1.0f));
 }
+/* wi, mirrored upwards where it lies below the surface. That sample is lost, but the divisor of its weight must not be
+ * 0. */
+MCSI_CORE mcs_vec3 mcsi_upward(mcs_vec3 wi) { return mcsi_vec3(wi.x, wi.y, mcsi_abs(wi.z)); }
 /* s with its weight, which comes last, so that compilers may skip it where the sample is lost. */
 MCSI_CORE mcs_brdf mcsi_weighted(mcs_brdf s, mcs_f weight) {
     s.weight = mcsi_sane_result(s.pdf > 0.0f, weight);
@@ -4056,7 +4059,7 @@ MCSI_SAMPLE mcs_brdf mcs_beckmann_sample(const mcs_beckmann *m, mcs_vec3 wo, mcs
     const mcsi_slope_half h = mcsi_slope_draw(&m->s, wo, radius.r, u2);
     const mcs_vec3 wi = mcsi_slope_reflect(wo, &h);
     const mcs_brdf s = mcsi_slope_brdf(ok, wi, &h, radius.g);
-    return mcsi_weighted(s, wi.z * h.wo_p / mcsi_beckmann_g2_divisor(&m->s, wo, wi));
+    return mcsi_weighted(s, wi.z * h.wo_p / mcsi_beckmann_g2_divisor(&m->s, wo, mcsi_upward(wi)));
 }
 MCSI_FN mcs_f mcs_beckmann_pdf(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_gauss_pdf(&m->s, wo, wi);
@@ -4202,7 +4205,7 @@ MCSI_SAMPLE mcs_brdf mcs_ggx_sample(const mcs_ggx *m, mcs_vec3 wo, mcs_f u1, mcs
     const mcsi_slope_half h = mcsi_slope_draw(&m->s, wo, radius.r, u2);
     const mcs_vec3 wi = mcsi_slope_reflect(wo, &h);
     const mcs_brdf s = mcsi_slope_brdf(ok, wi, &h, radius.g);
-    return mcsi_weighted(s, 2.0f * wi.z * h.wo_p / mcsi_ggx_g2_divisor(&m->s, wo, wi));
+    return mcsi_weighted(s, 2.0f * wi.z * h.wo_p / mcsi_ggx_g2_divisor(&m->s, wo, mcsi_upward(wi)));
 }
 /* With H = wo + wi, wo.h is |H| / 2 and cos(theta_h) is H.z / |H|. */
 MCSI_FN mcs_f mcs_ggx_pdf(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
@@ -8308,6 +8311,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_truncexp MCSI_(truncexp)
 #define mcsi_truncexp_loop MCSI_(truncexp_loop)
 #define mcsi_truncexp_make MCSI_(truncexp_make)
+#define mcsi_upward MCSI_(upward)
 #define mcsi_uv MCSI_(uv)
 #define mcsi_vec2 MCSI_(vec2)
 #define mcsi_vec3 MCSI_(vec3)
@@ -8787,6 +8791,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_truncexp
 #undef mcsi_truncexp_loop
 #undef mcsi_truncexp_make
+#undef mcsi_upward
 #undef mcsi_uv
 #undef mcsi_vec2
 #undef mcsi_vec3
