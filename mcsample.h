@@ -1717,16 +1717,15 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 /* PART II: MACHINERY                                                                                                 */
 /* ================================================================================================================== */
 
-#if defined(MCSI_GNU) && !defined(__cplusplus)
-/* The header declares variables at their first use, as C99 and C++ allow. Some projects let the compiler warn of that.
- */
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wdeclaration-after-statement"
-#endif
 #if defined(MCSI_GNU)
 /* gcc notes that functions which pass wide vectors depend on the instruction set. Here all of them are inlined. The
  * note comes at the end of the file, so it stays off for the rest of the including file, too. */
 #pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+#if defined(MCSI_GNU) && !defined(__cplusplus)
+/* The header declares variables at their first use, as C99 and C++ allow. Some projects let the compiler warn of that. */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeclaration-after-statement"
 #endif
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)

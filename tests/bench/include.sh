@@ -1,30 +1,30 @@
 #!/bin/sh
-# What including mcsample.h costs: milliseconds of a compilation (-O2, one sampler used, against <math.h> alone) for gcc and clang,
-# C and C++, with all of the header, with each MCS_NO_* switch and with all of them; and bytes of machine code of a function that
-# calls one sampler, scalar and as an array form. Medians of compilations that take turns. With "quick": gcc, the whole header.
+# What including mcsample.h costs: milliseconds of a compilation (-O2, a bare include, against one of <math.h>) for gcc and clang,
+# C and C++, with all of the header inline, with its large parts only declared, with packets, with each MCS_NO_* switch and with all
+# of them; and bytes of machine code of a function that calls one sampler, scalar and as an array form. Medians of compilations that
+# take turns. With "quick": gcc, the ways to include it.
+# AGAINST=HEADER, a file or a git revision of mcsample.h: that header takes its turns, too, and then ratios are printed.
 # Called by the Makefile from the directory of mcsample.h: include.sh OUTPUT_DIRECTORY [quick], CLOCK naming the program of clock.c.
 LC_ALL=C
 export LC_ALL
 out=$1
 dir=$out/include
-rounds=5
+rounds=${ROUNDS:-5}
 mkdir -p "$dir" || exit 2
 switches=$(sed -n 's/^ \* \(MCS_NO_[A-Z0-9_]*\) .*/\1/p' mcsample.h)
 [ -n "$switches" ] || { echo "include.sh: mcsample.h lists no switch" >&2; exit 2; }
-cases="math none $switches all"
+ways='none MCS_DECLARE MCS_PACKETS=16'
+cases="math $ways $switches all"
 pairs='gcc:c g++:c++ clang:c clang++:c++'
-[ "$2" = quick ] && rounds=3 cases='math none' pairs='gcc:c g++:c++'
+[ "${2:-}" = quick ] && rounds=${ROUNDS:-3} cases="math $ways" pairs='gcc:c g++:c++'
+if [ -n "${AGAINST:-}" ]; then
+    mkdir -p "$dir/against"
+    if [ -f "$AGAINST" ]; then cp "$AGAINST" "$dir/against/mcsample.h"; else git show "$AGAINST:mcsample.h" >"$dir/against/mcsample.h"; fi || exit 2
+    rounds=${ROUNDS:-11} cases="math against $ways" pairs='gcc:c g++:c++ clang:c clang++:c++'
+fi
 
-cat >"$dir/math.c" <<'END'
-#include <math.h>
-float area(float u);
-float area(float u) { return sqrtf(u); }
-END
-cat >"$dir/header.c" <<'END'
-#include "mcsample.h"
-float area(float u);
-float area(float u) { return mcs_disk_sample(1, u, u).x; }
-END
+echo '#include <math.h>' >"$dir/math.c"
+echo '#include "mcsample.h"' >"$dir/header.c"
 
 cpu=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -n 1)
 compilers=''
@@ -38,14 +38,15 @@ for pair in $pairs; do
     fi
     compilers="$compilers$compiler $("$compiler" --version | head -n 1 | grep -oE '[0-9]+\.[0-9.]+' | head -n 1), "
     for case in $cases; do
-        source=header flags=''
+        source=header flags='' folder=.
         case $case in
         math) source=math ;;
         none) ;;
+        against) folder=$dir/against ;;
         all) for s in $switches; do flags="$flags -D$s"; done ;;
         *) flags=-D$case ;;
         esac
-        set -- "$@" "$compiler -O2 -x $language $flags -I. -c $dir/$source.c -o $dir/timed.o"
+        set -- "$@" "$compiler -O2 -x $language $flags -I$folder -c $dir/$source.c -o $dir/timed.o"
         echo "$compiler $language $case" >>"$dir/list"
     done
 done
@@ -78,7 +79,7 @@ code() {
     echo 'compiler,language,case,ms_median,ms_min,ms_max,ms_added,bytes'
     paste -d ' ' "$dir/list" "$dir/times" | awk '
         $3 == "math" { base[$1] = $4 }
-        { name = $3 == "math" ? "<math.h> alone" : $3 == "none" ? "mcsample.h" : $3 == "all" ? "all switches" : $3
+        { name = $3 == "math" ? "<math.h> alone" : $3 == "none" ? "mcsample.h" : $3 == "all" ? "all switches" : $3 == "against" ? "older header" : $3
           printf "%s,%s,%s,%s,%s,%s,%.1f,\n", $1, $2, name, $4, $5, $6, $4 - base[$1] }'
     awk '{ printf "%s,%s,code: %s,,,,,%s\n", $1, $2, $3, $4 }' "$dir/code"
 } >"$out/include.csv"
@@ -89,4 +90,7 @@ awk -F, '
     NR == 2 { $1 = "compiler"; $2 = ""; $3 = "compiled"; row("ms", "min", "max", "added") }
     NR > 2 && $4 != "" { row($4, $5, $6, $7) }
     NR > 2 && $4 == "" { printf "%-9s %-4s %-24s %s bytes\n", $1, $2, $3, $8 }' "$out/include.csv"
+[ -z "${AGAINST:-}" ] || awk -F, -v header="$AGAINST" '
+    $3 == "older header" { older[$1] = $7 }
+    $3 != "older header" && $1 in older && $4 != "" { printf "%-9s %-18s %5.2f of %s\n", $1, $3, $7 / older[$1], header }' "$out/include.csv"
 echo "wrote $out/include.csv"
