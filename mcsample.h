@@ -1723,7 +1723,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 #if defined(MCSI_GNU) && !defined(__cplusplus)
-/* The header declares variables at their first use, as C99 and C++ allow. Some projects let the compiler warn of that. */
+/* The header declares variables at their first use, as C99 and C++ allow. Some projects let the compiler warn of that.
+ */
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdeclaration-after-statement"
 #endif
@@ -2392,8 +2393,9 @@ MCSI_CORE mcs_f mcsi_normal_tail(mcs_f y) {
     const mcs_f sum = exact + remainder;
     const mcs_f lost = (exact - sum) + remainder;
     /* clang-format off */
-    const mcs_f g = -1.45437423e-06f + v * (0.139653593f + v * (0.139561504f + v * (0.12138617f + v * (0.100589871f +
-              v * (-0.0131919663f + v * (0.146392867f + v * (-0.245529339f + v * (0.139402911f + v * -0.0282641724f))))))));
+    const mcs_f g = -1.45437423e-06f + v * (0.139653593f + v * (0.139561504f + v * (0.12138617f +
+              v * (0.100589871f + v * (-0.0131919663f + v * (0.146392867f + v * (-0.245529339f +
+              v * (0.139402911f + v * -0.0282641724f))))))));
     /* clang-format on */
     return mcsi_exp_neg(sum) * (g + g * lost);
 }

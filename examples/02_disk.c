@@ -1,5 +1,5 @@
-/* Points on a disk of radius R: the polar map and Shirley and Chiu's concentric map (less distortion, keeps strata compact).
- * Both have density 1/(pi R^2) per area. The integral of x^2 over the disk is pi R^4 / 4. */
+/* Points on a disk of radius R: the polar map and Shirley and Chiu's concentric map (less distortion, keeps strata
+ * compact). Both have density 1/(pi R^2) per area. The integral of x^2 over the disk is pi R^4 / 4. */
 #include "mcsample.h"
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,7 @@
-/* Phong: the lobe ((n+1)/(2 pi)) cos^n about the mirror direction. The albedo is the integral of f cos over the hemisphere, so
- * the mean of the weight f cos / pdf. Seen from straight above it is exactly 1; seen at a slant part of the lobe dips under the
- * surface: such a sample has pdf 0 and weight 0 and still counts. The slanted albedo is checked against cosine sampling. */
+/* Phong: the lobe ((n+1)/(2 pi)) cos^n about the mirror direction. The albedo is the integral of f cos over the
+ * hemisphere, so the mean of the weight f cos / pdf. Seen from straight above it is exactly 1; seen at a slant part of
+ * the lobe dips under the surface: such a sample has pdf 0 and weight 0 and still counts. The slanted albedo is checked
+ * against cosine sampling. */
 #include "mcsample.h"
 #include <math.h>
 #include <stdio.h>
@@ -29,6 +30,7 @@ int main(void) {
         mcs_stat_add(&cosine, d.pdf > 0 ? mcs_phong_eval(&m, slant, d.w) * d.w.z / d.pdf : 0);
     }
     wrong |= report("albedo from above", top.mean, mcs_stat_error(&top), 1);
-    wrong |= report("albedo at 53 degrees", lobe.mean, hypot(mcs_stat_error(&lobe), mcs_stat_error(&cosine)), cosine.mean);
+    wrong |=
+        report("albedo at 53 degrees", lobe.mean, hypot(mcs_stat_error(&lobe), mcs_stat_error(&cosine)), cosine.mean);
     return wrong;
 }

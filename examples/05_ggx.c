@@ -1,6 +1,7 @@
-/* GGX, anisotropic, three ways: half-vectors by the full distribution, by the visible normals, and by the bounded visible normals.
- * All three estimate one albedo; at a slant the visible normals lose far fewer samples and have the lower error.
- * Known answer: the visible microfacets project to exactly the surface, the integral of G1(wo) D(h) max(0, wo.h) being wo.z. */
+/* GGX, anisotropic, three ways: half-vectors by the full distribution, by the visible normals, and by the bounded
+ * visible normals. All three estimate one albedo; at a slant the visible normals lose far fewer samples and have the
+ * lower error. Known answer: the visible microfacets project to exactly the surface, the integral of G1(wo) D(h) max(0,
+ * wo.h) being wo.z. */
 #include "mcsample.h"
 #include <math.h>
 #include <stdio.h>

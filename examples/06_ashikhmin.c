@@ -1,6 +1,6 @@
-/* Ashikhmin and Shirley's anisotropic Phong lobe. The exponent at azimuth phi is nu cos^2 phi + nv sin^2 phi (nu and nv not
- * squared): with it the density of half-vectors integrates to 1, checked here with uniform directions.
- * Then the albedo from a slant, by BRDF sampling and by cosine sampling. */
+/* Ashikhmin and Shirley's anisotropic Phong lobe. The exponent at azimuth phi is nu cos^2 phi + nv sin^2 phi (nu and nv
+ * not squared): with it the density of half-vectors integrates to 1, checked here with uniform directions. Then the
+ * albedo from a slant, by BRDF sampling and by cosine sampling. */
 #include "mcsample.h"
 #include <math.h>
 #include <stdio.h>
@@ -29,7 +29,8 @@ int main(void) {
         mcs_stat_add(&cosine, d.pdf > 0 ? mcs_ashikhmin_eval(&m, wo, d.w) * d.w.z / d.pdf : 0);
     }
     printf("albedo, cosine-sampled   %.5f +- %.5f\n", cosine.mean, mcs_stat_error(&cosine));
-    wrong |= report("albedo, BRDF-sampled", brdf.mean, hypot(mcs_stat_error(&brdf), mcs_stat_error(&cosine)), cosine.mean);
+    wrong |=
+        report("albedo, BRDF-sampled", brdf.mean, hypot(mcs_stat_error(&brdf), mcs_stat_error(&cosine)), cosine.mean);
     wrong |= report("integral of the density", mass.mean, mcs_stat_error(&mass), 1);
     return wrong;
 }

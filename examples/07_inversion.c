@@ -1,5 +1,6 @@
 /* Sampling any density by numeric inversion: hand over a function, get a table that follows it, in memory of your own.
- * Here g(x) = exp(-20 (x - 0.3)^2) on [0,1]; the mean of x g(x) / pdf is the integral of x g(x), however coarse the table is. */
+ * Here g(x) = exp(-20 (x - 0.3)^2) on [0,1]; the mean of x g(x) / pdf is the integral of x g(x), however coarse the
+ * table is. */
 #include "mcsample.h"
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +12,8 @@ static float bump(float x, void *ctx) {
 }
 
 int main(void) {
-    /* Integral of x g = 0.3 (integral of g) + (exp(-20 0.3^2) - exp(-20 0.7^2)) / 40, integral of g by the error function. */
+    /* Integral of x g = 0.3 (integral of g) + (exp(-20 0.3^2) - exp(-20 0.7^2)) / 40, integral of g by the error
+     * function. */
     const double width = sqrt(20.0);
     const double mass = sqrt(3.14159265358979) / (2 * width) * (erf(0.7 * width) + erf(0.3 * width));
     const double exact = 0.3 * mass + (exp(-1.8) - exp(-9.8)) / 40;

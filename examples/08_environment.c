@@ -1,6 +1,6 @@
-/* An environment map, latitude-longitude, row 0 at +z: a grey sky with one texel of sun. The table draws directions in proportion
- * to the radiance. Known answer: the irradiance on a surface facing +z is the sum over texels of radiance times
- * (2 pi / W) (cos^2 t0 - cos^2 t1) / 2, t0 and t1 being the polar angles of the texel's upper and lower edge. */
+/* An environment map, latitude-longitude, row 0 at +z: a grey sky with one texel of sun. The table draws directions in
+ * proportion to the radiance. Known answer: the irradiance on a surface facing +z is the sum over texels of radiance
+ * times (2 pi / W) (cos^2 t0 - cos^2 t1) / 2, t0 and t1 being the polar angles of the texel's upper and lower edge. */
 #include "mcsample.h"
 #include <math.h>
 #include <stdio.h>
@@ -43,5 +43,6 @@ int main(void) {
     free(env);
     printf("irradiance: environment-sampled %.4f +- %.4f, cosine-sampled %.4f +- %.4f, exact %.4f\n", table.mean,
            mcs_stat_error(&table), cosine.mean, mcs_stat_error(&cosine), exact);
-    return !(fabs(table.mean - exact) <= 5 * mcs_stat_error(&table)) || !(fabs(cosine.mean - exact) <= 5 * mcs_stat_error(&cosine));
+    return !(fabs(table.mean - exact) <= 5 * mcs_stat_error(&table)) ||
+           !(fabs(cosine.mean - exact) <= 5 * mcs_stat_error(&cosine));
 }

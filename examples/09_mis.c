@@ -1,6 +1,7 @@
-/* Multiple importance sampling: a matte surface under a dim sky and a small bright sun at the zenith. Cosine sampling rarely hits
- * the sun; sampling the sun's cone never sees the sky. One sample of each, weighted by the power heuristic, has both.
- * Irradiance / pi, exactly: sky (1 - s) + sun s with s = sin^2 of the sun's radius = k (2 - k), k = 1 - cos(radius). */
+/* Multiple importance sampling: a matte surface under a dim sky and a small bright sun at the zenith. Cosine sampling
+ * rarely hits the sun; sampling the sun's cone never sees the sky. One sample of each, weighted by the power heuristic,
+ * has both. Irradiance / pi, exactly: sky (1 - s) + sun s with s = sin^2 of the sun's radius = k (2 - k), k = 1 -
+ * cos(radius). */
 #include "mcsample.h"
 #include <math.h>
 #include <stdio.h>
@@ -32,5 +33,6 @@ int main(void) {
     }
     printf("cosine alone  %.5f +- %.5f, exact %.5f\n", cosine.mean, mcs_stat_error(&cosine), exact);
     printf("both, MIS     %.5f +- %.5f, exact %.5f\n", mis.mean, mcs_stat_error(&mis), exact);
-    return !(fabs(mis.mean - exact) <= 5 * mcs_stat_error(&mis)) || !(fabs(cosine.mean - exact) <= 5 * mcs_stat_error(&cosine));
+    return !(fabs(mis.mean - exact) <= 5 * mcs_stat_error(&mis)) ||
+           !(fabs(cosine.mean - exact) <= 5 * mcs_stat_error(&cosine));
 }

@@ -1,5 +1,6 @@
-/* Arrays: the _n forms take one array per coordinate, any n and any alignment, and use the widest vectors this processor has.
- * An output that is not wanted is NULL; an output may be the input array. Here: cosine-distributed directions, mean z = 2/3. */
+/* Arrays: the _n forms take one array per coordinate, any n and any alignment, and use the widest vectors this
+ * processor has. An output that is not wanted is NULL; an output may be the input array. Here: cosine-distributed
+ * directions, mean z = 2/3. */
 #include "mcsample.h"
 #include <math.h>
 #include <stdio.h>

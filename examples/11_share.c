@@ -1,5 +1,6 @@
-/* An environment table holds no pointers: written to a file and mapped, it serves any number of programs at once, without being
- * built again. mcs_env_check says whether what was mapped is a table of this version and byte order, and all of it. */
+/* An environment table holds no pointers: written to a file and mapped, it serves any number of programs at once,
+ * without being built again. mcs_env_check says whether what was mapped is a table of this version and byte order, and
+ * all of it. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200809L /* fileno, mmap */
 #include <sys/mman.h>
@@ -57,8 +58,10 @@ int main(void) {
         const float u2 = mcs_pcg32_float(&rng);
         const mcs_texel a = mcs_env_sample(built, u1, u2);
         const mcs_texel b = mcs_env_sample(shared, u1, u2);
-        differ += !(a.w.x == b.w.x && a.w.y == b.w.y && a.w.z == b.w.z && a.pdf == b.pdf && a.col == b.col && a.row == b.row);
+        differ +=
+            !(a.w.x == b.w.x && a.w.y == b.w.y && a.w.z == b.w.z && a.pdf == b.pdf && a.col == b.col && a.row == b.row);
     }
-    printf("%zu bytes: check %d, %d of %d samples differ; cut short: %d; no table: %d\n", bytes, whole, differ, draws, cut, other);
+    printf("%zu bytes: check %d, %d of %d samples differ; cut short: %d; no table: %d\n", bytes, whole, differ, draws,
+           cut, other);
     return !(whole == MCS_OK && differ == 0 && cut == MCS_ERR_MEMORY && other == MCS_ERR_FORMAT);
 }

@@ -1,6 +1,7 @@
-/* Product sampling: directions drawn in proportion, nearly, to radiance times cosine, with a table for the one point (prepared), or
- * without (one-shot). The map is that of 08_environment.c, a grey sky with one texel of sun, seen by a matte surface that faces +z;
- * the known answer is the same: the sum over texels of radiance times (2 pi / W) (cos^2 t0 - cos^2 t1) / 2. */
+/* Product sampling: directions drawn in proportion, nearly, to radiance times cosine, with a table for the one point
+ * (prepared), or without (one-shot). The map is that of 08_environment.c, a grey sky with one texel of sun, seen by a
+ * matte surface that faces +z; the known answer is the same: the sum over texels of radiance times (2 pi / W) (cos^2 t0
+ * - cos^2 t1) / 2. */
 #include "mcsample.h"
 #include <math.h>
 #include <stdio.h>
@@ -59,7 +60,8 @@ int main(void) {
     free(tiles);
     free(point);
     printf("irradiance: map %.4f +- %.4f, product %.4f +- %.4f, one-shot %.4f +- %.4f, exact %.4f\n", plain.mean,
-           mcs_stat_error(&plain), prepared.mean, mcs_stat_error(&prepared), oneshot.mean, mcs_stat_error(&oneshot), exact);
+           mcs_stat_error(&plain), prepared.mean, mcs_stat_error(&prepared), oneshot.mean, mcs_stat_error(&oneshot),
+           exact);
     return !(fabs(prepared.mean - exact) <= 5 * mcs_stat_error(&prepared)) ||
            !(fabs(oneshot.mean - exact) <= 5 * mcs_stat_error(&oneshot));
 }

@@ -6,23 +6,26 @@
  *     hdr_color(&p, (size_t)row * p.w + col, rgb);
  *     free(p.pixel);
  *
- * A pixel has three mantissas of 8 bits and one exponent (Ward, "Real Pixels", Graphics Gems II, 1991). Radiance's writer truncates
- * the mantissas, as most others do, and its reader adds one half to them. So it is here: the mean error of a channel is zero.
- * Without the half it would be half a step, and a step is 1 in 128 to 256 of the brightest channel of the pixel.
+ * A pixel has three mantissas of 8 bits and one exponent (Ward, "Real Pixels", Graphics Gems II, 1991). Radiance's
+ * writer truncates the mantissas, as most others do, and its reader adds one half to them. So it is here: the mean
+ * error of a channel is zero. Without the half it would be half a step, and a step is 1 in 128 to 256 of the brightest
+ * channel of the pixel.
  *
  * The reader takes what Radiance's own takes (its common/header.c, resolu.c and color.c have the rules):
  *
- *   lines        end with LF or CRLF; the first one usually is #?RADIANCE, or #? with another name; an empty one ends the header
+ *   lines        end with LF or CRLF; the first one usually is #?RADIANCE, or #? with another name; an empty one ends
+ *                the header
  *   FORMAT       32-bit_rle_rgbe, which is also meant where there is no such line, or 32-bit_rle_xyze
- *   EXPOSURE     has been multiplied into the pixels, several of them one after the other; so has COLORCORR, channel by channel.
- *                Both are divided out again
- *   PRIMARIES    are the chromaticities x, y of red, green, blue and white; colours become those of Rec. 709, white becomes
- *                (1, 1, 1), what lies outside of the gamut is clipped. Without this line RGB is taken for that of Rec. 709.
- *                The white of XYZ is (1, 1, 1), as Radiance has it, if there is no such line
- *   resolution   all eight orientations; pixels are put in the order of -Y h +X w, from the top left corner along the rows
+ *   EXPOSURE     has been multiplied into the pixels, several of them one after the other; so has COLORCORR, channel by
+ *                channel. Both are divided out again
+ *   PRIMARIES    are the chromaticities x, y of red, green, blue and white; colours become those of Rec. 709, white
+ *                becomes (1, 1, 1), what lies outside of the gamut is clipped. Without this line RGB is taken for that
+ *                of Rec. 709. The white of XYZ is (1, 1, 1), as Radiance has it, if there is no such line
+ *   resolution   all eight orientations; pixels are put in the order of -Y h +X w, row by row from the top left
  *   scan lines   flat, with runs of whole pixels, or with runs of each channel
  *
- * No file, damaged or hostile, does more than to leave a sentence in `fault`. Memory grows with what has been decoded. */
+ * No file, damaged or hostile, does more than to leave a sentence in `fault`. Memory grows with what has been decoded.
+ */
 #ifndef HDR_H
 #define HDR_H
 #include <errno.h>
@@ -37,7 +40,8 @@
 #define HDR_REALLOC realloc
 #endif
 #define HDR_PIXELS (1L << 27) /* The most that are read: 512 MiB. */
-#define HDR_MOST 0x1p60f      /* Brighter channels are read as this, so that products with them stay in the range of a float. */
+#define HDR_MOST \
+    0x1p60f /* Brighter channels are read as this, so that products with them stay in the range of a float. */
 
 typedef struct {
     unsigned char c[4]; /* As in the file: three mantissas, then the exponent, which is 0 for black. */
@@ -81,7 +85,8 @@ static inline void hdr_color(const hdr_picture *p, size_t i, float rgb[3]) {
 
 /* ---- Writing ---- */
 
-/* Negative channels and NaN become 0. Multiplying by a power of two is exact, so no mantissa can be rounded up to 256. */
+/* Negative channels and NaN become 0. Multiplying by a power of two is exact, so no mantissa can be rounded up to 256.
+ */
 static inline hdr_pixel hdr_encode(const float rgb[3]) {
     const float most = 0x1.fep126f; /* 255 with the highest exponent */
     hdr_pixel p = {{0, 0, 0, 0}};
@@ -134,7 +139,8 @@ typedef struct {
 static inline hdr_matrix hdr_product(hdr_matrix a, hdr_matrix b) {
     hdr_matrix product;
     for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) product.m[i][k] = a.m[i][0] * b.m[0][k] + a.m[i][1] * b.m[1][k] + a.m[i][2] * b.m[2][k];
+        for (int k = 0; k < 3; k++)
+            product.m[i][k] = a.m[i][0] * b.m[0][k] + a.m[i][1] * b.m[1][k] + a.m[i][2] * b.m[2][k];
     return product;
 }
 
@@ -167,8 +173,9 @@ static inline void hdr_white(const double xy[2], double out[3]) {
     out[2] = (1 - xy[0] - xy[1]) / xy[1];
 }
 
-/* From RGB to XYZ: each primary as strong as it takes to make (1, 1, 1) white. Returns 0 where the primaries span no triangle that
- * their four or so digits could tell from a line, and where white lies outside of it: then a strength is not positive. */
+/* From RGB to XYZ: each primary as strong as it takes to make (1, 1, 1) white. Returns 0 where the primaries span no
+ * triangle that their four or so digits could tell from a line, and where white lies outside of it: then a strength is
+ * not positive. */
 static inline int hdr_to_xyz(const double chroma[8], hdr_matrix *out) {
     const double *r = chroma;
     const double *g = chroma + 2;
@@ -192,8 +199,8 @@ static inline int hdr_to_xyz(const double chroma[8], hdr_matrix *out) {
     return 1;
 }
 
-/* From the file's components to Rec. 709. White is adapted as the eye's cones would adapt to it, by Bradford's matrix (Lam,
- * "Metamerism and colour constancy", thesis, University of Bradford, 1985). */
+/* From the file's components to Rec. 709. White is adapted as the eye's cones would adapt to it, by Bradford's matrix
+ * (Lam, "Metamerism and colour constancy", thesis, University of Bradford, 1985). */
 static inline int hdr_conversion(hdr_picture *p, const hdr_header *header) {
     static const double rec709[8] = {0.640, 0.330, 0.300, 0.600, 0.150, 0.060, 0.3127, 0.3290};
     static const hdr_matrix cones = {{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
@@ -222,7 +229,8 @@ static inline int hdr_conversion(hdr_picture *p, const hdr_header *header) {
     }
     for (int k = 0; k < 3; k++) {
         if (!(header->scale[k] >= 1e-30 && header->scale[k] <= 1e30))
-            return hdr_fail(p, "the EXPOSURE and COLORCORR lines multiply to %g, from which no radiance follows", header->scale[k]);
+            return hdr_fail(p, "the EXPOSURE and COLORCORR lines multiply to %g, from which no radiance follows",
+                            header->scale[k]);
         if (header->scale[k] != 1) p->converts = 1;
         for (int i = 0; i < 3; i++) p->matrix.m[i][k] /= header->scale[k];
     }
@@ -233,7 +241,8 @@ static inline int hdr_conversion(hdr_picture *p, const hdr_header *header) {
 
 enum { HDR_LINE = 2048, HDR_END = -1 };
 
-/* One line without its end; what does not fit is dropped. Returns its length, or HDR_END where the file ends before its end. */
+/* One line without its end; what does not fit is dropped. Returns its length, or HDR_END where the file ends before its
+ * end. */
 static inline int hdr_line(FILE *f, char line[HDR_LINE]) {
     int n = 0;
     int c;
@@ -269,9 +278,11 @@ static inline int hdr_header_line(hdr_picture *p, hdr_header *header, const char
         const int n = (int)strcspn(value, " \t\r");
         header->xyz = n == 15 && !strncmp(value, "32-bit_rle_xyze", 15);
         if (n > 0 && !header->xyz && !(n == 15 && !strncmp(value, "32-bit_rle_rgbe", 15)))
-            return hdr_fail(p, "the FORMAT is '%.*s'; 32-bit_rle_rgbe and 32-bit_rle_xyze are read", n < 60 ? n : 60, value);
+            return hdr_fail(p, "the FORMAT is '%.*s'; 32-bit_rle_rgbe and 32-bit_rle_xyze are read", n < 60 ? n : 60,
+                            value);
     } else if ((value = hdr_setting(line, "EXPOSURE=")) != NULL) {
-        if (!hdr_numbers(value, 1, number) || number[0] <= 0) return hdr_fail(p, "an EXPOSURE line has no positive number");
+        if (!hdr_numbers(value, 1, number) || number[0] <= 0)
+            return hdr_fail(p, "an EXPOSURE line has no positive number");
         for (int k = 0; k < 3; k++) header->scale[k] *= number[0];
     } else if ((value = hdr_setting(line, "COLORCORR=")) != NULL) {
         if (!hdr_numbers(value, 3, number) || number[0] <= 0 || number[1] <= 0 || number[2] <= 0)
@@ -292,7 +303,8 @@ static inline int hdr_resolution(hdr_picture *p, hdr_header *header, const char 
     const long w = strtol(x + 1, NULL, 10);
     const long h = strtol(y + 1, NULL, 10);
     if (w <= 0 || h <= 0) return hdr_fail(p, "the resolution line '%.60s' does not have two positive numbers", line);
-    if (w > HDR_PIXELS / h) return hdr_fail(p, "%ld x %ld pixels are more than the %ld that are read", w, h, HDR_PIXELS);
+    if (w > HDR_PIXELS / h)
+        return hdr_fail(p, "%ld x %ld pixels are more than the %ld that are read", w, h, HDR_PIXELS);
     header->columns = x < y;
     header->from_right = x > line && x[-1] == '-';
     header->from_bottom = !(y > line && y[-1] == '-');
@@ -331,14 +343,15 @@ static inline int hdr_reserve(hdr_picture *p, size_t n) {
     while (room < need) room *= 2;
     if (room > all) room = all;
     hdr_pixel *pixel = (hdr_pixel *)HDR_REALLOC(p->pixel, room * sizeof *pixel);
-    if (!pixel) return hdr_fail(p, "there is not enough memory for %lu x %lu pixels", (unsigned long)p->w, (unsigned long)p->h);
+    if (!pixel)
+        return hdr_fail(p, "there is not enough memory for %lu x %lu pixels", (unsigned long)p->w, (unsigned long)p->h);
     p->pixel = pixel;
     p->room = room;
     return 1;
 }
 
-/* A scan line whose four channels are coded one after the other. A byte n up to 128 announces n bytes, one above a run of n - 128
- * that are alike. */
+/* A scan line whose four channels are coded one after the other. A byte n up to 128 announces n bytes, one above a run
+ * of n - 128 that are alike. */
 static inline int hdr_read_channels(hdr_picture *p, FILE *f, uint32_t length, uint32_t number, uint32_t lines) {
     if (!hdr_reserve(p, length)) return 0;
     hdr_pixel *line = p->pixel + p->done;
@@ -362,9 +375,11 @@ static inline int hdr_read_channels(hdr_picture *p, FILE *f, uint32_t length, ui
     return 1;
 }
 
-/* A scan line of whole pixels, of which `first` has been read. (1, 1, 1, n) repeats the pixel before it n times; several in a row
- * hold the bytes of n, the lowest first. A run ends with the line even if n is larger, as in Radiance. */
-static inline int hdr_read_pixels(hdr_picture *p, FILE *f, hdr_pixel first, uint32_t length, uint32_t number, uint32_t lines) {
+/* A scan line of whole pixels, of which `first` has been read. (1, 1, 1, n) repeats the pixel before it n times;
+ * several in a row hold the bytes of n, the lowest first. A run ends with the line even if n is larger, as in Radiance.
+ */
+static inline int hdr_read_pixels(hdr_picture *p, FILE *f, hdr_pixel first, uint32_t length, uint32_t number,
+                                  uint32_t lines) {
     hdr_pixel pixel = first;
     uint32_t left = length;
     uint32_t shift = 0;
@@ -391,12 +406,13 @@ static inline int hdr_read_scanline(hdr_picture *p, FILE *f, uint32_t length, ui
     hdr_pixel first;
     if (fread(first.c, 1, 4, f) != 4) return hdr_cut(p, f, number, lines);
     const uint32_t coded = (uint32_t)first.c[2] << 8 | first.c[3];
-    if (first.c[0] != 2 || first.c[1] != 2 || first.c[2] > 127) return hdr_read_pixels(p, f, first, length, number, lines);
+    if (first.c[0] != 2 || first.c[1] != 2 || first.c[2] > 127)
+        return hdr_read_pixels(p, f, first, length, number, lines);
     if (coded == length) return hdr_read_channels(p, f, length, number, lines);
     if (length < 8 || length > 32767)
         return hdr_read_pixels(p, f, first, length, number, lines); /* too short or long to be coded */
-    return hdr_fail(p, "scan line %lu is coded for a width of %lu instead of %lu", (unsigned long)number, (unsigned long)coded,
-                    (unsigned long)length);
+    return hdr_fail(p, "scan line %lu is coded for a width of %lu instead of %lu", (unsigned long)number,
+                    (unsigned long)coded, (unsigned long)length);
 }
 
 /* From the order of the file to that of -Y h +X w. */
@@ -405,7 +421,8 @@ static inline int hdr_turn(hdr_picture *p, const hdr_header *header) {
     const size_t h = p->h;
     if (!header->columns && !header->from_right && !header->from_bottom) return 1;
     hdr_pixel *turned = (hdr_pixel *)HDR_REALLOC(NULL, w * h * sizeof *turned);
-    if (!turned) return hdr_fail(p, "there is not enough memory to turn %lu x %lu pixels", (unsigned long)w, (unsigned long)h);
+    if (!turned)
+        return hdr_fail(p, "there is not enough memory to turn %lu x %lu pixels", (unsigned long)w, (unsigned long)h);
     for (size_t y = 0; y < h; y++) {
         const size_t row = header->from_bottom ? h - 1 - y : y;
         for (size_t x = 0; x < w; x++) {
@@ -426,7 +443,8 @@ static inline int hdr_read_file(hdr_picture *p, FILE *f) {
     const uint32_t length = header.columns ? p->h : p->w;
     const uint32_t lines = header.columns ? p->w : p->h;
     for (uint32_t i = 0; ok && i < lines; i++) ok = hdr_read_scanline(p, f, length, i + 1, lines);
-    for (size_t i = 0; ok && i < p->done; i++) { /* Black with an exponent is black: the half would make a faint grey of it. */
+    for (size_t i = 0; ok && i < p->done;
+         i++) { /* Black with an exponent is black: the half would make a faint grey of it. */
         unsigned char *c = p->pixel[i].c;
         if (!(c[0] | c[1] | c[2])) c[3] = 0;
     }

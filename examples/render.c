@@ -1,14 +1,14 @@
 /* render.c - the main example of mcsample.h: how a renderer uses it.
  *
- * A row of spheres, one per BRDF, on a matte ground, lit by a latitude-longitude environment map: direct illumination with
- * visibility, estimated by uniform, cosine, BRDF, environment, multiple importance or product sampling. Writes PNG and Radiance
- * .hdr pictures and prints what each strategy cost and how far its mean may be off.
+ * A row of spheres, one per BRDF, on a matte ground, lit by a latitude-longitude environment map: direct illumination
+ * with visibility, estimated by uniform, cosine, BRDF, environment, multiple importance or product sampling. Writes PNG
+ * and Radiance .hdr pictures and prints what each strategy cost and how far its mean may be off.
  *
  *     cc -O2 -std=c99 -I. -fopenmp examples/render.c -o render -lm       (-fopenmp is optional: without it, one thread)
  *     ./render --strategy all sunrise.hdr
  *
- * World: z up, lengths in sphere radii. Shading happens in the local frame of mcsample.h: normal on +z, wo to the eye, wi to
- * the light. Colours are linear RGB with the primaries of sRGB, kept in a vec3.
+ * World: z up, lengths in sphere radii. Shading happens in the local frame of mcsample.h: normal on +z, wo to the eye,
+ * wi to the light. Colours are linear RGB with the primaries of sRGB, kept in a vec3.
  */
 #define _POSIX_C_SOURCE 200809L /* clock_gettime, fileno, isatty */
 #include <errno.h>
@@ -98,8 +98,8 @@ static vec3 texel_direction(const environment *e, uint32_t x, uint32_t y) {
     return vec(sinf(theta) * cosf(phi), sinf(theta) * sinf(phi), cosf(theta));
 }
 
-/* A clear late afternoon, for a run without a map: blue sky, pale horizon, brown ground, and a sun four degrees wide, since the
- * true half degree would be smaller than a texel. */
+/* A clear late afternoon, for a run without a map: blue sky, pale horizon, brown ground, and a sun four degrees wide,
+ * since the true half degree would be smaller than a texel. */
 static int map_sky(environment *e, const char *name) {
     const vec3 zenith = {0.15f, 0.29f, 0.66f};
     const vec3 horizon = {0.95f, 0.98f, 1.06f};
@@ -132,15 +132,15 @@ static int map_sky(environment *e, const char *name) {
     return 1;
 }
 
-/* What the camera wants to know of the map: how bright it makes the ground, and where its main light stands, which is taken as the
- * direction of the squared luminance of the upper half. */
+/* What the camera wants to know of the map: how bright it makes the ground, and where its main light stands, which is
+ * taken as the direction of the squared luminance of the upper half. */
 static void map_survey(environment *e) {
     double lx = 0;
     double ly = 0;
     double irradiance = 0;
     for (unsigned y = 0; y < e->map.h / 2; y++) {
-        const float area =
-            2 * PI / (float)e->map.w * (cosf(PI * (float)y / (float)e->map.h) - cosf(PI * (float)(y + 1) / (float)e->map.h));
+        const float area = 2 * PI / (float)e->map.w *
+                           (cosf(PI * (float)y / (float)e->map.h) - cosf(PI * (float)(y + 1) / (float)e->map.h));
         for (unsigned x = 0; x < e->map.w; x++) {
             const vec3 d = mcs_to_world(&e->table->frame, texel_direction(e, x, y));
             const double l = luminance(radiance_at(e, x, y));
@@ -168,13 +168,16 @@ static int environment_make(environment *e, const char *map) {
         free(pixel);
         return complain(name, "not enough memory for the sampling table");
     }
-    for (size_t i = 0; i < (size_t)w * h; i++) pixel[i] = luminance(radiance_at(e, (unsigned)(i % w), (unsigned)(i / w)));
+    for (size_t i = 0; i < (size_t)w * h; i++)
+        pixel[i] = luminance(radiance_at(e, (unsigned)(i % w), (unsigned)(i / w)));
     const mcs_image image = mcs_image_make(pixel, w, h, 1);
     int status = mcs_env_build(e->table, bytes, &image);
     free(pixel);
     if (status != MCS_OK) return complain(name, "no sampling table (status %d)", status);
     if (!(e->table->total > 0)) return complain(name, "the map is black: there is nothing to light the scene with");
-    if (map) e->table->frame.t = vec(0, -1, 0); /* columns of a panorama run clockwise seen from above, azimuth the other way */
+    if (map)
+        e->table->frame.t =
+            vec(0, -1, 0); /* columns of a panorama run clockwise seen from above, azimuth the other way */
     map_survey(e);
     bytes = mcs_tiles_bytes(e->table, TILES);
     e->tiles = malloc(bytes);
@@ -198,7 +201,7 @@ typedef struct {
     vec3 base;     /* albedo of the matte base */
     vec3 specular; /* reflectance of the lobe, for microfacets at normal incidence */
     float p_lobe;  /* probability that BRDF sampling takes the lobe: 0 matte, 1 no base */
-    float share;   /* BRDF samples of MIS for each environment sample: few where the lobe is so wide that they find nothing new */
+    float share; /* BRDF samples of MIS for each environment sample: few where the lobe is so wide that all is found */
 
     float alpha_x, alpha_y; /* as product sampling is told */
     mcs_profile profile;
@@ -234,7 +237,8 @@ static float lobe_eval(const material *m, vec3 wo, vec3 wi) {
     }
 }
 
-/* Fresnel's factor, which the lobes of mcsample.h leave to the caller. Phong has no half-vector and a constant reflectance. */
+/* Fresnel's factor, which the lobes of mcsample.h leave to the caller. Phong has no half-vector and a constant
+ * reflectance. */
 static vec3 fresnel(const material *m, vec3 wo, vec3 wi) {
     const float c = mcs_cos_d(wo, wi);
     if (m->kind == PHONG) return m->specular;
@@ -314,7 +318,8 @@ static material material_make(lobe_kind kind, float p_lobe, vec3 base, vec3 spec
     m.alpha_y = b;
     m.profile = kind == PHONG ? MCS_PROFILE_PHONG : MCS_PROFILE_GGX;
     if (kind == WARD || kind == ASHIKHMIN) m.profile = MCS_PROFILE_GAUSS;
-    if (kind == PHONG) m.alpha_x = m.alpha_y = sqrtf(0.5f / (a + 2)); /* about the mirror direction: half that of a half-vector */
+    if (kind == PHONG)
+        m.alpha_x = m.alpha_y = sqrtf(0.5f / (a + 2)); /* about the mirror direction: half that of a half-vector */
     if (kind == ASHIKHMIN) {
         m.alpha_x = sqrtf(2 / (a + 2));
         m.alpha_y = sqrtf(2 / (b + 2));
@@ -326,7 +331,8 @@ static material material_make(lobe_kind kind, float p_lobe, vec3 base, vec3 spec
     return m;
 }
 
-/* Seen with the main light of the map behind the camera at the left, where it models the spheres and stays out of the picture. */
+/* Seen with the main light of the map behind the camera at the left, where it models the spheres and stays out of the
+ * picture. */
 static scene scene_make(unsigned w, unsigned h, float main_light) {
     const vec3 none = {0, 0, 0};
     const vec3 gloss = {0.05f, 0.05f, 0.05f};
@@ -342,7 +348,8 @@ static scene scene_make(unsigned w, unsigned h, float main_light) {
     s.ahead = vec(cosf(azimuth), sinf(azimuth), 0);
     s.side = vec(s.ahead.y, -s.ahead.x, 0);
     for (int i = 0; i < SPHERES; i++)
-        s.center[i] = add(vec(0, 0, 1), add(scale(1.82f * (float)i - 6.24f, s.side), scale(i % 2 ? 0.75f : -0.75f, s.ahead)));
+        s.center[i] =
+            add(vec(0, 0, 1), add(scale(1.82f * (float)i - 6.24f, s.side), scale(i % 2 ? 0.75f : -0.75f, s.ahead)));
     s.of[0] = material_make(MATTE, 0, vec(0.78f, 0.36f, 0.18f), none, 0, 0);
     s.of[1] = material_make(PHONG, 0.5f, vec(0.52f, 0.05f, 0.04f), vec(0.14f, 0.14f, 0.14f), 120, 0);
     s.of[2] = material_make(WARD, 1, none, copper, 0.18f, 0.18f);
@@ -368,8 +375,8 @@ static float hit_sphere(const scene *s, int i, vec3 p, vec3 w) {
     return b > 0 && disc > 0 ? b - sqrtf(disc) : 0;
 }
 
-/* From a point on an object in the direction w above its surface. All objects are convex, so none shadows itself, and everything
- * stands above the ground, so the ground stops exactly the directions that point down. */
+/* From a point on an object in the direction w above its surface. All objects are convex, so none shadows itself, and
+ * everything stands above the ground, so the ground stops exactly the directions that point down. */
 static int visible(const scene *s, vec3 p, vec3 w, int object) {
     if (w.z <= 0) return 0;
     for (int i = 0; i < SPHERES; i++)
@@ -377,7 +384,8 @@ static int visible(const scene *s, vec3 p, vec3 w, int object) {
     return 1;
 }
 
-/* Spheres get tangents along their circles of latitude, as if turned on a lathe: the anisotropic ones need a direction. */
+/* Spheres get tangents along their circles of latitude, as if turned on a lathe: the anisotropic ones need a direction.
+ */
 static mcs_frame sphere_frame(vec3 n) {
     if (n.x * n.x + n.y * n.y < 1e-8f) return mcs_frame_make(n);
     mcs_frame f;
@@ -420,8 +428,8 @@ static int intersect(const scene *s, vec3 p, vec3 w, surface *x) {
 typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, PRODUCT, STRATEGIES } strategy;
 static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine", "brdf", "env", "mis", "product"};
 
-/* With mis, one half of a multi-sample estimator with the power heuristic (Veach and Guibas, "Optimally combining sampling
- * techniques", 1995); without, an estimator by itself. Likewise the environment. */
+/* With mis, one half of a multi-sample estimator with the power heuristic (Veach and Guibas, "Optimally combining
+ * sampling techniques", 1995); without, an estimator by itself. Likewise the environment. */
 static vec3 sample_brdf(const scene *s, const environment *e, const surface *x, int mis, mcs_pcg32 *rng) {
     const float u0 = mcs_pcg32_float(rng);
     const float u1 = mcs_pcg32_float(rng);
@@ -518,8 +526,8 @@ static vec3 sample_oneshot(const scene *s, const environment *e, const surface *
 }
 
 /* The mean of so many estimates; *drawn counts the light samples. */
-static vec3 direct(const scene *s, const environment *e, const surface *x, strategy how, uint32_t lights, mcs_pcg32 *rng,
-                   uint32_t *drawn) {
+static vec3 direct(const scene *s, const environment *e, const surface *x, strategy how, uint32_t lights,
+                   mcs_pcg32 *rng, uint32_t *drawn) {
     vec3 sum = {0, 0, 0};
     *drawn += lights;
     if (how == PRODUCT && lights > 1) return scale(1 / (float)lights, sample_product(s, e, x, lights, rng));
@@ -594,15 +602,18 @@ static void progress_row(progress *p) {
     }
 }
 
-static void render_row(const options *o, const scene *s, const environment *e, strategy how, uint32_t y, uint32_t n, pixel *row) {
+static void render_row(const options *o, const scene *s, const environment *e, strategy how, uint32_t y, uint32_t n,
+                       pixel *row) {
     for (uint32_t x = 0; x < o->w; x++) {
         pixel *p = row + x;
         for (uint32_t i = 0; i < n; i++) {
-            const float px = 2 * ((float)x + mcs_pcg32_float(&p->rng)) / (float)o->w - 1; /* a box filter: anywhere in the pixel */
+            const float px =
+                2 * ((float)x + mcs_pcg32_float(&p->rng)) / (float)o->w - 1; /* a box filter: anywhere in the pixel */
             const float py = 1 - 2 * ((float)y + mcs_pcg32_float(&p->rng)) / (float)o->h;
             const vec3 w = unit(add(s->forward, add(scale(px, s->right), scale(py, s->up))));
             surface at;
-            const vec3 c = intersect(s, s->eye, w, &at) ? direct(s, e, &at, how, o->lights, &p->rng, &p->drawn) : radiance(e, w);
+            const vec3 c =
+                intersect(s, s->eye, w, &at) ? direct(s, e, &at, how, o->lights, &p->rng, &p->drawn) : radiance(e, w);
             p->object = p->luminance.n > 0 && at.object != p->object ? NO_OBJECT : at.object;
             p->sum = add(p->sum, c);
             mcs_stat_add(&p->luminance, luminance(c));
@@ -610,9 +621,10 @@ static void render_row(const options *o, const scene *s, const environment *e, s
     }
 }
 
-/* The pixels are strata of equal size, each with its own independent samples: the variance of the mean of the picture is the sum
- * of the variances of the pixel means over the square of their number. What differs between pixels is picture, not error. As with
- * any estimate: where samples hardly ever find a small bright light, both the mean and its error come out low until they do. */
+/* The pixels are strata of equal size, each with its own independent samples: the variance of the mean of the picture
+ * is the sum of the variances of the pixel means over the square of their number. What differs between pixels is
+ * picture, not error. As with any estimate: where samples hardly ever find a small bright light, both the mean and its
+ * error come out low until they do. */
 static void picture_statistics(const pixel *p, size_t n, outcome *r) {
     double variance = 0;
     double count[SPHERES + 1] = {0};
@@ -688,7 +700,8 @@ static int hdr_write(const char *name, const pixel *image, unsigned w, unsigned 
     return file_close(f, name);
 }
 
-/* Exposure, a filmic curve without hard clipping (Narkowicz, "ACES filmic tone mapping curve", 2015), sRGB coding, 8 bits. */
+/* Exposure, a filmic curve without hard clipping (Narkowicz, "ACES filmic tone mapping curve", 2015), sRGB coding, 8
+ * bits. */
 static unsigned char display(float linear, float exposure) {
     const float x = fminf(linear * exposure, 1e4f);
     const float y = fminf(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1);
@@ -697,8 +710,8 @@ static unsigned char display(float linear, float exposure) {
 
 #define SYMBOLS 257 /* 256 bytes and the end of the block */
 
-/* Lengths of a prefix code for n bytes counted: Shannon's lengths, then shortened until the code is complete, as deflate wants it.
- * No count is taken as less than n / 8192, which keeps the lengths at 14 bits and below. */
+/* Lengths of a prefix code for n bytes counted: Shannon's lengths, then shortened until the code is complete, as
+ * deflate wants it. No count is taken as less than n / 8192, which keeps the lengths at 14 bits and below. */
 static void code_lengths(const uint32_t *count, size_t n, unsigned char *length) {
     const uint64_t total = n + SYMBOLS * (n / 8192 + 1);
     uint32_t used = 0; /* sum of 2^(15 - length): 2^15 when complete */
@@ -737,8 +750,9 @@ static unsigned char *put_u32(unsigned char *at, uint32_t v) {
     return at;
 }
 
-/* zlib stream (RFC 1950) of one deflate block (RFC 1951) with its own prefix code and no matches: a rendered picture has hardly
- * any repetition to match, but its filtered bytes are far from evenly spread. `out` has room for 2 n + 1024 bytes. */
+/* zlib stream (RFC 1950) of one deflate block (RFC 1951) with its own prefix code and no matches: a rendered picture
+ * has hardly any repetition to match, but its filtered bytes are far from evenly spread. `out` has room for 2 n + 1024
+ * bytes. */
 static size_t zlib_pack(const unsigned char *data, size_t n, unsigned char *out) {
     uint32_t count[SYMBOLS] = {0};
     uint32_t next = 0;
@@ -760,8 +774,9 @@ static size_t zlib_pack(const unsigned char *data, size_t n, unsigned char *out)
     put_bits(&b, 0x0178, 16);    /* zlib: deflate, 32 KiB window */
     put_bits(&b, 1 | 2 << 1, 3); /* the last block; its own codes */
     put_bits(&b, 0, 10);
-    put_bits(&b, 15, 4);                                            /* 257 byte codes, 1 distance code, all 19 length codes: */
-    for (size_t i = 0; i < 19; i++) put_bits(&b, i < 3 ? 0 : 4, 3); /* 16-18 unused, so that 0-15 are themselves in 4 bits */
+    put_bits(&b, 15, 4); /* 257 byte codes, 1 distance code, all 19 length codes: */
+    for (size_t i = 0; i < 19; i++)
+        put_bits(&b, i < 3 ? 0 : 4, 3); /* 16-18 unused, so that 0-15 are themselves in 4 bits */
     for (size_t i = 0; i < SYMBOLS; i++) put_code(&b, length[i], 4);
     put_code(&b, 0, 4); /* no distances */
     for (size_t i = 0; i < n; i++) put_code(&b, code[data[i]], length[data[i]]);
@@ -804,7 +819,8 @@ static int png_write(const char *name, const pixel *image, unsigned w, unsigned 
             row[3 * x + 2] = display(c.z, exposure);
         }
         *out++ = 3;
-        for (size_t x = 0; x < stride; x++) out[x] = (unsigned char)(row[x] - ((x < 3 ? 0 : row[x - 3]) + above[x]) / 2);
+        for (size_t x = 0; x < stride; x++)
+            out[x] = (unsigned char)(row[x] - ((x < 3 ? 0 : row[x - 3]) + above[x]) / 2);
     }
     if (ok) {
         fwrite("\211PNG\r\n\032\n", 1, 8, f);
@@ -837,7 +853,8 @@ static char *picture_name(const options *o, strategy how, const char *extension)
 static int write_pictures(const options *o, strategy how, const environment *e, const pixel *image) {
     char *png = picture_name(o, how, ".png");
     char *hdr = picture_name(o, how, ".hdr");
-    const int ok = png && hdr && png_write(png, image, o->w, o->h, exposure_for(o, e)) && hdr_write(hdr, image, o->w, o->h);
+    const int ok =
+        png && hdr && png_write(png, image, o->w, o->h, exposure_for(o, e)) && hdr_write(hdr, image, o->w, o->h);
     free(png);
     free(hdr);
     return ok;
@@ -847,7 +864,8 @@ static int write_pictures(const options *o, strategy how, const environment *e, 
 static int can_write(const char *name) {
     struct stat status;
     const int exists = lstat(name, &status) == 0; /* if only as a link to nothing */
-    if (stat(name, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) return 1; /* a device or a pipe */
+    if (stat(name, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode))
+        return 1; /* a device or a pipe */
     FILE *f = fopen(name, "ab");
     if (!f) return complain(name, "cannot write: %s", strerror(errno));
     fclose(f);
@@ -870,7 +888,8 @@ static int can_write_pictures(const options *o) {
 
 /* ---- The command ---- */
 
-/* Sends what has been printed on its way: to a file or a pipe nothing would go before the end, and nothing at all after Ctrl-C. */
+/* Sends what has been printed on its way: to a file or a pipe nothing would go before the end, and nothing at all after
+ * Ctrl-C. */
 static int flush_output(void) {
     if (fflush(stdout) != 0 || ferror(stdout)) return complain("standard output", "cannot write: %s", strerror(errno));
     return 1;
@@ -880,7 +899,8 @@ static void usage(void) {
     fputs("usage: render [options] [map.hdr]     (--option value or --option=value)\n"
           "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
           "  --strategy LIST    uniform, cosine, brdf, env, mis, product, several with commas, or all (mis)\n"
-          "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384); 1 leaves the error unknown\n"
+          "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384); 1 leaves the "
+          "error unknown\n"
           "  --lights N         estimates of the light at each point that a sample sees (1)\n"
           "  --seconds T        stop each strategy after T seconds of processor time: pictures of equal cost\n"
           "  --error E          stop when the standard error of the mean of the picture is E times the mean\n"
@@ -888,7 +908,8 @@ static void usage(void) {
           "  --stops X          brighten the PNG by X stops from what suits the map (0)\n"
           "  --out PREFIX       write PREFIX-STRATEGY.png and PREFIX-STRATEGY.hdr (render)\n"
           "  --stack FILE       write all pictures into one PNG too, one below the other\n"
-          "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on it\n"
+          "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on "
+          "it\n"
           "  --seed N           another set of random numbers (1)\n"
           "  -h, --help         this text\n"
           "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
@@ -914,7 +935,8 @@ static int parse_name(const char *name, const char *text, const char **value) {
 
 static int parse_size(const char *text, options *o) {
     char more;
-    if (sscanf(text, "%6ux%6u%c", &o->w, &o->h, &more) != 2) return complain("--size", "'%s' is not WIDTHxHEIGHT", text);
+    if (sscanf(text, "%6ux%6u%c", &o->w, &o->h, &more) != 2)
+        return complain("--size", "'%s' is not WIDTHxHEIGHT", text);
     if (o->w - 1 < 16384 && o->h - 1 < 16384 && o->w * o->h <= 1u << 25) return 1;
     return complain("--size", "each side is from 1 to 16384, with at most %u pixels in all", 1u << 25);
 }
@@ -925,9 +947,12 @@ static int parse_strategies(const char *list, options *o) {
         const size_t n = strcspn(list, ",");
         int known = 0;
         for (int i = 0; i < STRATEGIES; i++)
-            if ((n == 3 && !strncmp(list, "all", 3)) || (n == strlen(strategy_name[i]) && !strncmp(list, strategy_name[i], n)))
+            if ((n == 3 && !strncmp(list, "all", 3)) ||
+                (n == strlen(strategy_name[i]) && !strncmp(list, strategy_name[i], n)))
                 known = o->wanted[i] = 1;
-        if (!known) return complain("--strategy", "'%.*s' is none of uniform, cosine, brdf, env, mis, product, all", (int)n, list);
+        if (!known)
+            return complain("--strategy", "'%.*s' is none of uniform, cosine, brdf, env, mis, product, all", (int)n,
+                            list);
         if (!list[n]) return 1;
         list += n + 1;
     }
@@ -951,9 +976,10 @@ static const struct {
     const char *name;
     double low, high; /* of numbers */
     int whole;
-} option_table[OPTIONS] = {{"--strategy", 0, 0, 0}, {"--size", 0, 0, 0},       {"--out", 0, 0, 0},          {"--stack", 0, 0, 0},
-                           {"--spp", 1, 1e6, 1},    {"--lights", 1, 4096, 1},  {"--seconds", 1e-3, 1e6, 0}, {"--error", 1e-7, 1, 0},
-                           {"--stops", -20, 20, 0}, {"--threads", 1, 1024, 1}, {"--seed", 0, 9e15, 1}};
+} option_table[OPTIONS] = {{"--strategy", 0, 0, 0},     {"--size", 0, 0, 0},     {"--out", 0, 0, 0},
+                           {"--stack", 0, 0, 0},        {"--spp", 1, 1e6, 1},    {"--lights", 1, 4096, 1},
+                           {"--seconds", 1e-3, 1e6, 0}, {"--error", 1e-7, 1, 0}, {"--stops", -20, 20, 0},
+                           {"--threads", 1, 1024, 1},   {"--seed", 0, 9e15, 1}};
 
 static int parse_number(option which, const char *text, double *value) {
     const double low = option_table[which].low;
@@ -962,7 +988,8 @@ static int parse_number(option which, const char *text, double *value) {
     errno = 0;
     char *end;
     *value = strtod(text, &end);
-    if (end != text && !*end && !errno && *value >= low && *value <= high && (!whole || *value == floor(*value))) return 1;
+    if (end != text && !*end && !errno && *value >= low && *value <= high && (!whole || *value == floor(*value)))
+        return 1;
     char from[64], to[64];
     return complain(option_table[which].name, "'%s' is not a %s from %s to %s", text, whole ? "whole number" : "number",
                     plain(low, from), plain(high, to));
@@ -1029,7 +1056,9 @@ static int parse_arguments(int argc, char **argv, options *o) {
     return 1;
 }
 
-static double efficiency(const outcome *r) { return r->error > 0 && r->cpu > 0 ? 1 / (r->error * r->error * r->cpu) : 0; }
+static double efficiency(const outcome *r) {
+    return r->error > 0 && r->cpu > 0 ? 1 / (r->error * r->error * r->cpu) : 0;
+}
 
 static void print_head(void) { puts("strategy  spp     samples    wall s   cpu s       mean  std error  efficiency"); }
 
@@ -1057,7 +1086,8 @@ static void print_comparison(const options *o, const outcome *result) {
 
 /* Over the pixels that show nothing but that object. */
 static void print_objects(const options *o, const outcome *result) {
-    static const char *const name[] = {"matte", "Phong", "Ward.18", "Ward ani", "GGX.06", "GGX.12", "GGX.40", "A.-S.", "ground"};
+    static const char *const name[] = {"matte",  "Phong",  "Ward.18", "Ward ani", "GGX.06",
+                                       "GGX.12", "GGX.40", "A.-S.",   "ground"};
     printf("\nmean squared error of a pixel x cpu s, over that of mis\nstrategy");
     for (int k = 0; k <= SPHERES; k++) printf(" %9s", name[k]);
     putchar('\n');
@@ -1091,8 +1121,8 @@ int main(int argc, char **argv) {
     int ok = image ? environment_make(&e, o.map) : complain("--size", "not enough memory for the picture");
     const scene s = scene_make(o.w, o.h, e.main_light);
     if (ok) {
-        printf("%s %u x %u, picture %u x %u, %d thread%s\n", o.map ? o.map : "built-in sky", e.map.w, e.map.h, o.w, o.h, o.threads,
-               o.threads > 1 ? "s" : "");
+        printf("%s %u x %u, picture %u x %u, %d thread%s\n", o.map ? o.map : "built-in sky", e.map.w, e.map.h, o.w, o.h,
+               o.threads, o.threads > 1 ? "s" : "");
         print_head();
         ok = flush_output();
     }
@@ -1110,8 +1140,8 @@ int main(int argc, char **argv) {
     char error[64];
     for (int i = 0; ok && i < STRATEGIES; i++)
         if (o.wanted[i] && o.error > 0 && !(result[i].error <= o.error * result[i].mean))
-            ok = complain(strategy_name[i], "error %s not reached with %u sample%s per pixel", plain(o.error, error), result[i].spp,
-                          result[i].spp > 1 ? "s" : "");
+            ok = complain(strategy_name[i], "error %s not reached with %u sample%s per pixel", plain(o.error, error),
+                          result[i].spp, result[i].spp > 1 ? "s" : "");
     free(image);
     free(e.map.pixel);
     free(e.table);

@@ -1,8 +1,8 @@
 /* One uniform shape for every sampler of mcsample.h, at one width.
  *
- * No include guard: registry.h includes this file with MCST_W = 1 (scalar) and, under MCST_WIDE, once more each for 4, 8 and 16;
- * with MCST_LINKED tests/shared does, and elsewhere the functions are declared already.
- * With W = MCST_W and every array in structure-of-arrays order (entry i of lane l is at i * W + l), a row's functions are
+ * No include guard: registry.h includes this file with MCST_W = 1 (scalar) and, under MCST_WIDE, once more each for 4,
+ * 8 and 16; with MCST_LINKED tests/shared does, and elsewhere the functions are declared already. With W = MCST_W and
+ * every array in structure-of-arrays order (entry i of lane l is at i * W + l), a row's functions are
  *
  *     sample(p, u1, u2, out)   p: 6 numbers (3 parameters, then wo); out: x, y, z, pdf, weight
  *     pdf(p, x, out)           x: 3 numbers, out: 1           invert(p, x, out)   out: u1, u2
@@ -88,7 +88,8 @@ MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
         M_(store)(out + MCST_W, u.y);                                                             \
     }
 
-/* A direction from a sampler whose leading arguments are given by `lead` (with its comma) after the statement `make`. */
+/* A direction from a sampler whose leading arguments are given by `lead` (with its comma) after the statement `make`.
+ */
 #define MCST_DIRECTION(row, fn, make, lead)                                                       \
     MCST_FN void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
         make;                                                                                     \
@@ -155,18 +156,20 @@ MCST_ROWS(MCST_ADAPT)
 #define MCST_N_DIR(row, fn, args, unused) MCST_N_DIRECTION(row, fn, (void)p, ARGS_##args)
 #define MCST_N_LOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
 #define MCST_N_VLOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
-#define MCST_N_BRDF(row, fn, mat, base)                                                                                          \
-    MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) {             \
-        MAKE_##mat;                                                                                                              \
-        mcs_##fn##_sample_n(&m, WO, n, u1, u2, out[0], out[1], out[2], out[3], out[4]);                                          \
-    }                                                                                                                            \
-    MCST_HOST_FN void mcstn_##row##_pdf(const float *p, size_t n, const float *x, const float *y, const float *z, float *out) {  \
-        MAKE_##mat;                                                                                                              \
-        mcs_##fn##_pdf_n(&m, WO, n, x, y, z, out);                                                                               \
-    }                                                                                                                            \
-    MCST_HOST_FN void mcstn_##row##_eval(const float *p, size_t n, const float *x, const float *y, const float *z, float *out) { \
-        MAKE_##mat;                                                                                                              \
-        mcs_##base##_eval_n(&m, WO, n, x, y, z, out);                                                                            \
+#define MCST_N_BRDF(row, fn, mat, base)                                                                              \
+    MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
+        MAKE_##mat;                                                                                                  \
+        mcs_##fn##_sample_n(&m, WO, n, u1, u2, out[0], out[1], out[2], out[3], out[4]);                              \
+    }                                                                                                                \
+    MCST_HOST_FN void mcstn_##row##_pdf(const float *p, size_t n, const float *x, const float *y, const float *z,    \
+                                        float *out) {                                                                \
+        MAKE_##mat;                                                                                                  \
+        mcs_##fn##_pdf_n(&m, WO, n, x, y, z, out);                                                                   \
+    }                                                                                                                \
+    MCST_HOST_FN void mcstn_##row##_eval(const float *p, size_t n, const float *x, const float *y, const float *z,   \
+                                         float *out) {                                                               \
+        MAKE_##mat;                                                                                                  \
+        mcs_##base##_eval_n(&m, WO, n, x, y, z, out);                                                                \
     }
 #define MCST_ADAPT_N(shape, row, fn, arg, base, coord, grid) MCST_N_##shape(row, fn, arg, base)
 MCST_ROWS(MCST_ADAPT_N)

@@ -1,5 +1,5 @@
-/* The caller's memory of a table: exactly as many bytes as were asked for, between two guards, all filled with one pattern, so that
- * a test sees what was written and what was not. */
+/* The caller's memory of a table: exactly as many bytes as were asked for, between two guards, all filled with one
+ * pattern, so that a test sees what was written and what was not. */
 #ifndef MCST_ARENA_H
 #define MCST_ARENA_H
 #include <stdio.h>

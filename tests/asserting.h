@@ -1,4 +1,5 @@
-/* MCS_ASSERT that counts, for programs that look whether the header tells a mistake. To be included before anything else. */
+/* MCS_ASSERT that counts, for programs that look whether the header tells a mistake. To be included before anything
+ * else. */
 #ifndef MCST_ASSERTING_H
 #define MCST_ASSERTING_H
 #ifdef MCST_LINKED

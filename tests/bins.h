@@ -1,15 +1,17 @@
 /* Histograms fitted to a lobe, and the integral of a density over their bins.
  *
- * Each row names reference coordinates (s, t) in [0,1]^2 in which its lobe is spread out at any sharpness: t is an azimuth, s a
- * radius. They come from elementary warps written here, not from the sampler under test. Two directions are needed:
+ * Each row names reference coordinates (s, t) in [0,1]^2 in which its lobe is spread out at any sharpness: t is an
+ * azimuth, s a radius. They come from elementary warps written here, not from the sampler under test. Two directions
+ * are needed:
  *
- *     mcst_place(map, s, t, x)   the point, and the derivative of its measure (length, area, solid angle) with respect to (s, t)
+ *     mcst_place(map, s, t, x)   the point, and the derivative of its measure (length, area, angle) by (s, t)
  *     mcst_cell(map, x, y, z)    the bin of a sample
  *
- * Azimuths are measured by the diamond angle |y| / (|x| + |y|) per quadrant: no arctangent per sample, exact bin edges. A BRDF is
- * binned by its half-vector (reflection: d(wi) = 4 (wo.h) d(h)) or, for Phong, about the mirror direction. In those coordinates the
- * region that is reflected above the surface is star-shaped about the centre of the lobe, so the density jumps at most once along a
- * line of constant t; the jump is found by bisection, and the lines are summed by an adaptive rule over t. */
+ * Azimuths are measured by the diamond angle |y| / (|x| + |y|) per quadrant: no arctangent per sample, exact bin edges.
+ * A BRDF is binned by its half-vector (reflection: d(wi) = 4 (wo.h) d(h)) or, for Phong, about the mirror direction. In
+ * those coordinates the region that is reflected above the surface is star-shaped about the centre of the lobe, so the
+ * density jumps at most once along a line of constant t; the jump is found by bisection, and the lines are summed by an
+ * adaptive rule over t. */
 #ifndef MCST_BINS_H
 #define MCST_BINS_H
 #include "registry.h"
@@ -94,8 +96,8 @@ static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
     if (row->coord == MCST_WHOLELINE) m.noise *= 1 + fabs(m.a) / m.b;
     if (row->coord == MCST_POWER || row->coord == MCST_EVENPOWER) m.noise *= 1 + m.a;
     if (row->shape == MCST_IS_BRDF) {
-        /* a component of wi is off by up to 2^-25, the slope of its half-vector by that over |wo + wi| = 2 wo.h, which is a
-         * fraction of the lobe's width; wo.h is about the larger of wo.z and the width */
+        /* a component of wi is off by up to 2^-25, the slope of its half-vector by that over |wo + wi| = 2 wo.h, which
+         * is a fraction of the lobe's width; wo.h is about the larger of wo.z and the width */
         const double width = row->coord == MCST_SLOPES ? fmin(m.a, m.b) : 1 / sqrt(fmax(m.a, m.b) + 1);
         m.noise /= width;
         if (!(row->traits & MCST_ABOUT_R)) m.noise /= fmax(m.wo[2], width); /* Phong's lobe is of directions */
@@ -105,8 +107,9 @@ static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
     return m;
 }
 
-/* s of a distance y in [0,1] from the peak of (1 - y)^n, and the distance at s: r = (n + 1) y; s = r / (1 + r), scaled to reach 1.
- * */
+/* s of a distance y in [0,1] from the peak of (1 - y)^n, and the distance at s: r = (n + 1) y; s = r / (1 + r), scaled
+ * to reach 1.
+ */
 static inline double mcst_power_s(double n, double y) {
     const double r = (n + 1) * y;
     return r / (1 + r) * (n + 2) / (n + 1);
@@ -311,7 +314,8 @@ static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
     return mcst_cell_at(m, s, t);
 }
 
-/* --- the density over the bins ---------------------------------------------------------------------------------------------- */
+/* --- the density over the bins
+ * ---------------------------------------------------------------------------------------------- */
 
 /* Gauss-Legendre on [0,1] with 8 points (Abramowitz and Stegun 1964, table 25.4). */
 static const double mcst_gl_x[8] = {0.5 - 0.4801449282487681, 0.5 - 0.3983332387068134, 0.5 - 0.2627662049581645,
@@ -345,8 +349,8 @@ static inline double mcst_panel(const mcst_density *d, double s0, double s1, dou
     return sum * (s1 - s0);
 }
 
-/* A smooth stretch. On a line it is cut into eight; a power of a cosine has a root at the horizon, so there the pieces shrink
- * towards it. */
+/* A smooth stretch. On a line it is cut into eight; a power of a cosine has a root at the horizon, so there the pieces
+ * shrink towards it. */
 static inline double mcst_smooth(const mcst_density *d, double s0, double s1, double t) {
     double sum = 0;
     if (d->map.t_bins == 1) {
@@ -363,7 +367,8 @@ static inline double mcst_smooth(const mcst_density *d, double s0, double s1, do
     return sum + mcst_panel(d, s0, s1, t);
 }
 
-/* The integral over [s0, s1] at one t. Where the density is positive at one end and zero at the other it is cut at the jump. */
+/* The integral over [s0, s1] at one t. Where the density is positive at one end and zero at the other it is cut at the
+ * jump. */
 static inline double mcst_span(const mcst_density *d, double s0, double s1, double t) {
     /* the ends s = 0 and s = 1 may be singular (a horizon at infinite slope): look just inside */
     const double inset = 1e-9;
@@ -399,8 +404,8 @@ static inline void mcst_column_rule(const mcst_density *d, double t0, double t1,
     }
 }
 
-/* Adds the integral over [t0, t1] to out; `whole` is the plain rule on it. Halved until the two agree within tol (sum over s), or
- * as well as the rounding of the points allows. */
+/* Adds the integral over [t0, t1] to out; `whole` is the plain rule on it. Halved until the two agree within tol (sum
+ * over s), or as well as the rounding of the points allows. */
 static inline void mcst_column(const mcst_density *d, double t0, double t1, const double *whole, double tol, int depth,
                                double *out) {
     double a[MCST_S] = {0};
@@ -422,8 +427,8 @@ static inline void mcst_column(const mcst_density *d, double t0, double t1, cons
     for (int i = 0; i < MCST_S; i++) out[i] += a[i] + b[i];
 }
 
-/* mass[i * t_bins + j]: the integral of the density over each bin; returns their sum. tol bounds the estimated error of a column of
- * bins. */
+/* mass[i * t_bins + j]: the integral of the density over each bin; returns their sum. tol bounds the estimated error of
+ * a column of bins. */
 static inline double mcst_masses(const mcst_row *row, const float *p, double tol, double *mass) {
     double total = 0;
     mcst_density d;
@@ -448,7 +453,8 @@ static inline double mcst_masses(const mcst_row *row, const float *p, double tol
     return total;
 }
 
-/* --- chi-square and Kolmogorov-Smirnov ---------------------------------------------------------------------------------------- */
+/* --- chi-square and Kolmogorov-Smirnov
+ * ---------------------------------------------------------------------------------------- */
 
 enum { MCST_BLOCK = 2048, MCST_GRID_U = 16, MCST_FINE_U = 1024 };
 
@@ -459,7 +465,8 @@ typedef struct {
     double mass;                 /* integral of the density */
 } mcst_fit;
 
-/* p-value of the largest distance between two distributions given on the same bins (at bin edges only, so conservative). */
+/* p-value of the largest distance between two distributions given on the same bins (at bin edges only, so
+ * conservative). */
 static inline double mcst_ks_bins(const double *observed, const double *expected, size_t bins, double n) {
     double o = 0;
     double e = 0;
@@ -473,8 +480,8 @@ static inline double mcst_ks_bins(const double *observed, const double *expected
     return ks_p(d, n);
 }
 
-/* Draws n samples in the array form and compares their histogram with the integral of the density. A BRDF's lost samples are one
- * more bin. */
+/* Draws n samples in the array form and compares their histogram with the integral of the density. A BRDF's lost
+ * samples are one more bin. */
 static inline void mcst_fit_xy(const mcst_row *row, const float *p, double n, uint64_t seed, mcst_fit *fit) {
     static float buffer[7][MCST_BLOCK];
     static double observed[MCST_CELLS + 1], expected[MCST_CELLS + 1];
@@ -522,8 +529,9 @@ static inline void mcst_fit_xy(const mcst_row *row, const float *p, double n, ui
     so[map.s_bins] = to[map.t_bins] = observed[cells];
     se[map.s_bins] = te[map.t_bins] = expected[cells];
     fit->chi2 = chi2_test(observed, expected, (size_t)(cells + brdf), NULL, NULL);
-    /* A corner of the lit region that falls between the points of the rule has at most the mass that mcst_column stops at: the
-     * number of samples there is at most Poisson with that mean, and P(X >= stray) is the complement of gamma_q. */
+    /* A corner of the lit region that falls between the points of the rule has at most the mass that mcst_column stops
+     * at: the number of samples there is at most Poisson with that mean, and P(X >= stray) is the complement of
+     * gamma_q. */
     fit->stray = stray > 0 ? 1 - gamma_q(stray, (tol * map.t_bins + map.noise) * done) : 1;
     fit->ks_s = mcst_ks_bins(so, se, (size_t)(map.s_bins + brdf), done);
     fit->ks_t = map.t_bins == 1 ? 1 : mcst_ks_bins(to, te, (size_t)(map.t_bins + brdf), done);
@@ -571,7 +579,8 @@ static inline int mcst_fit_tests(const mcst_row *row) {
     return (row->dim == 1 ? 3 : 4) + (row->fn[0].invert ? (row->inputs == 1 ? 2 : 3) : 0);
 }
 
-/* The level of one p-value when the whole suite (every set of every row, however the programs share them) has level 0.01. */
+/* The level of one p-value when the whole suite (every set of every row, however the programs share them) has level
+ * 0.01. */
 static inline double mcst_level(void) {
     double tests = 0;
     for (size_t i = 0; i < MCST_NROWS; i++) tests += (double)mcst_rows[i].chi_size * mcst_fit_tests(&mcst_rows[i]);

@@ -1,37 +1,38 @@
 /* The functions of mcsample.h that have no row in registry.h, in one uniform shape, for functions.h.
  *
- * No include guard: like adapters.h this file is included once per width, MCST_W = 1, 4, 8 or 16, and without MCST_W for its lists
- * alone. F_ and U_ are the types of floats and words, M_(x) is the name x of mcsample.h at that width and B_(x) the name of its
- * adapter. As in adapters.h entry i of lane l is at i * W + l:
+ * No include guard: like adapters.h this file is included once per width, MCST_W = 1, 4, 8 or 16, and without MCST_W
+ * for its lists alone. F_ and U_ are the types of floats and words, M_(x) is the name x of mcsample.h at that width and
+ * B_(x) the name of its adapter. As in adapters.h entry i of lane l is at i * W + l:
  *
  *     B_(x)(in, out)   in: 0..2 parameters, 3..5 a direction, 6, 7 random numbers, 8..10 a point, 11..13 words
  *                      out: BITS_OUT entries, set to 0 before
  *
- * Words travel as the bits of floats. A name needs its function here and its place in one of the lists: floats at every width,
- * words at every width, what there is only once, what takes a map or a product, what needs more memory than a thread of a kernel
- * should have, and array forms with the number of their maps or products: their bits1_x is what the scalar form gives, and
- * bits_array_x computes n cases of one map or product. */
+ * Words travel as the bits of floats. A name needs its function here and its place in one of the lists: floats at every
+ * width, words at every width, what there is only once, what takes a map or a product, what needs more memory than a
+ * thread of a kernel should have, and array forms with the number of their maps or products: their bits1_x is what the
+ * scalar form gives, and bits_array_x computes n cases of one map or product. */
 /* clang-format off */
 #ifndef BITS_WIDE
 #define BITS_WIDE(X) \
-    X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(to_world) X(to_local) X(reflect) X(reflect_pdf) X(half) \
-    X(cos_d) X(schlick) X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) X(ashikhmin_make) X(is_mirror) X(ggx_d) \
-    X(ggx_g1) X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
-#define BITS_WORDS(X) X(hash) X(sobol_bits) X(load) X(store)
+    X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(to_world) X(to_local) X(reflect) \
+    X(reflect_pdf) X(half) X(cos_d) X(schlick) X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) \
+    X(ashikhmin_make) X(is_mirror) X(ggx_d) X(ggx_g1) X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
+#define BITS_WORDS(X) \
+    X(hash) X(sobol_bits) X(load) X(store)
 #define BITS_SCALAR(X) \
-    X(pcg32_for) X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) X(philox_fill_n) X(sobol_n) \
-    X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) \
-    X(pwc_invert) X(pwc_sample_n) X(discrete_bytes) X(discrete_build) X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) \
-    X(pwl_bytes) X(pwl_build) \
-    X(pwl_sample) X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) \
-    X(alias_bytes) X(alias_build) X(alias_sample) X(alias_sample_bits) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) \
-    X(stat_error) X(stat_ci)
+    X(pcg32_for) X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) \
+    X(philox_fill_n) X(sobol_n) X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) \
+    X(pwc_sample_bits) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) X(discrete_bytes) X(discrete_build) \
+    X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) \
+    X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(alias_bytes) X(alias_build) X(alias_sample) \
+    X(alias_sample_bits) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) X(stat_error) X(stat_ci)
 #define BITS_MAPPED(X) \
     X(image_make) X(env_bytes) X(env_build) X(env_build_rows) X(env_finish) X(env_check) X(env_mean) X(env_sample) \
     X(env_sample_bits) X(env_pdf) X(env_invert) X(env_texel) X(env_weight) X(env_window_bytes) X(env_window_build) \
-    X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(product_bytes) X(product_sample) \
-    X(product_pdf) X(oneshot_sample) X(oneshot_pdf)
-#define BITS_HOST(X) X(product_build) X(product_build_weights)
+    X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(product_bytes) \
+    X(product_sample) X(product_pdf) X(oneshot_sample) X(oneshot_pdf)
+#define BITS_HOST(X) \
+    X(product_build) X(product_build_weights)
 #define BITS_ARRAYS(X) \
     X(env_sample_n, BITS_MAPS) X(env_texel_n, BITS_MAPS) X(env_pdf_n, BITS_MAPS) X(env_window_sample_n, BITS_MAPS) \
     X(product_sample_n, BITS_MAPS * BITS_SURFACES)
@@ -256,7 +257,9 @@ MCST_HD static uint32_t bits_entries(const float *in, float *f) {
     return n;
 }
 /* What a builder says: an error, or whether all was zero. */
-MCST_HD static uint32_t bits_said(mcs_status status, uint32_t black) { return status < 0 ? (uint32_t)status : black != 0; }
+MCST_HD static uint32_t bits_said(mcs_status status, uint32_t black) {
+    return status < 0 ? (uint32_t)status : black != 0;
+}
 #define TABLE(kind)                                                     \
     uint64_t room[4 * BITS_CELLS] = {0};                                \
     float f[BITS_CELLS + 1];                                            \
@@ -389,7 +392,8 @@ FN(stat_ci) {
 }
 #undef STAT
 
-/* --- environment maps ------------------------------------------------------------------------------------------------------- */
+/* --- environment maps
+ * ------------------------------------------------------------------------------------------------------- */
 
 #define HOST(name) MCST_HOST_FN void bits1_##name(const float *in, float *out)
 /* Black, bad and very bright entries among others. */
@@ -647,7 +651,8 @@ FN(env_window_pdf) {
 }
 #undef WINDOW
 
-/* --- products --------------------------------------------------------------------------------------------------------------- */
+/* --- products
+ * --------------------------------------------------------------------------------------------------------------- */
 
 MCST_HD static mcs_reflection bits_reflection(const float *in) {
     mcs_reflection r;
@@ -729,7 +734,8 @@ FN(oneshot_pdf) {
     PUT(1, mcs_oneshot_pdf(m->tiles, m->env, &r, mcs_oneshot_sample(m->tiles, m->env, &r, IN(6), IN(7)).w));
 }
 
-/* --- array forms ------------------------------------------------------------------------------------------------------------ */
+/* --- array forms
+ * ------------------------------------------------------------------------------------------------------------ */
 
 #define ARRAY(name) MCST_HOST_FN void bits_array_##name(int k, size_t n, float(*in)[CASES], float(*out)[CASES])
 #define DRAW(name, ...)                                                                     \

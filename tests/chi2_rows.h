@@ -1,5 +1,5 @@
-/* The chi-square programs: every set of every row that `mine` accepts, one case each. The rows are shared out over two programs,
- * so that two processors share the work; the level of a single p-value is that of the whole suite. */
+/* The chi-square programs: every set of every row that `mine` accepts, one case each. The rows are shared out over two
+ * programs, so that two processors share the work; the level of a single p-value is that of the whole suite. */
 #ifndef MCST_CHI2_ROWS_H
 #define MCST_CHI2_ROWS_H
 #include "bins.h"
@@ -15,7 +15,9 @@ static inline int mcst_chi2_main(int argc, char **argv, int (*mine)(const mcst_r
         for (size_t j = 0; j < row->chi_size; j++) {
             const mcst_set *set = &row->chi[j];
             const double n = set->millions * 1e6 * scale;
-            if (!mcst_case("chi-square %g %g cos %g, %g samples", (double)set->a, (double)set->b, (double)set->cos_o, n)) continue;
+            if (!mcst_case("chi-square %g %g cos %g, %g samples", (double)set->a, (double)set->b, (double)set->cos_o,
+                           n))
+                continue;
             float p[MCST_P];
             mcst_fill(row, set->a, set->b, set->cos_o, set->azimuth, p);
             mcst_fit fit;
@@ -28,8 +30,8 @@ static inline int mcst_chi2_main(int argc, char **argv, int (*mine)(const mcst_r
             CHECK(fit.chi2_u >= level, "p = %g", fit.chi2_u);
             CHECK(fit.ks_u1 >= level, "p = %g", fit.ks_u1);
             CHECK(fit.ks_u2 >= level, "p = %g", fit.ks_u2);
-            mcst_note("  %-14s %-60s mass %.7f  p: %.3f %.3f %.3f %.3f  u-space %.3f %.3f %.3f\n", row->name, mcst.name, fit.mass,
-                      fit.chi2, fit.stray, fit.ks_s, fit.ks_t, fit.chi2_u, fit.ks_u1, fit.ks_u2);
+            mcst_note("  %-14s %-60s mass %.7f  p: %.3f %.3f %.3f %.3f  u-space %.3f %.3f %.3f\n", row->name, mcst.name,
+                      fit.mass, fit.chi2, fit.stray, fit.ks_s, fit.ks_t, fit.chi2_u, fit.ks_u1, fit.ks_u2);
         }
     }
     return mcst_finish();

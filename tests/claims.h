@@ -1,4 +1,5 @@
-/* The claims of the registry's rows: the sentences of mcsample.h that state them, and what is claimed for given parameters. */
+/* The claims of the registry's rows: the sentences of mcsample.h that state them, and what is claimed for given
+ * parameters. */
 #ifndef MCST_CLAIMS_H
 #define MCST_CLAIMS_H
 #include "registry.h"
@@ -7,19 +8,30 @@ static const char *const mcst_claim_name[CLAIMS] = {"pdf of u",           "pdf o
                                                     "weight of a sample", "weight of w", "length"};
 
 /* The sentences that state them. */
+/* clang-format off */
 static const char *const mcst_claim_sentences[] = {
     "1 E is a relative error of 1e-6 (1 + |ln(pdf/peak)|)",
-    "pdf of u and of x within 0.45 E (normal), 0.2 E (the others)",                                           /* [1d] */
-    "coordinates within 2^-23 of the radius, pdf within 0.1 E",                                                                 /* [disk] */
-    "unit length within 4 x 2^-24, pdf within 0.2 E.",                                                        /* [sphere] */
-    "pdf of u 0.4 E (n below 1: 1.2 E, below 0.1: 2.9 E), of w and eval 0.6 E, weight 0.3e-6, |w| 4 x 2^-24", /* [phong] */
-    "pdf of u 1.2 E; of h and wi 1e-6 (1 + e), eval 1.4e-6 (1 + e), e the exponent, while e is below 87; weight 0.8e-6, of a "
-    "sample 1.8e-6; |h| and |wi| 4 x 2^-24",                                               /* [ward] */
-    "that of [ward]: pdf, eval and weights are held to the same figures", /* [beckmann] */
-    "h and ggx: pdf of u 1.2 E, of h or wi 1.2 E; vndf, bounded: pdf of u 2.1 E, of h or wi 1.5 E; eval 1.5 E, weight 0.7e-6, of a "
-    "sample 0.7e-6 (ggx 1.6e-6); |h| and |wi| 4 x 2^-24", /* [ggx] */
-    "pdf of u 0.8 E (an exponent below 1: 1.4 E, below 0.1: 3.7 E), of h, wi and eval 0.6 E, weight 0.1e-6, |h| and |wi| 4 x 2^-24",
+    /* [1d] */
+    "pdf of u and of x within 0.45 E (normal), 0.2 E (the others)",
+    /* [disk] */
+    "coordinates within 2^-23 of the radius, pdf within 0.1 E",
+    /* [sphere] */
+    "unit length within 4 x 2^-24, pdf within 0.2 E.",
+    /* [phong] */
+    "pdf of u 0.4 E (n below 1: 1.2 E, below 0.1: 2.9 E), of w and eval 0.6 E, weight 0.3e-6, |w| 4 x "
+    "2^-24",
+    /* [ward] */
+    "pdf of u 1.2 E; of h and wi 1e-6 (1 + e), eval 1.4e-6 (1 + e), e the exponent, while e is below 87; "
+    "weight 0.8e-6, of a sample 1.8e-6; |h| and |wi| 4 x 2^-24",
+    /* [beckmann] */
+    "that of [ward]: pdf, eval and weights are held to the same figures",
+    /* [ggx] */
+    "h and ggx: pdf of u 1.2 E, of h or wi 1.2 E; vndf, bounded: pdf of u 2.1 E, of h or wi 1.5 E; eval "
+    "1.5 E, weight 0.7e-6, of a sample 0.7e-6 (ggx 1.6e-6); |h| and |wi| 4 x 2^-24",
+    "pdf of u 0.8 E (an exponent below 1: 1.4 E, below 0.1: 3.7 E), of h, wi and eval 0.6 E, weight "
+    "0.1e-6, |h| and |wi| 4 x 2^-24",
 };
+/* clang-format on */
 
 /* The figure for parameters p: of the narrowest range that holds them. What a row does not claim is 1, in its units. */
 static inline double mcst_claim_of(const mcst_row *row, int what, const float *p) {

@@ -12,7 +12,7 @@ typedef long double ld;
 
 enum { MAX_TEXELS = 8192 * 16 };
 static const double pi = 3.14159265358979323846;
-static const double level = 1e-5;      /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
+static const double level = 1e-5; /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
 static const double eps = 0x1p-24;     /* rounding of a float, relative; also the step of u */
 static const double quantum = 0x1p-31; /* probabilities of rows and of columns are integers over 2^31 */
 
@@ -71,8 +71,11 @@ static inline float v_tiny(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
     (void)h;
     return (float)((c + r) % 4) * 1.4012984643e-45f;
 }
-static inline float v_corner(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return c == w - 1 && r == h - 1 ? 2.0f : 0.0f; }
-/* A sky brighter towards its horizon, dark ground, and a sun of one texel in every 32 x 32 that is 1e5 times brighter. */
+static inline float v_corner(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return c == w - 1 && r == h - 1 ? 2.0f : 0.0f;
+}
+/* A sky brighter towards its horizon, dark ground, and a sun of one texel in every 32 x 32 that is 1e5 times brighter.
+ */
 static inline float v_sky(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
     const float up = 1.0f - 2.0f * ((float)r + 0.5f) / (float)h;
     if (c == w / 5 && r == h / 4) return 1e5f;
@@ -132,7 +135,8 @@ static inline arena build(const map *m) {
     CHECK(rc == MCS_OK, "build returns %d", rc);
     CHECK(arena_intact(&a), "build wrote outside its %zu bytes", a.bytes);
     CHECK(env_in(&a)->bad == 0, "%llu bad texels", (unsigned long long)env_in(&a)->bad);
-    /* row borders are doubles between 0 and 2: the height of a row is off by 2^-51, and no row is lower than the first */
+    /* row borders are doubles between 0 and 2: the height of a row is off by 2^-51, and no row is lower than the first
+     */
     CHECK(fabs((double)(env_in(&a)->total / total - 1)) <= 1e-12 + 0x1p-51 / (1 - cos(pi / m->h)), "total %g, not %g",
           env_in(&a)->total, (double)total);
     return a;
@@ -140,8 +144,9 @@ static inline arena build(const map *m) {
 
 /* ---- checks of a map ---- */
 
-/* Probabilities of rows, and of columns within a row, are integers over 2^31 with at least one where there is light: each moves by
- * one of rounding, its own one, and its share of those for all. The bound is relative to the probability of the texel. */
+/* Probabilities of rows, and of columns within a row, are integers over 2^31 with at least one where there is light:
+ * each moves by one of rounding, its own one, and its share of those for all. The bound is relative to the probability
+ * of the texel. */
 static inline double slack(const map *m, uint32_t col, uint32_t row) {
     const double prow = (double)row_prob[row];
     const double pcol = (double)(prob[row * m->w + col] / row_prob[row]);
@@ -164,7 +169,8 @@ static inline void check_density(const map *m, const mcs_env *e) {
             /* weight of the row, sum of the weights, density: three float roundings */
             if (want > 0 && c % step == 0) {
                 const double tol = slack(m, c, r) + 4 * eps;
-                CHECK(fabs(p * omega - want) <= tol * want, "texel (%u, %u): probability %g, not %g", c, r, p * omega, want);
+                CHECK(fabs(p * omega - want) <= tol * want, "texel (%u, %u): probability %g, not %g", c, r, p * omega,
+                      want);
             }
         }
     CHECK(fabs(mass - 1) <= 4 * eps, "the density integrates to 1 + %g", mass - 1);
@@ -180,21 +186,23 @@ static inline void check_sample(const map *m, const mcs_env *e, float u1, float 
     CHECK(fabs(len - 1) <= 4 * eps, "u = %a, %a: length 1 + %g", (double)u1, (double)u2, len - 1);
     CHECK(pixels[s.row * m->w + s.col] > 0, "u = %a, %a: black texel (%u, %u)", (double)u1, (double)u2, s.col, s.row);
     CHECK(s.pdf > 0 && s.pdf <= FLT_MAX, "u = %a, %a: pdf %g", (double)u1, (double)u2, (double)s.pdf);
-    CHECK(mcs_env_pdf(e, s.w) == s.pdf, "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2, (double)mcs_env_pdf(e, s.w),
-          (double)s.pdf);
+    CHECK(mcs_env_pdf(e, s.w) == s.pdf, "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2,
+          (double)mcs_env_pdf(e, s.w), (double)s.pdf);
     const mcs_texel at = mcs_env_texel(e, s.w);
-    CHECK(at.pdf == s.pdf && at.col == s.col && at.row == s.row, "u = %a, %a: texel (%u, %u), returned (%u, %u)", (double)u1,
-          (double)u2, at.col, at.row, s.col, s.row);
+    CHECK(at.pdf == s.pdf && at.col == s.col && at.row == s.row, "u = %a, %a: texel (%u, %u), returned (%u, %u)",
+          (double)u1, (double)u2, at.col, at.row, s.col, s.row);
     double c, r;
     texel_of(m->w, m->h, s.w, &c, &r);
     double off = fabs(c - s.col - 0.5);
     if (off > m->w / 2.0) off = m->w - off;
     CHECK(off <= 0.5 + 4 * eps * m->w, "u = %a, %a: column %.9g, returned %u", (double)u1, (double)u2, c, s.col);
-    CHECK(fabs(r - s.row - 0.5) <= 0.5 + 4 * eps * m->h, "u = %a, %a: row %.9g, returned %u", (double)u1, (double)u2, r, s.row);
+    CHECK(fabs(r - s.row - 0.5) <= 0.5 + 4 * eps * m->h, "u = %a, %a: row %.9g, returned %u", (double)u1, (double)u2, r,
+          s.row);
     const mcs_vec2 back = mcs_env_invert(e, s.w);
     {
-        /* In parts of a cell, the place is off by the margin of 4 eps cells times their number that samples keep from borders, by
-         * the rounding of the azimuth (2 eps of a turn) or of z (2 eps), and once more that much in the inverse. */
+        /* In parts of a cell, the place is off by the margin of 4 eps cells times their number that samples keep from
+         * borders, by the rounding of the azimuth (2 eps of a turn) or of z (2 eps), and once more that much in the
+         * inverse. */
         const double prow = (double)row_prob[s.row];
         const double pcol = (double)(prob[s.row * m->w + s.col] / row_prob[s.row]);
         const double dz = (double)solid_angle(s.row, m->w, m->h) * m->w / (2 * pi);
@@ -204,7 +212,8 @@ static inline void check_sample(const map *m, const mcs_env *e, float u1, float 
         CHECK(back.x >= 0 && back.x < 1 &&
                   (pole || fabs((double)back.x - u1) <= (d1 < pcol ? d1 : pcol) + 2 * quantum * m->w + 2 * eps),
               "u1 = %a: invert %a", (double)u1, (double)back.x);
-        CHECK(back.y >= 0 && back.y < 1 && fabs((double)back.y - u2) <= (d2 < prow ? d2 : prow) + 2 * quantum * m->h + 2 * eps,
+        CHECK(back.y >= 0 && back.y < 1 &&
+                  fabs((double)back.y - u2) <= (d2 < prow ? d2 : prow) + 2 * quantum * m->h + 2 * eps,
               "u2 = %a: invert %a", (double)u2, (double)back.y);
     }
 }

@@ -130,7 +130,8 @@ static inline arena build(const picture *p, brightness want) {
     const mcs_image image = mcs_image_make(p->lum, p->w, p->h, 1);
     const mcs_status rc = mcs_env_build(env_in(&a), a.bytes, &image);
     CHECK(rc == MCS_OK && arena_intact(&a), "%s: build returns %d", p->name, rc);
-    CHECK(brightness_of(env_in(&a)) == want, "%s: total %g, uniform %u", p->name, env_in(&a)->total, env_in(&a)->uniform);
+    CHECK(brightness_of(env_in(&a)) == want, "%s: total %g, uniform %u", p->name, env_in(&a)->total,
+          env_in(&a)->uniform);
     return a;
 }
 

@@ -1,12 +1,14 @@
-/* Every public function of mcsample.h in one shape, found by its name in the header's index: by the rows of registry.h and by the
- * adapters of bits.h. What test_bits.c and test_fenv.c share. With -DMCST_LINKED the adapters are in tests/shared. */
+/* Every public function of mcsample.h in one shape, found by its name in the header's index: by the rows of registry.h
+ * and by the adapters of bits.h. What test_bits.c and test_fenv.c share. With -DMCST_LINKED the adapters are in
+ * tests/shared. */
 #ifndef MCST_FUNCTIONS_H
 #define MCST_FUNCTIONS_H
 #define MCST_WIDE
 #include "registry.h"
 #include "index.h"
 
-/* --- the hash: FNV-1a, 64 bits, over the bit patterns, low byte first ------------------------------------------------------- */
+/* --- the hash: FNV-1a, 64 bits, over the bit patterns, low byte first
+ * ------------------------------------------------------- */
 
 #define BITS_START 0xcbf29ce484222325u
 MCST_HD static inline uint64_t bits_hash(uint64_t hash, const void *words, size_t n) {
@@ -21,10 +23,22 @@ MCST_HD static inline uint64_t bits_hash(uint64_t hash, const void *words, size_
     return hash;
 }
 
-/* --- the size of inputs and results ----------------------------------------------------------------------------------------- */
+/* --- the size of inputs and results
+ * ----------------------------------------------------------------------------------------- */
 
 /* BLOCKS parameter sets with BLOCK cases each, so that an array form has two vectors of 8 and a rest. */
-enum { BLOCK = 19, BLOCKS = 128, CASES = BLOCK * BLOCKS, BITS_IN = 14, BITS_OUT = 10, P = 0, WO = 3, U = 6, X = 8, WORDS = 11 };
+enum {
+    BLOCK = 19,
+    BLOCKS = 128,
+    CASES = BLOCK * BLOCKS,
+    BITS_IN = 14,
+    BITS_OUT = 10,
+    P = 0,
+    WO = 3,
+    U = 6,
+    X = 8,
+    WORDS = 11
+};
 
 MCST_HD static inline float from_bits(uint32_t bits) {
     float x;
@@ -32,9 +46,19 @@ MCST_HD static inline float from_bits(uint32_t bits) {
     return x;
 }
 
-/* Built once and kept until the end: maps, for each of them a window across the seam, tiles, and a product for each of some
- * surfaces. Building one per case as for the tables above would take an emulator minutes. */
-enum { BITS_RANDOM, BITS_SUN, BITS_RGB, BITS_BILINEAR, BITS_FLOOR, BITS_CONSTANT, BITS_BLACK, BITS_MAPS, BITS_SURFACES = 4 };
+/* Built once and kept until the end: maps, for each of them a window across the seam, tiles, and a product for each of
+ * some surfaces. Building one per case as for the tables above would take an emulator minutes. */
+enum {
+    BITS_RANDOM,
+    BITS_SUN,
+    BITS_RGB,
+    BITS_BILINEAR,
+    BITS_FLOOR,
+    BITS_CONSTANT,
+    BITS_BLACK,
+    BITS_MAPS,
+    BITS_SURFACES = 4
+};
 typedef struct {
     mcs_env *env;
     mcs_env_window *window;
@@ -50,7 +74,8 @@ MCST_HD static inline int bits_kind_of(const float *in, int kinds) {
     return (int)(word % (uint32_t)kinds);
 }
 
-/* --- the adapters of bits.h ------------------------------------------------------------------------------------------------- */
+/* --- the adapters of bits.h
+ * ------------------------------------------------------------------------------------------------- */
 
 typedef void bits_fn(const float *in, float *out);
 /* For n cases of one map, or of one product. in: random numbers 0, 1, points 2, 3, 4. */
@@ -91,7 +116,8 @@ static int bits_valid; /* tables and maps have no bad entries */
 #endif
 
 #ifndef MCST_SHARED
-/* --- functions by name ------------------------------------------------------------------------------------------------------ */
+/* --- functions by name
+ * ------------------------------------------------------------------------------------------------------ */
 
 #ifdef MCST_WIDE
 #define FOUR(x) \

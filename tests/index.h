@@ -1,5 +1,5 @@
-/* The names of the public functions of mcsample.h, read from its text: of the prototypes between the two lines below, where the
- * header has them, else of its index. */
+/* The names of the public functions of mcsample.h, read from its text: of the prototypes between the two lines below,
+ * where the header has them, else of its index. */
 #ifndef MCST_INDEX_H
 #define MCST_INDEX_H
 #include <stdio.h>
@@ -33,7 +33,8 @@ static inline void mcst_add_name(const char *at, size_t length) {
     mcst_name_count++;
 }
 
-/* A prototype starts a line with MCS_FN or MCS_API; its name is the first word that starts with mcs_ and has a parenthesis after it. */
+/* A prototype starts a line with MCS_FN or MCS_API; its name is the first word that starts with mcs_ and has a
+ * parenthesis after it. */
 static inline void mcst_read_prototypes(const char *from, const char *end) {
     const char *at = from;
     while ((at = strstr(at, "\nMCS_")) != NULL && at < end) {

@@ -1,5 +1,6 @@
-/* Does a density integrate to what its sampler does not lose? Two independent ways to the same number: the integral of the density
- * over directions in the coordinates of bins.h, and the area of the random numbers whose sample is not lost. */
+/* Does a density integrate to what its sampler does not lose? Two independent ways to the same number: the integral of
+ * the density over directions in the coordinates of bins.h, and the area of the random numbers whose sample is not
+ * lost. */
 #ifndef MCST_MASS_H
 #define MCST_MASS_H
 #include "bins.h"
@@ -52,8 +53,8 @@ typedef struct {
 
 static int mcst_masses_skipped;
 
-/* Where the rounding of a point moves it by more than a fifth of the lobe's width there is nothing to integrate: a float or two
- * hold all of it. Such a set is no case; it is named and counted. */
+/* Where the rounding of a point moves it by more than a fifth of the lobe's width there is nothing to integrate: a
+ * float or two hold all of it. Such a set is no case; it is named and counted. */
 static inline int mcst_mass_resolved(const mcst_row *row, const float *p) {
     const double noise = mcst_map_make(row, p).noise;
     if (noise <= 0.2) return 1;
@@ -65,8 +66,8 @@ static inline int mcst_mass_resolved(const mcst_row *row, const float *p) {
     return 0;
 }
 
-/* The two must agree within 1e-5, and what the rounding of the points does to a sharp lobe: noise per point, averaged over 6400
- * points or more (4 sigma), and to second order its square. */
+/* The two must agree within 1e-5, and what the rounding of the points does to a sharp lobe: noise per point, averaged
+ * over 6400 points or more (4 sigma), and to second order its square. */
 static inline mcst_mass mcst_mass_of(const mcst_row *row, const float *p) {
     static double mass[MCST_CELLS];
     const double noise = mcst_map_make(row, p).noise;

@@ -7,12 +7,12 @@
  *         return mcst_finish();
  *     }
  *
- * Command line of every test binary: --list (names only), --filter TEXT (cases whose "group/name" holds TEXT; ^TEXT: the others),
- * --seed N.
- * When all is well a program prints one line, "NAME: N passed, N failed, N s": cases, not checks, and seconds of processor time.
- * Before it stand the checks that failed, and lines that begin with SKIPPED. With MCS_TEST_VERBOSE=1 there is also a line for every
- * group and what mcst_note() is given. The exit status is 1 when a case failed or none ran.
- * A comparison must be written so that NaN fails it: CHECK(err <= tol), never CHECK(!(err > tol)). */
+ * Command line of every test binary: --list (names only), --filter TEXT (cases whose "group/name" holds TEXT; ^TEXT:
+ * the others), --seed N. When all is well a program prints one line, "NAME: N passed, N failed, N s": cases, not
+ * checks, and seconds of processor time. Before it stand the checks that failed, and lines that begin with SKIPPED.
+ * With MCS_TEST_VERBOSE=1 there is also a line for every group and what mcst_note() is given. The exit status is 1 when
+ * a case failed or none ran. A comparison must be written so that NaN fails it: CHECK(err <= tol), never CHECK(!(err >
+ * tol)). */
 #ifndef MCS_TEST_H
 #define MCS_TEST_H
 #include <stdarg.h>
@@ -51,8 +51,8 @@ static void mcst_close_case(void) {
 static void mcst_close_group(void) {
     mcst_close_case();
     if (mcst.group_open && mcst.group_cases && (mcst.verbose || mcst.group_failed))
-        printf("%-4s %-28s %4d cases %12lld checks %7.2f s\n", mcst.group_failed ? "FAIL" : "ok", mcst.group, mcst.group_cases,
-               mcst.checks, (double)(clock() - mcst.began) / CLOCKS_PER_SEC);
+        printf("%-4s %-28s %4d cases %12lld checks %7.2f s\n", mcst.group_failed ? "FAIL" : "ok", mcst.group,
+               mcst.group_cases, mcst.checks, (double)(clock() - mcst.began) / CLOCKS_PER_SEC);
     fflush(stdout);
     mcst.group_open = 0;
 }
@@ -123,7 +123,8 @@ static inline void mcst_note(const char *fmt, ...) {
     va_end(a);
 }
 
-/* 1 where this build contracts a*b + c: with c the rounded product, only a fused operation finds what the rounding took away. */
+/* 1 where this build contracts a*b + c: with c the rounded product, only a fused operation finds what the rounding took
+ * away. */
 #define MCST_CONTRACTS(function)                               \
     static inline int function(void) {                         \
         volatile float v[3] = {1 + 0x1p-12f, 1 + 0x1p-12f, 0}; \
@@ -148,7 +149,8 @@ static inline int mcst_arrays_contract(void) { return mcst_contracts(); }
 static int mcst_finish(void) {
     mcst_close_group();
     if (mcst.list) return 0;
-    printf("%s: %d passed, %d failed, %.1f s\n", mcst.program, mcst.passed, mcst.failed, (double)clock() / CLOCKS_PER_SEC);
+    printf("%s: %d passed, %d failed, %.1f s\n", mcst.program, mcst.passed, mcst.failed,
+           (double)clock() / CLOCKS_PER_SEC);
     return mcst.failed != 0 || mcst.passed == 0;
 }
 #endif

@@ -1,16 +1,18 @@
-/* The truth that mcsample.h is tested against: every sampler in long double (x86: 64-bit significand), from the mathematics alone.
+/* The truth that mcsample.h is tested against: every sampler in long double (x86: 64-bit significand), from the
+ * mathematics alone.
  *
  * For a sampler NAME with parameters P:
  *     o_NAME_map(P, u...)      the point that u maps to; of a BRDF the reflected wi, also where the sample is lost
  *     o_NAME_pdf(P, point)     the density there: per length, area or solid angle; of a BRDF (P, wo, wi)
- *     o_NAME_pdf_u(P, u...)    the density at the point of u, from u itself: loses no digits on the way through the point;
+ *     o_NAME_pdf_u(P, u...)    the density at the point of u, from u itself: no digits are lost on the way;
  *                              of a BRDF 0 when the sample is lost (wo.h <= 0 or wi.z <= 0)
  *     o_NAME_invert(P, point)  the u of a point; an angle just short of a full turn may round to 1
  *     o_NAME_eval, o_NAME_weight(P, wo, wi)   of a BRDF: f, and f wi.z / pdf in closed form
  *
- * Parameters, u and vectors are the literal floats, promoted; nothing is clamped and wo, wi are not normalised. Densities of a
- * half-vector or of a direction about +z are ratios, so the length of their argument drops out. Where the cosine between wo and h
- * is needed for a pair wo, wi it is |wo + wi| / 2: equal to wo.h for unit vectors, and for any wi = reflect(wo, h). */
+ * Parameters, u and vectors are the literal floats, promoted; nothing is clamped and wo, wi are not normalised.
+ * Densities of a half-vector or of a direction about +z are ratios, so the length of their argument drops out. Where
+ * the cosine between wo and h is needed for a pair wo, wi it is |wo + wi| / 2: equal to wo.h for unit vectors, and for
+ * any wi = reflect(wo, h). */
 #ifndef MCS_ORACLE_H
 #define MCS_ORACLE_H
 #include <float.h>
@@ -58,8 +60,8 @@ static inline o_vec3 o_cross(o_vec3 a, o_vec3 b) {
     return o_vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-/* |got - want| in units of the last place of (float)want, never finer than the smallest subnormal 2^-149; INFINITY for NaN and for
- * an infinity where none is wanted. */
+/* |got - want| in units of the last place of (float)want, never finer than the smallest subnormal 2^-149; INFINITY for
+ * NaN and for an infinity where none is wanted. */
 static inline ld o_ulp(float got, ld want) {
     const float near = (float)want;
     if (isnan(got) || isnan(want)) return (ld)INFINITY;
@@ -148,9 +150,12 @@ static inline int o_above(o_vec3 wo, o_vec3 wi) { return wo.z > 0.0L && wi.z > 0
 
 /* ---- one dimension ---- */
 
-/* density 2 lerp(a,b,x) / (a+b); the quadratic of the cumulative solved in the form that cancels for neither sign of b - a */
+/* density 2 lerp(a,b,x) / (a+b); the quadratic of the cumulative solved in the form that cancels for neither sign of b
+ * - a */
 static inline ld o_linear_root(ld a, ld b, ld u) { return sqrtl(a * a * (1.0L - u) + b * b * u); }
-static inline ld o_linear_map(ld a, ld b, ld u) { return u == 0.0L ? 0.0L : u * (a + b) / (a + o_linear_root(a, b, u)); }
+static inline ld o_linear_map(ld a, ld b, ld u) {
+    return u == 0.0L ? 0.0L : u * (a + b) / (a + o_linear_root(a, b, u));
+}
 static inline ld o_linear_pdf(ld a, ld b, ld x) {
     return x >= 0.0L && x <= 1.0L ? 2.0L * (a * (1.0L - x) + b * x) / (a + b) : 0.0L;
 }
@@ -174,7 +179,9 @@ static inline ld o_exponential_pdf_u(ld rate, ld u) { return rate * (1.0L - u); 
 static inline ld o_exponential_invert(ld rate, ld x) { return -expm1l(-rate * x); }
 
 /* density rate exp(-rate x) / (1 - exp(-rate xmax)) on [0, xmax]; uniform at rate 0 */
-static inline ld o_truncexp_left(ld q, ld u) { return (1.0L - u) + u * expl(-q); } /* exp(-rate x) at u, q = rate xmax */
+static inline ld o_truncexp_left(ld q, ld u) {
+    return (1.0L - u) + u * expl(-q);
+} /* exp(-rate x) at u, q = rate xmax */
 static inline ld o_truncexp_map(ld rate, ld xmax, ld u) {
     const ld left = o_truncexp_left(rate * xmax, u);
     if (rate == 0.0L) return u * xmax;
@@ -191,15 +198,16 @@ static inline ld o_truncexp_invert(ld rate, ld xmax, ld x) {
     return rate == 0.0L ? x / xmax : expm1l(-rate * x) / expm1l(-rate * xmax);
 }
 
-/* Inverse of the standard normal cumulative: Halley's iteration on erfl in the middle, on erfcl in the tails (each relative to the
- * quantity that is small there), started from Abramowitz and Stegun 26.2.23 (error below 4.5e-4). */
+/* Inverse of the standard normal cumulative: Halley's iteration on erfl in the middle, on erfcl in the tails (each
+ * relative to the quantity that is small there), started from Abramowitz and Stegun 26.2.23 (error below 4.5e-4). */
 static inline ld o_normal_quantile(ld u) {
     if (u < O_U_MIN) u = O_U_MIN;
     const ld q = u - 0.5L;
     const ld p = u < 0.5L ? u : 1.0L - u;
     const int middle = fabsl(q) < 0.25L;
     const ld t = sqrtl(-2.0L * logl(p));
-    ld z = (2.515517L + t * (0.802853L + t * 0.010328L)) / (1.0L + t * (1.432788L + t * (0.189269L + t * 0.001308L))) - t;
+    ld z =
+        (2.515517L + t * (0.802853L + t * 0.010328L)) / (1.0L + t * (1.432788L + t * (0.189269L + t * 0.001308L))) - t;
     if (middle) {
         z = q < 0.0L ? z : -z;
         if (q == 0.0L) return 0.0L;
@@ -248,7 +256,9 @@ static inline ld o_power_pdf_u(ld n, ld u) { return (n + 1.0L) * o_pow(u, n / (n
 static inline ld o_power_invert(ld n, ld x) { return o_pow(x, n + 1.0L); }
 
 /* density (n+1)/2 |x|^n on [-1, 1] */
-static inline ld o_evenpower_map(ld n, ld u) { return copysignl(o_power_map(n, fabsl(2.0L * u - 1.0L)), 2.0L * u - 1.0L); }
+static inline ld o_evenpower_map(ld n, ld u) {
+    return copysignl(o_power_map(n, fabsl(2.0L * u - 1.0L)), 2.0L * u - 1.0L);
+}
 static inline ld o_evenpower_pdf(ld n, ld x) { return 0.5L * o_power_pdf(n, fabsl(x)); }
 static inline ld o_evenpower_pdf_u(ld n, ld u) { return 0.5L * o_power_pdf_u(n, fabsl(2.0L * u - 1.0L)); }
 static inline ld o_evenpower_invert(ld n, ld x) {
@@ -348,7 +358,9 @@ static inline o_vec2 o_cone_invert(ld k, o_vec3 w) { return o_v2(o_one_minus_cos
 /* ---- Phong: density (n+1) cos^n / (2 pi) ---- */
 
 static inline o_vec3 o_phong_lobe_map(ld n, ld u1, ld u2) { return o_polar(-expm1l(log1pl(-u1) / (n + 1.0L)), u2); }
-static inline ld o_phong_lobe_pdf(ld n, o_vec3 w) { return (n + 1.0L) / (2.0L * O_PI) * o_cos_pow(w.x * w.x + w.y * w.y, w.z, n); }
+static inline ld o_phong_lobe_pdf(ld n, o_vec3 w) {
+    return (n + 1.0L) / (2.0L * O_PI) * o_cos_pow(w.x * w.x + w.y * w.y, w.z, n);
+}
 static inline ld o_phong_lobe_pdf_u(ld n, ld u1, ld u2) {
     (void)u2;
     return (n + 1.0L) / (2.0L * O_PI) * expl(log1pl(-u1) * (n / (n + 1.0L)));
@@ -358,8 +370,8 @@ static inline o_vec2 o_phong_lobe_invert(ld n, o_vec3 w) {
     return o_v2(w.z > 0.0L ? -expm1l(-0.5L * (n + 1.0L) * log1pl(rr / (w.z * w.z))) : 1.0L, o_turn(w.y, w.x));
 }
 
-/* About the mirror direction R. When wo is not unit to the last digit, neither is R, and the Duff frame on it is only as orthogonal
- * as |R| is near 1: pdf_u is the density of the lobe at u, and differs by that much from pdf(map(u)). */
+/* About the mirror direction R. When wo is not unit to the last digit, neither is R, and the Duff frame on it is only
+ * as orthogonal as |R| is near 1: pdf_u is the density of the lobe at u, and differs by that much from pdf(map(u)). */
 static inline o_vec3 o_mirror(o_vec3 wo) { return o_vec(-wo.x, -wo.y, wo.z); }
 static inline ld o_phong_cos_pow(ld n, o_vec3 wo, o_vec3 wi) { /* cos(R, wi)^n, the sine from the cross product */
     const o_vec3 r = o_mirror(wo);
@@ -431,7 +443,8 @@ static inline ld o_ggx_d(ld ax, ld ay, o_vec3 h) {
 }
 static inline o_vec3 o_ggx_h_map(ld ax, ld ay, ld u1, ld u2) { return o_slopes(ax, ay, u1 / (1.0L - u1), u2); }
 static inline ld o_ggx_h_pdf(ld ax, ld ay, o_vec3 h) { return h.z > 0.0L ? o_ggx_d(ax, ay, h) * h.z / o_len(h) : 0.0L; }
-static inline ld o_ggx_h_pdf_u(ld ax, ld ay, ld u1, ld u2) { /* (1-u1)^2 / (pi ax ay c^3), since q = c^2 (1 + rr) = c^2 / (1-u1) */
+static inline ld o_ggx_h_pdf_u(ld ax, ld ay, ld u1,
+                               ld u2) { /* (1-u1)^2 / (pi ax ay c^3), since q = c^2 (1 + rr) = c^2 / (1-u1) */
     ld s, c;
     o_sincos2pi(u2, &s, &c);
     const ld t2 = u1 / (1.0L - u1) * (ax * c * (ax * c) + ay * s * (ay * s));
@@ -535,10 +548,11 @@ static inline ld o_ashikhmin_weight(ld nu, ld nv, o_vec3 wo, o_vec3 wi) {
     return o_above(wo, wi) ? wi.z / fmaxl(wo.z, wi.z) : 0.0L;
 }
 
-/* ---- Beckmann: Smith's Lambda = ierfc(a) / (2a), a = 1 / (alpha tan(theta)), ierfc(a) = exp(-a^2)/sqrt(pi) - a erfc(a) ---- */
+/* ---- Beckmann: Smith's Lambda = ierfc(a) / (2a), a = 1 / (alpha tan(theta)), ierfc(a) = exp(-a^2)/sqrt(pi) - a
+ * erfc(a) ---- */
 
-/* Past 2 the two terms cancel: there ierfc / erfc by the continued fraction 1/2 / (a + 1/(a + 3/2/(a + 2/(a + ...)))), DLMF 7.18.13
- * for n = 1. 120 levels settle the last digit at a = 2. */
+/* Past 2 the two terms cancel: there ierfc / erfc by the continued fraction 1/2 / (a + 1/(a + 3/2/(a + 2/(a + ...)))),
+ * DLMF 7.18.13 for n = 1. 120 levels settle the last digit at a = 2. */
 static inline ld o_ierfc(ld a) {
     ld tail = a;
     if (a < 2.0L) return expl(-a * a) * O_INV_SQRT_PI - a * erfcl(a);
@@ -573,7 +587,9 @@ static inline ld o_beckmann_weight(ld ax, ld ay, o_vec3 wo, o_vec3 wi) {
 /* ---- GGX: with t(w) = |(ax w.x, ay w.y, w.z)|, 1 + 2 Lambda = t / w.z ---- */
 
 static inline ld o_ggx_t(ld ax, ld ay, o_vec3 w) { return o_len(o_vec(ax * w.x, ay * w.y, w.z)); }
-static inline ld o_ggx_g1(ld ax, ld ay, o_vec3 w) { return w.z > 0.0L ? 2.0L * w.z / (w.z + o_ggx_t(ax, ay, w)) : 0.0L; }
+static inline ld o_ggx_g1(ld ax, ld ay, o_vec3 w) {
+    return w.z > 0.0L ? 2.0L * w.z / (w.z + o_ggx_t(ax, ay, w)) : 0.0L;
+}
 /* wo.z wi.z / G2, as for Beckmann */
 static inline ld o_ggx_shadow(ld ax, ld ay, o_vec3 wo, o_vec3 wi) {
     return 0.5L * (o_ggx_t(ax, ay, wo) * wi.z + o_ggx_t(ax, ay, wi) * wo.z);
@@ -581,7 +597,9 @@ static inline ld o_ggx_shadow(ld ax, ld ay, o_vec3 wo, o_vec3 wi) {
 static inline ld o_ggx_g2(ld ax, ld ay, o_vec3 wo, o_vec3 wi) {
     return o_above(wo, wi) ? wo.z * wi.z / o_ggx_shadow(ax, ay, wo, wi) : 0.0L;
 }
-static inline o_vec3 o_ggx_map(ld ax, ld ay, o_vec3 wo, ld u1, ld u2) { return o_reflect(wo, o_ggx_h_map(ax, ay, u1, u2)); }
+static inline o_vec3 o_ggx_map(ld ax, ld ay, o_vec3 wo, ld u1, ld u2) {
+    return o_reflect(wo, o_ggx_h_map(ax, ay, u1, u2));
+}
 static inline ld o_ggx_pdf(ld ax, ld ay, o_vec3 wo, o_vec3 wi) {
     const o_vec3 H = o_add(wo, wi);
     return o_above(wo, wi) ? o_ggx_h_pdf(ax, ay, H) / (2.0L * o_len(H)) : 0.0L;
@@ -599,7 +617,8 @@ static inline ld o_ggx_weight(ld ax, ld ay, o_vec3 wo, o_vec3 wi) {
 
 /* ---- GGX visible normals by spherical caps (Dupuy and Benyoub 2023), bounded (Eto and Tokuyoshi 2023) ---- */
 
-/* The view where the surface is a hemisphere: i unit, (ex, ey) its azimuth, s its sine; k bounds the cap, k1 = 1 - k. */
+/* The view where the surface is a hemisphere: i unit, (ex, ey) its azimuth, s its sine; k bounds the cap, k1 = 1 - k.
+ */
 typedef struct {
     o_vec3 i;
     ld t, s, ex, ey, k, k1;
@@ -638,7 +657,8 @@ static inline o_vec3 o_cap(o_view v, ld u1, ld u2) {
     o_sincos2pi(u1, &s, &c);
     ld hs, hc;
     o_sincos2pi(0.5L * u1, &hs, &hc);
-    const ld along = c >= 0.0L || v.s == 0.0L ? v.s + sc * c : (1.0L - d - v.i.z) * mz / (v.s + sc) + 2.0L * sc * hc * hc;
+    const ld along =
+        c >= 0.0L || v.s == 0.0L ? v.s + sc * c : (1.0L - d - v.i.z) * mz / (v.s + sc) + 2.0L * sc * hc * hc;
     const ld across = sc * s;
     return o_vec(along * v.ex - across * v.ey, along * v.ey + across * v.ex, mz);
 }
@@ -674,7 +694,8 @@ static inline o_vec2 o_visible_h_invert(ld ax, ld ay, o_view v, o_vec3 h) {
     const ld x = k * m.x - v.i.x;
     const ld y = k * m.y - v.i.y;
     const ld z = k * m.z - v.i.z;
-    return o_v2(o_turn(v.ex * y - v.ey * x, v.ex * x + v.ey * y), o_one_minus_cos(o_vec(x, y, z)) / (1.0L + v.k * v.i.z));
+    return o_v2(o_turn(v.ex * y - v.ey * x, v.ex * x + v.ey * y),
+                o_one_minus_cos(o_vec(x, y, z)) / (1.0L + v.k * v.i.z));
 }
 static inline ld o_visible_pdf(ld ax, ld ay, o_view v, o_vec3 wo, o_vec3 wi) {
     return o_above(wo, wi) ? o_ggx_d(ax, ay, o_add(wo, wi)) / (2.0L * (v.k * wo.z + v.t)) : 0.0L;

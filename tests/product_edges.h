@@ -1,5 +1,5 @@
-/* Products of environment, reflection and cosine at their edges: no light is left out, whatever is asked of them, in any memory, by
- * array, in a turned map; where tiles lie. A part of test_product.c. */
+/* Products of environment, reflection and cosine at their edges: no light is left out, whatever is asked of them, in
+ * any memory, by array, in a turned map; where tiles lie. A part of test_product.c. */
 #ifndef MCST_PRODUCT_EDGES_H
 #define MCST_PRODUCT_EDGES_H
 #include "product_sampler.h"
@@ -7,7 +7,9 @@
 /* ---- support ---- */
 
 /* One after another: the first `most` of GGX, or those that are not GGX. */
-static lobe lobe_of(int shaped, int i, int most) { return lobes[shaped ? FIRST_GAUSS + i % (LOBES - FIRST_GAUSS) : i % most]; }
+static lobe lobe_of(int shaped, int i, int most) {
+    return lobes[shaped ? FIRST_GAUSS + i % (LOBES - FIRST_GAUSS) : i % most];
+}
 
 typedef struct {
     const char *name;
@@ -33,7 +35,8 @@ static void check_map_is_supported(const supported_map *map, uint32_t rows, int 
     uint32_t c = 0;
     uint32_t r = 0;
     for (int i = 0; i < map->normals; i++) {
-        const surface s = surface_make(normal_of_support(i), local_wo(0.05 + 0.019 * i, 0.07 * i), lobe_of(shaped, i, 6));
+        const surface s =
+            surface_make(normal_of_support(i), local_wo(0.05 + 0.019 * i, 0.07 * i), lobe_of(shaped, i, 6));
         for (int form = 0; form < 2; form++) {
             sampler d = sampler_make(&m, &s, form);
             const int bad = d.share > 0 ? 0 : unsupported(&d, map->sub, &c, &r);
@@ -88,11 +91,11 @@ static void check_barely_lit(const sampler *d, const lone_texel *at, double z, i
     CHECK(bad == 0, "%s: %d texels cannot be drawn, the first rises to %g", d->p ? "prepared" : "one-shot", bad, z);
     for (int j = 0; j < 64; j++) {
         const mcs_texel t = draw(d, hash01((uint32_t)j, 9), hash01((uint32_t)j, 10));
-        CHECK(t.pdf >= 0 && t.pdf <= FLT_MAX && agrees(d, t), "2^-%d over the horizon: pdf %g, again %g", i, (double)t.pdf,
-              density(d, t.w));
+        CHECK(t.pdf >= 0 && t.pdf <= FLT_MAX && agrees(d, t), "2^-%d over the horizon: pdf %g, again %g", i,
+              (double)t.pdf, density(d, t.w));
         if (z > 4 * eps && !(d->share > 0))
-            CHECK(t.pdf > 0 && t.row == at->row && t.col == at->col, "2^-%d over the horizon: texel (%u, %u), pdf %g", i, t.col,
-                  t.row, (double)t.pdf);
+            CHECK(t.pdf > 0 && t.row == at->row && t.col == at->col, "2^-%d over the horizon: texel (%u, %u), pdf %g",
+                  i, t.col, t.row, (double)t.pdf);
     }
 }
 static void check_barely_visible(uint32_t rows, int others, int shaped) {
@@ -130,11 +133,13 @@ static void check_support(int shaped) {
     const char *of = shaped ? ", Gauss and Phong" : "";
     for (int a = 0; a < (int)(sizeof maps / sizeof *maps); a++)
         for (uint32_t rows = 16; rows <= 64; rows *= 2)
-            if (mcst_case("%s, %u rows of tiles%s", maps[a].name, rows, of)) check_map_is_supported(&maps[a], rows, shaped);
+            if (mcst_case("%s, %u rows of tiles%s", maps[a].name, rows, of))
+                check_map_is_supported(&maps[a], rows, shaped);
     /* A texel of which just one corner rises over the horizon. */
     for (int a = 0; a < 3; a++)
         for (uint32_t rows = 16; rows <= 64; rows *= 2)
-            if (mcst_case("barely visible%s, %u rows of tiles%s", beside[a], rows, of)) check_barely_visible(rows, a, shaped);
+            if (mcst_case("barely visible%s, %u rows of tiles%s", beside[a], rows, of))
+                check_barely_visible(rows, a, shaped);
 }
 
 static void test_support(void) {
@@ -155,8 +160,8 @@ static void check_black(const sampler *d, const scene *even) {
         const mcs_vec3 w = mcs_sphere_sample(u1, u2).w;
         const mcs_texel a = draw(d, u1, u2);
         const mcs_texel b = draw(&e, u1, u2);
-        CHECK(density(d, w) == density(&e, w) && !memcmp(&a, &b, sizeof a), "black: density %g, of an even map %g", density(d, w),
-              density(&e, w));
+        CHECK(density(d, w) == density(&e, w) && !memcmp(&a, &b, sizeof a), "black: density %g, of an even map %g",
+              density(d, w), density(&e, w));
     }
     sampler_free(&e);
 }
@@ -191,7 +196,8 @@ static void check_extreme_surfaces(const extreme_map *map, uint32_t rows) {
 
 static void check_eyes_below(void) {
     scene m = scene_make("sun", 64, 32, v_sun, 16);
-    static const float bad_wo[][3] = {{0, 0, -1}, {1, 0, 0}, {0.6f, 0, -0.8f}, {0, 0, 0}, {NAN, 0, 1}, {0, 0, INFINITY}, {0, 0, 5}};
+    static const float bad_wo[][3] = {{0, 0, -1},  {1, 0, 0},        {0.6f, 0, -0.8f}, {0, 0, 0},
+                                      {NAN, 0, 1}, {0, 0, INFINITY}, {0, 0, 5}};
     for (int form = 0; form < 2; form++)
         for (int i = 0; i < (int)(sizeof bad_wo / sizeof *bad_wo); i++) {
             surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[2]);
@@ -214,7 +220,8 @@ static void check_light_below(void) {
     for (int form = 0; form < 2; form++)
         for (int i = 0; i < 4; i++) {
             const mcs_vec3 to = point(64, 32, 21, 10, 0.5, 0.5);
-            const surface s = surface_make(vec(-(double)to.x, -(double)to.y, -(double)to.z), local_wo(0.5, 0), lobes[i]);
+            const surface s =
+                surface_make(vec(-(double)to.x, -(double)to.y, -(double)to.z), local_wo(0.5, 0), lobes[i]);
             sampler d = sampler_make(&m, &s, form);
             CHECK(d.dark, "the product is not dark");
             CHECK(!(draw(&d, 0.3f, 0.6f).pdf > 0) && density(&d, to) == 0, "%s: the light behind has density %g",
@@ -269,7 +276,8 @@ static void check_refused_products(const scene *m, const sampler *d, const mcs_r
     CHECK(mcs_product_build(d->p, bytes, NULL, env_of(m), r) == MCS_ERR_ARG, "no tiles");
     CHECK(mcs_product_build(d->p, bytes, tiles_of(m), NULL, r) == MCS_ERR_ARG, "no map");
     CHECK(mcs_product_build(d->p, bytes, tiles_of(m), env_of(m), NULL) == MCS_ERR_ARG, "no reflection");
-    CHECK(mcs_product_build((mcs_product *)(void *)(d->mem.at + 4), bytes, tiles_of(m), env_of(m), r) == MCS_ERR_ARG, "misaligned");
+    CHECK(mcs_product_build((mcs_product *)(void *)(d->mem.at + 4), bytes, tiles_of(m), env_of(m), r) == MCS_ERR_ARG,
+          "misaligned");
     CHECK(mcs_product_build_weights(d->p, bytes, tiles_of(m), env_of(m), NULL) == MCS_ERR_ARG, "no weights");
     CHECK(arena_intact(&d->mem), "refused arguments, yet wrote outside");
     CHECK(mcs_product_build(d->p, bytes, tiles_of(m), env_of(m), r) == MCS_OK, "the same again");
@@ -279,7 +287,8 @@ static void check_refused_products(const scene *m, const sampler *d, const mcs_r
 static void check_moved_tiles(const scene *m, const sampler *d, const mcs_reflection *r, size_t bytes, arena *moved) {
     CHECK(mcs_tiles_build(NULL, moved->bytes, env_of(m), m->rows) == MCS_ERR_ARG, "no memory");
     CHECK(mcs_tiles_build((mcs_tiles *)(void *)moved->at, moved->bytes, NULL, m->rows) == MCS_ERR_ARG, "no map");
-    CHECK(mcs_tiles_build((mcs_tiles *)(void *)(moved->at + 4), moved->bytes, env_of(m), m->rows) == MCS_ERR_ARG, "misaligned");
+    CHECK(mcs_tiles_build((mcs_tiles *)(void *)(moved->at + 4), moved->bytes, env_of(m), m->rows) == MCS_ERR_ARG,
+          "misaligned");
     CHECK(mcs_tiles_build((mcs_tiles *)(void *)moved->at, moved->bytes - 1, env_of(m), m->rows) == MCS_ERR_MEMORY,
           "one byte too few");
     CHECK(untouched(moved->at, moved->bytes), "refused arguments, yet wrote");
@@ -346,10 +355,11 @@ static void check_refused_sizes(void) {
     static const uint32_t wrong[] = {0, 1, 8, 15, 17, 24, 48, 65, 128, 0x80000000u, 0xffffffffu};
     scene m = scene_make("sun", 64, 32, v_sun, 16);
     for (int i = 0; i < (int)(sizeof wrong / sizeof *wrong); i++) {
-        CHECK(mcs_tiles_bytes(env_of(&m), wrong[i]) == 0, "%u rows: %zu bytes", wrong[i], mcs_tiles_bytes(env_of(&m), wrong[i]));
+        CHECK(mcs_tiles_bytes(env_of(&m), wrong[i]) == 0, "%u rows: %zu bytes", wrong[i],
+              mcs_tiles_bytes(env_of(&m), wrong[i]));
         CHECK(mcs_product_bytes(wrong[i]) == 0, "%u rows: %zu bytes", wrong[i], mcs_product_bytes(wrong[i]));
-        CHECK(mcs_tiles_build((mcs_tiles *)(void *)m.tiles.at, m.tiles.bytes, env_of(&m), wrong[i]) == MCS_ERR_SIZE, "%u rows",
-              wrong[i]);
+        CHECK(mcs_tiles_build((mcs_tiles *)(void *)m.tiles.at, m.tiles.bytes, env_of(&m), wrong[i]) == MCS_ERR_SIZE,
+              "%u rows", wrong[i]);
     }
     CHECK(mcs_tiles_bytes(NULL, 16) == 0, "no map");
     scene_free(&m);
@@ -374,8 +384,8 @@ static void test_memory(void) {
     if (mcst_case("room on the stack")) check_room_on_stack();
     if (mcst_case("refused sizes")) check_refused_sizes();
 }
-/* A draw by array is that of sample. Where a*b + c is contracted the places of both differ by rounding, and with them perhaps the
- * texel: there its density has to be that of its direction. */
+/* A draw by array is that of sample. Where a*b + c is contracted the places of both differ by rounding, and with them
+ * perhaps the texel: there its density has to be that of its direction. */
 static int same_draw(const sampler *d, float u1, float u2, mcs_texel by_array) {
     const mcs_texel t = mcs_product_sample(d->p, tiles_of(d->m), env_of(d->m), u1, u2);
     if (!mcst_arrays_contract()) return !memcmp(&t, &by_array, sizeof t);
@@ -404,8 +414,8 @@ static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
                 u2[off + 3] = 1.0f;
             }
             if (count > 4) u1[off + 4] = 0.0f;
-            mcs_product_sample_n(d->p, tiles_of(d->m), env_of(d->m), (size_t)count, u1 + off, u2 + off, all[0] + off, all[1] + off,
-                                 all[2] + off, all[3] + off, col[0] + off, row[0] + off);
+            mcs_product_sample_n(d->p, tiles_of(d->m), env_of(d->m), (size_t)count, u1 + off, u2 + off, all[0] + off,
+                                 all[1] + off, all[2] + off, all[3] + off, col[0] + off, row[0] + off);
             for (int i = off; i < count + off; i++) {
                 mcs_texel t;
                 t.w.x = all[0][i];
@@ -414,17 +424,19 @@ static void check_arrays(const sampler *d, mcs_pcg32 *rng) {
                 t.pdf = all[3][i];
                 t.col = col[0][i];
                 t.row = row[0][i];
-                CHECK(same_draw(d, u1[i], u2[i], t), "n = %d, entry %d: not that of sample(%a, %a)", count, i, (double)u1[i],
-                      (double)u2[i]);
+                CHECK(same_draw(d, u1[i], u2[i], t), "n = %d, entry %d: not that of sample(%a, %a)", count, i,
+                      (double)u1[i], (double)u2[i]);
             }
-            mcs_product_sample_n(d->p, tiles_of(d->m), env_of(d->m), (size_t)count, u1 + off, u2 + off, wanted & 1 ? x + off : NULL,
-                                 wanted & 2 ? y + off : NULL, wanted & 4 ? out[2] + off : NULL, wanted & 8 ? out[3] + off : NULL,
+            mcs_product_sample_n(d->p, tiles_of(d->m), env_of(d->m), (size_t)count, u1 + off, u2 + off,
+                                 wanted & 1 ? x + off : NULL, wanted & 2 ? y + off : NULL,
+                                 wanted & 4 ? out[2] + off : NULL, wanted & 8 ? out[3] + off : NULL,
                                  wanted & 2 ? col[1] + off : NULL, wanted & 1 ? row[1] + off : NULL);
             for (int i = off; i < count + off; i++)
-                CHECK((!(wanted & 1) || !memcmp(all[0] + i, x + i, 4)) && (!(wanted & 2) || !memcmp(all[1] + i, y + i, 4)) &&
+                CHECK((!(wanted & 1) || !memcmp(all[0] + i, x + i, 4)) &&
+                          (!(wanted & 2) || !memcmp(all[1] + i, y + i, 4)) &&
                           (!(wanted & 4) || !memcmp(all[2] + i, out[2] + i, 4)) &&
-                          (!(wanted & 8) || !memcmp(all[3] + i, out[3] + i, 4)) && (!(wanted & 2) || col[0][i] == col[1][i]) &&
-                          (!(wanted & 1) || row[0][i] == row[1][i]),
+                          (!(wanted & 8) || !memcmp(all[3] + i, out[3] + i, 4)) &&
+                          (!(wanted & 2) || col[0][i] == col[1][i]) && (!(wanted & 1) || row[0][i] == row[1][i]),
                       "n = %d, entry %d, outputs %d: not those of all", count, i, k);
         }
     }
@@ -440,7 +452,8 @@ static int has_fine(const sampler *d) {
 static void test_arrays(void) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 72);
     mcst_group("product, arrays");
-    for (int i = 0; i < 6; i++) { /* the last one has fine grids and no share for the lobe: then arrays go through them, too */
+    for (int i = 0; i < 6;
+         i++) { /* the last one has fine grids and no share for the lobe: then arrays go through them, too */
         static const int of[] = {0, 2, 8, 1, 2, 4};
         if (!mcst_case("%s%s", lobes[of[i]].name, i == 3 ? ", black" : i == 4 ? ", constant" : "")) continue;
         scene m = scene_make("sun", 64, 32, i == 3 ? v_black : i == 4 ? v_constant : v_sun, 16);
@@ -478,8 +491,8 @@ static void test_turned(void) {
             for (uint32_t c = 0; c < 64; c++) {
                 const double p = density(&e, mcs_to_world(&f, point(64, 32, c, r, 0.5, 0.5)));
                 const double want = expected[r * 64 + c];
-                /* Cosines move by some 4 eps, weights by that over a cosine; tiles on the horizon have one of a hundredth at least
-                 * where they are not at the floor; shares are integers over 2^24 */
+                /* Cosines move by some 4 eps, weights by that over a cosine; tiles on the horizon have one of a
+                 * hundredth at least where they are not at the floor; shares are integers over 2^24 */
                 CHECK(fabs(p - want) <= 1e-4 * want + 1e-6, "texel (%u, %u): density %g, not %g", c, r, p, want);
             }
         for (int i = 0; i < 500; i++) {
@@ -526,13 +539,13 @@ static void test_directions(void) {
                 CHECK(fabs(len - 1) <= 8 * eps, "tile %u: length 1 + %g", j * m.rows + i, len - 1);
                 double col, row;
                 texel_of(m.w, m.h, w, &col, &row);
-                /* The mean of directions at one height lies nearer to the pole: tan(theta) of it is at least their tan times the
-                 * cosine of half their azimuths' range. */
+                /* The mean of directions at one height lies nearer to the pole: tan(theta) of it is at least their tan
+                 * times the cosine of half their azimuths' range. */
                 const double bulge = c1 > c0 && c1 - c0 < m.w / 2 + 1 ? cos(pi * (c1 - c0) / m.w) : 0;
                 if (t1 <= pi / 2) t0 = atan(tan(t0) * bulge);
                 if (t0 >= pi / 2) t1 = pi - atan(tan(pi - t1) * bulge);
-                CHECK(row * pi / m.h >= t0 - 1e-6 && row * pi / m.h <= t1 + 1e-6, "tile (%u, %u): row %g, not in %u to %u", i, j,
-                      row, r0, r1);
+                CHECK(row * pi / m.h >= t0 - 1e-6 && row * pi / m.h <= t1 + 1e-6,
+                      "tile (%u, %u): row %g, not in %u to %u", i, j, row, r0, r1);
                 if (fabs((double)w.x) + fabs((double)w.y) > 1e-4)
                     CHECK((col >= c0 - 1e-2 && col <= c1 + 1e-2) || col >= m.w + c0 - 1e-2,
                           "tile (%u, %u): column %g, not in %u to %u", i, j, col, c0, c1);

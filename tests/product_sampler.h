@@ -1,5 +1,5 @@
-/* What the tests of products share: the prepared and the one-shot form behind one interface; their density over a tile's light,
- * which is piecewise bilinear, measured and known within bounds; what holds of every draw. */
+/* What the tests of products share: the prepared and the one-shot form behind one interface; their density over a
+ * tile's light, which is piecewise bilinear, measured and known within bounds; what holds of every draw. */
 #ifndef MCST_PRODUCT_SAMPLER_H
 #define MCST_PRODUCT_SAMPLER_H
 #include "product_scene.h"
@@ -25,9 +25,12 @@ static inline box tile_box(const scene *m, uint32_t tile) {
     b.line = m->line + (size_t)j * m->h;
     return b;
 }
-/* Probabilities of rows and of columns are integers, once of the map and once of the tile's window (its rows): each moves by one of
- * rounding, its own one, and its share of those for all. Relative; of a row, of light in a row, of places among a tile's rows. */
-static inline double slack_of_row(const scene *m, uint32_t r) { return (2 * m->total / m->row_sum[r] + m->h) * quantum; }
+/* Probabilities of rows and of columns are integers, once of the map and once of the tile's window (its rows): each
+ * moves by one of rounding, its own one, and its share of those for all. Relative; of a row, of light in a row, of
+ * places among a tile's rows. */
+static inline double slack_of_row(const scene *m, uint32_t r) {
+    return (2 * m->total / m->row_sum[r] + m->h) * quantum;
+}
 static inline double slack_of(const scene *m, double light, uint32_t r) {
     return (2 * m->row_sum[r] / (light * m->area[r]) + m->w) * quantum;
 }
@@ -38,7 +41,8 @@ static inline double slack_of_tile(const scene *m, box b) {
     }
     return most;
 }
-/* A texel's place among the light of its tile: t1 by columns within the row, t2 by rows, as where it begins and how much it has. */
+/* A texel's place among the light of its tile: t1 by columns within the row, t2 by rows, as where it begins and how
+ * much it has. */
 typedef struct {
     double t1, part1, t2, part2, line;
 } span;
@@ -61,7 +65,8 @@ static inline span span_of(const scene *m, uint32_t c, uint32_t r) {
     s.part1 = weight_of(m, c, r) / s.line;
     return s;
 }
-/* By how much places in a texel are off: directions, as floats, lie 2^-22 of the map's texels wrong; probabilities are integers. */
+/* By how much places in a texel are off: directions, as floats, lie 2^-22 of the map's texels wrong; probabilities are
+ * integers. */
 typedef struct {
     double t1, t2;
 } places;
@@ -92,7 +97,8 @@ static inline double direction_at(const scene *m, box b, double t1, double t2, m
     s->part2 = part;
     s->line = b.line[r];
     uint32_t c;
-    for (c = b.c0; c + 1 < b.c1 && t1 >= s->t1 + weight_of(m, c, r) / s->line; c++) s->t1 += weight_of(m, c, r) / s->line;
+    for (c = b.c0; c + 1 < b.c1 && t1 >= s->t1 + weight_of(m, c, r) / s->line; c++)
+        s->t1 += weight_of(m, c, r) / s->line;
     const double light = weight_of(m, c, r);
     s->part1 = light / s->line;
     *w = point(m->w, m->h, c, r, (t1 - s->t1) / s->part1, (t2 - s->t2) / part);
@@ -101,8 +107,9 @@ static inline double direction_at(const scene *m, box b, double t1, double t2, m
 
 /* ---- both forms under one roof ---- */
 
-/* Density over light within a tile, as a function of the places (t1, t2): continuous, and bilinear in each of `parts` by `parts`
- * equal cells. Its nodes are at k / parts, those of one t1 together; `blur`: by how much a value may be wrong. */
+/* Density over light within a tile, as a function of the places (t1, t2): continuous, and bilinear in each of `parts`
+ * by `parts` equal cells. Its nodes are at k / parts, those of one t1 together; `blur`: by how much a value may be
+ * wrong. */
 enum { FINE = 7, FINE_TILES = 32 };
 typedef struct {
     double v, blur;
@@ -142,12 +149,13 @@ static inline void sampler_ready(sampler *d) {
     CHECK(arena_intact(&d->mem), "wrote outside its %zu bytes", d->mem.bytes);
 }
 static inline double within(double x, double least, double most) { return x > least ? fmin(x, most) : least; }
-/* The lobe in the one-shot form: its share as documented, of a reflection within the limits that the library keeps. To x belong 6
- * roundings of x + 0.3, to the share 4. */
+/* The lobe in the one-shot form: its share as documented, of a reflection within the limits that the library keeps. To
+ * x belong 6 roundings of x + 0.3, to the share 4. */
 static inline void oneshot_share(sampler *d, const mcs_reflection *r) {
     const double ax = within((double)r->alpha_x, 1e-4, 1e4);
     const double ay = within((double)r->alpha_y, 1e-4, 1e4);
-    const double x = (r->profile == MCS_PROFILE_GGX ? 1 : 3) / (2.0 * d->m->rows * d->m->rows * ax * ay * (double)r->wo.z) - 0.3;
+    const double x =
+        (r->profile == MCS_PROFILE_GGX ? 1 : 3) / (2.0 * d->m->rows * d->m->rows * ax * ay * (double)r->wo.z) - 0.3;
     const double rest = 1 - within((double)r->matte, 0, 1);
     d->share = d->share_off = 0;
     if (!(x > 0)) return;
@@ -192,8 +200,9 @@ static inline double own_density(const sampler *d, mcs_vec3 w) {
     if (r->profile == MCS_PROFILE_PHONG) return (double)mcs_phong_pdf(&d->phong, r->wo, w);
     return (double)mcs_ggx_vndf_pdf(&d->own, r->wo, w);
 }
-/* What the tiles have of the density. The prepared form can be asked for it; from the one-shot form the lobe is taken off, which
- * leaves the rounding of three operations and of the share; below FLT_MIN to 2^-149. `all`: with the lobe. */
+/* What the tiles have of the density. The prepared form can be asked for it; from the one-shot form the lobe is taken
+ * off, which leaves the rounding of three operations and of the share; below FLT_MIN to 2^-149. `all`: with the lobe.
+ */
 static inline double tile_density(const sampler *d, mcs_vec3 w, double *blur, double *all) {
     *blur = 0;
     *all = density(d, w);
@@ -226,7 +235,9 @@ static inline void doubt_add(doubt *d, const double *v, double blur, int parts) 
     d->slope2 = fmax(d->slope2, parts * fmax(fabs(v[1] - v[0]), fabs(v[3] - v[2])));
 }
 /* By how much it varies when places are off, and with 8 roundings on the way from nodes to a value. */
-static inline double varies(const doubt *d, places off) { return d->slope1 * off.t1 + d->slope2 * off.t2 + 8 * eps * d->top; }
+static inline double varies(const doubt *d, places off) {
+    return d->slope1 * off.t1 + d->slope2 * off.t2 + 8 * eps * d->top;
+}
 static inline doubt fit_doubt(const fit *f, double t1, double t2, places off) {
     const int i1 = cell_of(f->parts, t1 + off.t1);
     const int j1 = cell_of(f->parts, t2 + off.t2);
@@ -244,7 +255,8 @@ static inline doubt fit_doubt(const fit *f, double t1, double t2, places off) {
         }
     return d;
 }
-/* Of a stretch of places, where in it cells begin and end: from 0 to 1, at most parts + 1 of them; the number of pieces. */
+/* Of a stretch of places, where in it cells begin and end: from 0 to 1, at most parts + 1 of them; the number of
+ * pieces. */
 static inline int fit_pieces(const fit *f, double t, double part, double *at) {
     int n = 0;
     at[0] = 0;
@@ -287,9 +299,10 @@ static inline int look_at(const sampler *d, box b, double row_slack, double t1, 
     if (!surely_in(m, (t1 - s.t1) / s.part1, (t2 - s.t2) / s.part2)) l->blur = INFINITY;
     return 1;
 }
-/* The nodes v of a cell, in the order of a fit, from four points at `in` and 1 - in of either side; of three choices the least
- * blurred where a lobe is taken off, else the first that is good. 0: no light. */
-static inline int look_at_cell(const sampler *d, box b, double row_slack, int parts, int k1, int k2, double *v, double *blur) {
+/* The nodes v of a cell, in the order of a fit, from four points at `in` and 1 - in of either side; of three choices
+ * the least blurred where a lobe is taken off, else the first that is good. 0: no light. */
+static inline int look_at_cell(const sampler *d, box b, double row_slack, int parts, int k1, int k2, double *v,
+                               double *blur) {
     static const double inset[] = {0.1, 0.2, 0.3};
     const int first = d->p || !(d->share > 0);
     *blur = INFINITY;
@@ -301,7 +314,8 @@ static inline int look_at_cell(const sampler *d, box b, double row_slack, int pa
         doubt o = {0, 0, 0, 0};
         look l[4];
         for (int k = 0; k < 4; k++) {
-            if (!look_at(d, b, row_slack, (k1 + (k & 2 ? 1 - in : in)) / parts, (k2 + (k & 1 ? 1 - in : in)) / parts, l + k))
+            if (!look_at(d, b, row_slack, (k1 + (k & 2 ? 1 - in : in)) / parts, (k2 + (k & 1 ? 1 - in : in)) / parts,
+                         l + k))
                 return 0;
             wrong = fmax(wrong, l[k].blur);
             far.t1 = fmax(far.t1, l[k].off.t1);
@@ -338,8 +352,8 @@ static inline int fit_parts(const sampler *d, uint32_t tile, double row_slack, i
         for (int k = 0; k < 4; k++) {
             node *n = f->at + (k1 + (k >> 1)) * (parts + 1) + k2 + (k & 1);
             if (n->blur < INFINITY)
-                CHECK(fabs(v[k] - n->v) <= blur + n->blur, "tile %u: cell (%d, %d) has %g at a node, another %g", tile, k1, k2,
-                      v[k], n->v);
+                CHECK(fabs(v[k] - n->v) <= blur + n->blur, "tile %u: cell (%d, %d) has %g at a node, another %g", tile,
+                      k1, k2, v[k], n->v);
             if (!(blur >= n->blur)) {
                 n->v = v[k];
                 n->blur = blur;
@@ -348,8 +362,8 @@ static inline int fit_parts(const sampler *d, uint32_t tile, double row_slack, i
     }
     return 1;
 }
-/* In one part, where no tile may have more, or if the middles of every other cell each way, one of which lies beside every node,
- * agree with that. */
+/* In one part, where no tile may have more, or if the middles of every other cell each way, one of which lies beside
+ * every node, agree with that. */
 static inline fit fit_tile(const sampler *d, uint32_t tile) {
     const box b = tile_box(d->m, tile);
     const double row_slack = slack_of_tile(d->m, b);
@@ -379,9 +393,9 @@ static inline places place_in(const scene *m, uint32_t c, uint32_t r, mcs_vec3 w
     if (fabs(in.t1 - 0.5) > 0.5 * m->w) in.t1 -= in.t1 > 0 ? m->w : -(double)m->w;
     return in;
 }
-/* By how much sample may differ from the density at the direction it returns: the place that was drawn and that of the direction
- * lie 2^-21 of the map's texels apart (the margin at a texel's border is 2^-22 of them, a turn is found to 2^-23, as floats are).
- * Places are rounded to floats. */
+/* By how much sample may differ from the density at the direction it returns: the place that was drawn and that of the
+ * direction lie 2^-21 of the map's texels apart (the margin at a texel's border is 2^-22 of them, a turn is found to
+ * 2^-23, as floats are). Places are rounded to floats. */
 static inline double apart(const sampler *d, mcs_texel t) {
     const scene *m = d->m;
     const box b = tile_box(m, tile_at(m, t.col, t.row));
@@ -427,7 +441,8 @@ static inline sampler sampler_weights(const scene *m, const surface *s, const fl
 
 /* ---- what holds of every draw ---- */
 
-/* Number of texels with light above the horizon that cannot be drawn. A float direction is not told from the horizon within eps. */
+/* Number of texels with light above the horizon that cannot be drawn. A float direction is not told from the horizon
+ * within eps. */
 static inline int unsupported(const sampler *d, int sub, uint32_t *col, uint32_t *row) {
     const scene *m = d->m;
     int n = 0;
@@ -452,8 +467,8 @@ static inline int sane(const mcs_texel *t, const scene *m) {
     const double len = sqrt((double)t->w.x * t->w.x + (double)t->w.y * t->w.y + (double)t->w.z * t->w.z);
     return t->pdf >= 0 && t->pdf <= FLT_MAX && fabs(len - 1) <= 8 * eps && t->col < m->w && t->row < m->h;
 }
-/* Whatever the surface is: finite, not negative, of unit length; sample and density agree; bad u give 0. `frame_ok`: a lobe can be
- * placed. */
+/* Whatever the surface is: finite, not negative, of unit length; sample and density agree; bad u give 0. `frame_ok`: a
+ * lobe can be placed. */
 static inline void check_sane(const sampler *d, int frame_ok) {
     for (int i = 0; i < HARD + 40; i++)
         for (int j = 0; j < (i < HARD ? HARD : 1); j++) {
@@ -461,15 +476,16 @@ static inline void check_sane(const sampler *d, int frame_ok) {
             const float u2 = i < HARD ? hard_u[j] : hash01((uint32_t)i, 12);
             const mcs_texel t = draw(d, u1, u2);
             if (frame_ok)
-                CHECK(sane(&t, d->m), "u = %a, %a: (%g, %g, %g), pdf %g", (double)u1, (double)u2, (double)t.w.x, (double)t.w.y,
-                      (double)t.w.z, (double)t.pdf);
+                CHECK(sane(&t, d->m), "u = %a, %a: (%g, %g, %g), pdf %g", (double)u1, (double)u2, (double)t.w.x,
+                      (double)t.w.y, (double)t.w.z, (double)t.pdf);
             else
-                CHECK(t.pdf >= 0 && t.pdf <= FLT_MAX && isfinite(t.w.x) && isfinite(t.w.y) && isfinite(t.w.z) && t.col < d->m->w &&
-                          t.row < d->m->h,
-                      "u = %a, %a: (%g, %g, %g), pdf %g", (double)u1, (double)u2, (double)t.w.x, (double)t.w.y, (double)t.w.z,
-                      (double)t.pdf);
+                CHECK(t.pdf >= 0 && t.pdf <= FLT_MAX && isfinite(t.w.x) && isfinite(t.w.y) && isfinite(t.w.z) &&
+                          t.col < d->m->w && t.row < d->m->h,
+                      "u = %a, %a: (%g, %g, %g), pdf %g", (double)u1, (double)u2, (double)t.w.x, (double)t.w.y,
+                      (double)t.w.z, (double)t.pdf);
             if (t.pdf > 0)
-                CHECK(agrees(d, t), "u = %a, %a: pdf %.8g, returned %.8g", (double)u1, (double)u2, density(d, t.w), (double)t.pdf);
+                CHECK(agrees(d, t), "u = %a, %a: pdf %.8g, returned %.8g", (double)u1, (double)u2, density(d, t.w),
+                      (double)t.pdf);
         }
     for (int i = 0; i < BAD; i++)
         for (int j = 0; j < 2; j++) {
@@ -485,7 +501,8 @@ static inline void check_sane(const sampler *d, int frame_ok) {
             w.x = bad_w[i][0];
             w.y = bad_w[i][1];
             w.z = bad_w[i][2];
-            CHECK(density(d, w) == 0, "density of (%g, %g, %g): %g", (double)w.x, (double)w.y, (double)w.z, density(d, w));
+            CHECK(density(d, w) == 0, "density of (%g, %g, %g): %g", (double)w.x, (double)w.y, (double)w.z,
+                  density(d, w));
         }
     }
 }

@@ -1,6 +1,6 @@
-/* Products of environment, reflection and cosine: the variance of one sample, by quadrature, over those of sampling the map, the
- * BRDF and both by MIS. MCS_TEST_VERBOSE=1 prints it. MCS_TEST_MAPS: Radiance pictures, separated by spaces, that are looked at,
- * too. A part of test_product.c. */
+/* Products of environment, reflection and cosine: the variance of one sample, by quadrature, over those of sampling the
+ * map, the BRDF and both by MIS. MCS_TEST_VERBOSE=1 prints it. MCS_TEST_MAPS: Radiance pictures, separated by spaces,
+ * that are looked at, too. A part of test_product.c. */
 #ifndef MCST_PRODUCT_VARIANCE_H
 #define MCST_PRODUCT_VARIANCE_H
 #include "../examples/hdr.h"
@@ -12,7 +12,8 @@ typedef struct {
     double env, brdf, mis, product, oneshot; /* per sample, over the square of the mean */
 } variances;
 
-/* Middles of equal parts, about `sub` to a texel, of each of the pieces that a fit's cells cut it into, and the width of each. */
+/* Middles of equal parts, about `sub` to a texel, of each of the pieces that a fit's cells cut it into, and the width
+ * of each. */
 enum { SUB_MOST = 16 };
 static int middles(const fit *f, double t, double part, int sub, double *x, double *wide) {
     double at[FINE + 1];
@@ -28,8 +29,8 @@ static int middles(const fit *f, double t, double part, int sub, double *x, doub
     }
     return n;
 }
-/* A surface in a map. tile_rows, tile_parts: where every row of every tile begins among its light, and how much it has; row_slack:
- * of a tile, see product_sampler.h. */
+/* A surface in a map. tile_rows, tile_parts: where every row of every tile begins among its light, and how much it has;
+ * row_slack: of a tile, see product_sampler.h. */
 typedef struct {
     const scene *m;
     const surface *s;
@@ -37,10 +38,11 @@ typedef struct {
     sampler d, o; /* prepared, one-shot */
     fit *fits, *one_fits;
     double mean, env, brdf, product, oneshot; /* integrals of F; of F^2 over a density */
-    double a_env, a_brdf, m_env;              /* of MIS with the balance heuristic: squares of either part, the mean of one */
+    double a_env, a_brdf, m_env; /* of MIS with the balance heuristic: squares of either part, the mean of one */
 } study;
 
-/* A texel with light; its top and height in half the cosine's distance from 1, which is linear in what is equal areas. */
+/* A texel with light; its top and height in half the cosine's distance from 1, which is linear in what is equal areas.
+ */
 typedef struct {
     uint32_t c, r, tile;
     double light, top, height;
@@ -48,7 +50,8 @@ typedef struct {
 } lit_texel;
 
 /* The densities at u of a tile are those of its fits: q, q1 of the tiles alone. */
-static void check_looked_up(const study *v, const lit_texel *t, const double *w, double u1, double u2, double q, double q1) {
+static void check_looked_up(const study *v, const lit_texel *t, const double *w, double u1, double u2, double q,
+                            double q1) {
     const scene *m = v->m;
     double visible;
     reflect(v->s, w, &visible);
@@ -63,8 +66,8 @@ static void check_looked_up(const study *v, const lit_texel *t, const double *w,
     const doubt og = fit_doubt(&v->one_fits[t->tile], u1, u2, off);
     CHECK(fabs(q2 - pp) <= tol * q + v->d.share * lobe_wrong + 4 * eps * q2 + t->light * (varies(&of, off) + of.blur),
           "%s: density %g, not %g", m->name, q2, pp);
-    CHECK(fabs(q3 - q1 - v->o.share * visible) <= tol * q1 + v->o.share * lobe_wrong + v->o.share_off * visible + 4 * eps * q3 +
-                                                      t->light * (varies(&og, off) + og.blur),
+    CHECK(fabs(q3 - q1 - v->o.share * visible) <= tol * q1 + v->o.share * lobe_wrong + v->o.share_off * visible +
+                                                      4 * eps * q3 + t->light * (varies(&og, off) + og.blur),
           "%s: one-shot density %g, not %g", m->name, q3, q1 + v->o.share * visible);
 }
 
@@ -109,8 +112,8 @@ static void direction_to(double *w, double half, double azimuth) {
     w[1] = sine * sin(azimuth);
     w[2] = 1 - 2 * half;
 }
-/* Points at the middles of equal areas, at least `least` by `least` of a texel, in each piece of it that lies in one cell of the
- * fit; the density is looked up in one texel of a thousand. */
+/* Points at the middles of equal areas, at least `least` by `least` of a texel, in each piece of it that lies in one
+ * cell of the fit; the density is looked up in one texel of a thousand. */
 static void add_texel(study *v, const lit_texel *t, int least) {
     const scene *m = v->m;
     const double size = pi / m->h;
@@ -126,7 +129,8 @@ static void add_texel(study *v, const lit_texel *t, int least) {
     for (int i = 0; i < down; i++)
         for (int j = 0; j < across; j++) {
             if (across * down > 1) direction_to(w, t->top + t->height * y[i], 2 * pi * (t->c + x[j]) / m->w);
-            add_point(v, t, w, x[j], y[i], m->area[t->r] * wide[j] * high[i], looked_up && i == down / 2 && j == across / 2);
+            add_point(v, t, w, x[j], y[i], m->area[t->r] * wide[j] * high[i],
+                      looked_up && i == down / 2 && j == across / 2);
         }
 }
 static void add_row(study *v, uint32_t r, int least) {
@@ -155,8 +159,8 @@ static void add_row(study *v, uint32_t r, int least) {
     }
 }
 
-static variances variance_of(const scene *m, const surface *s, int least, const double *tile_rows, const double *tile_parts,
-                             const double *row_slack) {
+static variances variance_of(const scene *m, const surface *s, int least, const double *tile_rows,
+                             const double *tile_parts, const double *row_slack) {
     const uint32_t tiles = 2 * m->rows * m->rows;
     int fine = 0;
     study v;
@@ -198,7 +202,8 @@ typedef struct {
 
 enum { VARIED = 8, SHAPED = 3, TWELVE = 12 };
 /* Rows of the tables, of GGX and of the other lobes; 0: matte. */
-static const float varied[VARIED] = {0, 0.8f, 0.5f, 0.3f, 0.2f, 0.1f, 0.05f, 0.02f}, shaped_alpha[SHAPED] = {0.3f, 0.1f, 0.05f};
+static const float varied[VARIED] = {0, 0.8f, 0.5f, 0.3f, 0.2f, 0.1f, 0.05f, 0.02f},
+                   shaped_alpha[SHAPED] = {0.3f, 0.1f, 0.05f};
 
 static void add_map(const scene *m, mcs_profile profile, ratios *sum, int *n) {
     const int most = profile == MCS_PROFILE_GGX ? VARIED : SHAPED;
@@ -236,13 +241,15 @@ static void add_map(const scene *m, mcs_profile profile, ratios *sum, int *n) {
                 l.matte = 0;
                 l.profile = profile;
             }
-            const surface s = surface_make(vec(sqrt(1 - z * z) * cos(2 * pi * turn), sqrt(1 - z * z) * sin(2 * pi * turn), z),
-                                           local_wo(0.35 + 0.6 * golden, 2.4 * i), l);
-            /* lobes and cosines are smooth on the scale of a tile, 0.2: eight points of a tile each way leave 0.025^2/24 of them */
+            const surface s =
+                surface_make(vec(sqrt(1 - z * z) * cos(2 * pi * turn), sqrt(1 - z * z) * sin(2 * pi * turn), z),
+                             local_wo(0.35 + 0.6 * golden, 2.4 * i), l);
+            /* lobes and cosines are smooth on the scale of a tile, 0.2: eight points of a tile each way leave
+             * 0.025^2/24 of them */
             const variances v = variance_of(m, &s, m->h / m->rows < 8 ? 2 : 1, tile_rows, tile_parts, row_slack);
             CHECK(v.product > -1e-6 && v.oneshot > -1e-6 && v.env > 0 && v.mis > 0,
-                  "%s, alpha %g, normal %d: variances %g, %g, %g, %g", m->name, (double)alpha, i, v.product, v.oneshot, v.env,
-                  v.mis);
+                  "%s, alpha %g, normal %d: variances %g, %g, %g, %g", m->name, (double)alpha, i, v.product, v.oneshot,
+                  v.env, v.mis);
             sum[k].env += log(v.env / v.product);
             sum[k].brdf += log(v.brdf / v.product);
             sum[k].mis += log(v.mis / v.product);
@@ -259,8 +266,8 @@ static void add_map(const scene *m, mcs_profile profile, ratios *sum, int *n) {
 static void finish(const char *what, mcs_profile profile, ratios *sum, const int *n) {
     const int most = profile == MCS_PROFILE_GGX ? VARIED : SHAPED;
     mcst_note("    %s: variance per sample, geometric means over %d\n", what, n[0]);
-    mcst_note("    %-8s %10s %10s %10s %10s | %10s %10s %10s\n", "alpha", "env/prod", "BRDF/prod", "MIS/prod", "worst", "env/one",
-              "MIS/one", "worst");
+    mcst_note("    %-8s %10s %10s %10s %10s | %10s %10s %10s\n", "alpha", "env/prod", "BRDF/prod", "MIS/prod", "worst",
+              "env/one", "MIS/one", "worst");
     for (int k = 0; k < most; k++) {
         const float alpha = (profile == MCS_PROFILE_GGX ? varied : shaped_alpha)[k];
         ratios *q = sum + k;
@@ -269,8 +276,9 @@ static void finish(const char *what, mcs_profile profile, ratios *sum, const int
         q->mis = exp(q->mis / n[k]);
         q->env_one = exp(q->env_one / n[k]);
         q->mis_one = exp(q->mis_one / n[k]);
-        mcst_note("    %-8.3g %10.4g %10.4g %10.4g %10.3g | %10.4g %10.4g %10.3g\n", alpha > 0 ? (double)alpha : INFINITY, q->env,
-                  q->brdf, q->mis, q->worst, q->env_one, q->mis_one, q->worst_one);
+        mcst_note("    %-8.3g %10.4g %10.4g %10.4g %10.3g | %10.4g %10.4g %10.3g\n",
+                  alpha > 0 ? (double)alpha : INFINITY, q->env, q->brdf, q->mis, q->worst, q->env_one, q->mis_one,
+                  q->worst_one);
     }
 }
 
@@ -303,9 +311,10 @@ static void test_variance(void) {
     int n[VARIED];
     if (mcst_case("own maps")) {
         add_own_maps("own maps, 16 x 32 tiles", MCS_PROFILE_GGX, sum, n);
-        /* Quadrature without noise: half of what it gave when this was written, so that weights may be changed a little, but not
-         * lose a factor. */
-        CHECK(sum[0].env >= 293 && sum[0].env_one >= 78, "matte: environment / product %g, %g", sum[0].env, sum[0].env_one);
+        /* Quadrature without noise: half of what it gave when this was written, so that weights may be changed a
+         * little, but not lose a factor. */
+        CHECK(sum[0].env >= 293 && sum[0].env_one >= 78, "matte: environment / product %g, %g", sum[0].env,
+              sum[0].env_one);
         for (int k = 0; k < VARIED; k++) {
             static const double half[VARIED] = {144, 155, 149, 106, 60, 93, 19.4, 1.64},
                                 half_one[VARIED] = {38, 36, 32, 13.9, 6.4, 1.8, 0.71, 0.55};
@@ -348,7 +357,8 @@ static void test_variance(void) {
         }
         finish("captured maps, 16 x 32 tiles", MCS_PROFILE_GGX, sum, n);
         CHECK(sum[0].env >= 60, "matte: environment / product %g", sum[0].env);
-        for (int k = 1; k <= 4; k++) CHECK(sum[k].mis >= 20, "alpha %g: MIS / product %g", (double)varied[k], sum[k].mis);
+        for (int k = 1; k <= 4; k++)
+            CHECK(sum[k].mis >= 20, "alpha %g: MIS / product %g", (double)varied[k], sum[k].mis);
         free(names);
     }
 }

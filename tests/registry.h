@@ -1,9 +1,10 @@
 /* The registry: one row per continuous sampler of mcsample.h, and everything the generic checks need to know about it.
  *
- * Define MCST_WIDE before including to get the 4, 8 and 16 wide forms too (they cost compile time); a compiler without vectors and
- * -DMCST_ARRAYS leave them out. With -DMCST_LINKED the functions of the rows are only declared: make compiles them once, in
- * tests/shared (-DMCST_SHARED), for all programs. Without it a program holds them itself, so that it can be compiled alone.
- * The other samplers (tables, alias, discrete, environment, product) have tests of their own: see mcst_exempt. */
+ * Define MCST_WIDE before including to get the 4, 8 and 16 wide forms too (they cost compile time); a compiler without
+ * vectors and -DMCST_ARRAYS leave them out. With -DMCST_LINKED the functions of the rows are only declared: make
+ * compiles them once, in tests/shared (-DMCST_SHARED), for all programs. Without it a program holds them itself, so
+ * that it can be compiled alone. The other samplers (tables, alias, discrete, environment, product) have tests of their
+ * own: see mcst_exempt. */
 #ifndef MCST_REGISTRY_H
 #define MCST_REGISTRY_H
 #include <float.h>
@@ -17,10 +18,10 @@
 #include "oracle.h"
 #include "stats.h"
 
-/* M(X, shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid, claims,
- * the parameters that make the width as bits, traits). Everything that tests know about a sampler beside its truth in oracle.h is
- * said here. MCST_ROWS hands the first seven to X. Some rows alone are built much faster: define MCST_LIST as MCST_LINES, or as one
- * row (tests/mutants.sh). */
+/* M(X, shape, row, function prefix, parameter count or material, prefix of eval, reference coordinates, parameter grid,
+ * claims, the parameters that make the width as bits, traits). Everything that tests know about a sampler beside its
+ * truth in oracle.h is said here. MCST_ROWS hands the first seven to X. Some rows alone are built much faster: define
+ * MCST_LIST as MCST_LINES, or as one row (tests/mutants.sh). */
 #define MCST_LINES(M, X)                                                          \
     M(X, LINE, linear, linear, 2, -, UNIT, linear, line, 1, 0)                    \
     M(X, LINE, tent, tent, 1, -, TENT, radius, line, 0, 0)                        \
@@ -56,7 +57,8 @@
     M(X, LOBE, ashikhmin_h, ashikhmin_h, ashikhmin, -, COSPOWER, exponents, ashikhmin_h, 3, 0)   \
     M(X, BRDF, ashikhmin, ashikhmin, ashikhmin, ashikhmin, COSPOWER, exponents, ashikhmin, 3, 0)
 #endif
-#define MCST_SEVEN(X, shape, row, fn, arg, base, coord, grid, claims, vary, traits) X(shape, row, fn, arg, base, coord, grid)
+#define MCST_SEVEN(X, shape, row, fn, arg, base, coord, grid, claims, vary, traits) \
+    X(shape, row, fn, arg, base, coord, grid)
 #define MCST_ROWS(X) MCST_LIST(MCST_SEVEN, X)
 
 /* Samplers of mcsample.h that are not rows, because a table is not a handful of parameters. */
@@ -108,7 +110,8 @@ typedef struct {
     mcst_exact_fn *eval, *weight;
 } mcst_truth;
 
-/* Two parameters, the incidence (cosine, azimuth in radians) and the samples that the chi-square test draws, in millions. */
+/* Two parameters, the incidence (cosine, azimuth in radians) and the samples that the chi-square test draws, in
+ * millions. */
 typedef struct {
     float a, b, cos_o, azimuth;
     int millions;
@@ -123,11 +126,11 @@ enum {
     MCST_VISIBLE = 16  /* visible normals */
 };
 
-/* The figures of accuracy that mcsample.h states, as numbers: test_oracle.c holds the header to them on its grids, and looks up
- * that the header states them (claims.h); stress/climb.c searches for inputs that break them.
+/* The figures of accuracy that mcsample.h states, as numbers: test_oracle.c holds the header to them on its grids, and
+ * looks up that the header states them (claims.h); stress/climb.c searches for inputs that break them.
  *
- * A density is judged in E = 1e-6 (1 + |ln(pdf/peak)|), of Gaussian half-vectors given h or wi in 1e-6 (1 + e), e their exponent;
- * weights in 1e-6; the length of a direction by its distance from 1 in 2^-24. */
+ * A density is judged in E = 1e-6 (1 + |ln(pdf/peak)|), of Gaussian half-vectors given h or wi in 1e-6 (1 + e), e their
+ * exponent; weights in 1e-6; the length of a direction by its distance from 1 in 2^-24. */
 enum { CLAIM_PDF_U, CLAIM_PDF_W, CLAIM_EVAL, CLAIM_SAMPLE_WEIGHT, CLAIM_WEIGHT, CLAIM_LENGTH, CLAIMS };
 
 /* A range of parameters and what is promised there; 0: nothing. */
@@ -135,9 +138,9 @@ typedef struct {
     double least[2], most[2], claim[CLAIMS];
 } mcst_claim;
 
-/* What may be given as parameters. Bad is what the header documents as outside: 1, 0, or -1 where it leaves it open; both
- * parameters of a linear density being 0 is bad, too. Valid ones are drawn from least to most; 0: there is
- * no second one. */
+/* What may be given as parameters. Bad is what the header documents as outside: 1, 0, or -1 where it leaves it open;
+ * both parameters of a linear density being 0 is bad, too. Valid ones are drawn from least to most; 0: there is no
+ * second one. */
 typedef struct {
     int (*bad)(int i, float v);
     double least[2], most[2];
@@ -165,15 +168,17 @@ typedef struct {
     mcst_domain domain;
 } mcst_row;
 
-/* --- parameter grids, extremes included ------------------------------------------------------------------------------- */
+/* --- parameter grids, extremes included
+ * ------------------------------------------------------------------------------- */
 
 static const float mcst_grid_none[][2] = {{0, 0}};
 static const float mcst_grid_linear[][2] = {{1, 3},    {1, 1},         {0, 1},           {1, 0},        {1e-6f, 1},
                                             {1e6f, 1}, {1, 1.000001f}, {1e-30f, 3e-30f}, {2e30f, 1e30f}};
 static const float mcst_grid_radius[][2] = {{1, 0}, {0.3f, 0}, {1e-6f, 0}, {1e6f, 0}, {1e-18f, 0}, {1e18f, 0}};
 static const float mcst_grid_rate[][2] = {{1, 0}, {0.3f, 0}, {50, 0}, {1e-6f, 0}, {1e6f, 0}, {1e-18f, 0}, {1e18f, 0}};
-static const float mcst_grid_truncexp[][2] = {{3, 1},    {0, 1},        {1, 1},        {1e-6f, 1},  {1e-3f, 1},   {20, 1},
-                                              {1000, 1}, {0.5f, 1e-3f}, {1e-3f, 1e6f}, {1e-30f, 2}, {1e6f, 1e6f}, {1e-18f, 1e18f}};
+static const float mcst_grid_truncexp[][2] = {{3, 1},        {0, 1},      {1, 1},       {1e-6f, 1},
+                                              {1e-3f, 1},    {20, 1},     {1000, 1},    {0.5f, 1e-3f},
+                                              {1e-3f, 1e6f}, {1e-30f, 2}, {1e6f, 1e6f}, {1e-18f, 1e18f}};
 static const float mcst_grid_normal[][2] = {{0, 1}, {-3, 100}, {5, 0.01f}, {0.3f, 1e-6f}, {0, 1e-18f}, {1e10f, 1e18f}};
 static const float mcst_grid_power[][2] = {{2, 0},  {0, 0},   {1, 0},    {0.5f, 0}, {1e-3f, 0},
                                            {10, 0}, {100, 0}, {1e4f, 0}, {1e6f, 0}, {1e9f, 0}};
@@ -181,14 +186,17 @@ static const float mcst_grid_cone[][2] = {{0.5f, 0}, {2, 0},     {1.9997f, 0}, {
                                           {1, 0},    {0.01f, 0}, {1e-5f, 0},   {1e-8f, 0}, {1e-20f, 0}};
 static const float mcst_grid_phong[][2] = {{10, 0},  {0, 0},    {1e-3f, 0}, {1e-2f, 0}, {0.5f, 0}, {1, 0},   {2, 0},
                                            {100, 0}, {1e3f, 0}, {1e4f, 0},  {1e5f, 0},  {1e6f, 0}, {1e9f, 0}};
-static const float mcst_grid_alpha[][2] = {
-    {0.5f, 0.2f},   {0.2f, 0.5f},   {1, 1},     {0.3f, 0.3f}, {0.1f, 0.1f},   {0.01f, 0.01f}, {1e-3f, 1e-3f}, {1e-4f, 1e-4f},
-    {1e-5f, 1e-5f}, {1e-6f, 1e-6f}, {0.01f, 1}, {1, 0.01f},   {1e-6f, 1e-4f}, {3, 3},         {10, 10},       {10, 0.1f}};
+static const float mcst_grid_alpha[][2] = {{0.5f, 0.2f},   {0.2f, 0.5f},   {1, 1},         {0.3f, 0.3f},
+                                           {0.1f, 0.1f},   {0.01f, 0.01f}, {1e-3f, 1e-3f}, {1e-4f, 1e-4f},
+                                           {1e-5f, 1e-5f}, {1e-6f, 1e-6f}, {0.01f, 1},     {1, 0.01f},
+                                           {1e-6f, 1e-4f}, {3, 3},         {10, 10},       {10, 0.1f}};
 static const float mcst_grid_exponents[][2] = {
-    {10, 100},    {100, 10}, {0, 0},    {1, 1},       {3, 0.5f},      {100, 100},     {1e3f, 1e3f}, {1e4f, 1e4f},  {1e6f, 1e6f},
-    {1e9f, 1e9f}, {0, 100},  {1e4f, 1}, {1e9f, 1e5f}, {1e-3f, 1e-3f}, {1e-2f, 1e-2f}, {1e-3f, 100}, {1e4f, 1e-2f}, {1e-2f, 1e9f}};
+    {10, 100},    {100, 10},      {0, 0},         {1, 1},       {3, 0.5f},     {100, 100},
+    {1e3f, 1e3f}, {1e4f, 1e4f},   {1e6f, 1e6f},   {1e9f, 1e9f}, {0, 100},      {1e4f, 1},
+    {1e9f, 1e5f}, {1e-3f, 1e-3f}, {1e-2f, 1e-2f}, {1e-3f, 100}, {1e4f, 1e-2f}, {1e-2f, 1e9f}};
 
-/* --- what may be given -------------------------------------------------------------------------------------------------------- */
+/* --- what may be given
+ * -------------------------------------------------------------------------------------------------------- */
 
 static inline int mcst_outside(float v, float least, float most) { return !(v >= least && v <= most); }
 static inline int mcst_bad_none(int i, float v) {
@@ -236,13 +244,16 @@ static inline int mcst_bad_exponents(int i, float v) {
 /* clang-format on */
 
 /* From the pole over 45 degrees to a cosine of 1e-6, azimuths off the axes. */
-static const float mcst_incidence[][2] = {{1, 0},        {0.95f, 0.4f},  {0.70710678f, 0.7f}, {0.35f, 2.1f}, {0.0871557f, -2.5f},
-                                          {0.01f, 1.1f}, {1e-3f, -0.4f}, {1e-6f, 2.8f}};
+static const float mcst_incidence[][2] = {{1, 0},         {0.95f, 0.4f},       {0.70710678f, 0.7f},
+                                          {0.35f, 2.1f},  {0.0871557f, -2.5f}, {0.01f, 1.1f},
+                                          {1e-3f, -0.4f}, {1e-6f, 2.8f}};
 
-/* The sub-grids of the chi-square test. At least one set of each row has 1e7 samples or more. A reflected direction is a float: its
- * half-vector is off by 2^-24, so with alpha = 1e-6 the bins, not the sampler, would be at fault; those are left to the oracle. */
+/* The sub-grids of the chi-square test. At least one set of each row has 1e7 samples or more. A reflected direction is
+ * a float: its half-vector is off by 2^-24, so with alpha = 1e-6 the bins, not the sampler, would be at fault; those
+ * are left to the oracle. */
 static const mcst_set mcst_chi_none[] = {{0, 0, 0, 0, 10}};
-static const mcst_set mcst_chi_linear[] = {{1, 3, 0, 0, 10}, {1, 1, 0, 0, 2}, {0, 1, 0, 0, 2}, {1, 0, 0, 0, 2}, {1e6f, 1, 0, 0, 2}};
+static const mcst_set mcst_chi_linear[] = {
+    {1, 3, 0, 0, 10}, {1, 1, 0, 0, 2}, {0, 1, 0, 0, 2}, {1, 0, 0, 0, 2}, {1e6f, 1, 0, 0, 2}};
 static const mcst_set mcst_chi_radius[] = {{1, 0, 0, 0, 10}, {0.3f, 0, 0, 0, 2}, {1e6f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_rate[] = {{1, 0, 0, 0, 10}, {0.3f, 0, 0, 0, 2}, {1e6f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_truncexp[] = {
@@ -250,15 +261,17 @@ static const mcst_set mcst_chi_truncexp[] = {
 static const mcst_set mcst_chi_normal[] = {{0, 1, 0, 0, 10}, {-3, 100, 0, 0, 2}, {5, 0.01f, 0, 0, 2}};
 static const mcst_set mcst_chi_power[] = {
     {2, 0, 0, 0, 10}, {0, 0, 0, 0, 2}, {0.5f, 0, 0, 0, 2}, {10, 0, 0, 0, 2}, {100, 0, 0, 0, 2}};
-static const mcst_set mcst_chi_cone[] = {{0.5f, 0, 0, 0, 10}, {2, 0, 0, 0, 2}, {0.01f, 0, 0, 0, 2}, {1e-8f, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_cone[] = {
+    {0.5f, 0, 0, 0, 10}, {2, 0, 0, 0, 2}, {0.01f, 0, 0, 0, 2}, {1e-8f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_phong[] = {{10, 0, 0.5f, 0.7f, 10},     {0, 0, 0.7f, 2, 2},    {1, 0, 1, 0, 2},
                                           {100, 0, 0.0871557f, -2, 2}, {1e4f, 0, 0.7f, 1, 2}, {50, 0, 1e-3f, 1.1f, 2},
                                           {1e6f, 0, 0.3f, -1, 2}};
-static const mcst_set mcst_chi_alpha[] = {{0.5f, 0.2f, 0.5f, 0.7f, 10}, {0.1f, 0.1f, 1, 0, 2},  {1e-3f, 1e-3f, 0.0871557f, 2, 2},
-                                          {0.01f, 1, 0.7f, -2.5f, 2},   {1, 1, 1e-3f, 1.1f, 2}, {10, 3, 0.26f, 0.3f, 2},
-                                          {1e-4f, 1e-4f, 0.7f, 1, 2}};
-static const mcst_set mcst_chi_exponents[] = {{10, 100, 0.5f, 0.7f, 10}, {0, 0, 0.7f, 2, 2},     {1e3f, 1e3f, 0.0871557f, -2, 2},
-                                              {1e5f, 10, 0.7f, 1, 2},    {1, 1, 1e-3f, 1.1f, 2}, {1e6f, 1e6f, 1, 0, 2}};
+static const mcst_set mcst_chi_alpha[] = {
+    {0.5f, 0.2f, 0.5f, 0.7f, 10}, {0.1f, 0.1f, 1, 0, 2},   {1e-3f, 1e-3f, 0.0871557f, 2, 2}, {0.01f, 1, 0.7f, -2.5f, 2},
+    {1, 1, 1e-3f, 1.1f, 2},       {10, 3, 0.26f, 0.3f, 2}, {1e-4f, 1e-4f, 0.7f, 1, 2}};
+static const mcst_set mcst_chi_exponents[] = {{10, 100, 0.5f, 0.7f, 10},       {0, 0, 0.7f, 2, 2},
+                                              {1e3f, 1e3f, 0.0871557f, -2, 2}, {1e5f, 10, 0.7f, 1, 2},
+                                              {1, 1, 1e-3f, 1.1f, 2},          {1e6f, 1e6f, 1, 0, 2}};
 
 static inline o_vec3 mcst_o3(const float *x) { return o_v3(x[0], x[1], x[2]); }
 
@@ -269,12 +282,13 @@ static inline o_vec2 mcst_o2(const float *x) {
     return v;
 }
 
-/* --- claims ----------------------------------------------------------------------------------------------------------------- */
+/* --- claims
+ * ----------------------------------------------------------------------------------------------------------------- */
 
 /* clang-format off */
-/* The figures of u for small exponents: a power n of the cosine gives (1-u1)/cos with ln cos = ln(1-u1)/(n+1), at most 16.7 in
- * size. Its logarithm, 1/(n+1) and their product round by half an ulp of that or more, 2.5e-6 in all, and with two exponents
- * 1/(n+1) is a rounded sum. |ln(pdf/peak)| = n/(n+1) 16.7 does not pay for that when n is near 0. */
+/* The figures of u for small exponents: a power n of the cosine gives (1-u1)/cos with ln cos = ln(1-u1)/(n+1), at most
+ * 16.7 in size. Its logarithm, 1/(n+1) and their product round by half an ulp of that or more, 2.5e-6 in all, and with
+ * two exponents 1/(n+1) is a rounded sum. |ln(pdf/peak)| = n/(n+1) 16.7 does not pay for that when n is near 0. */
 #define MCST_NO_PARAMETER {0, 0}, {0, 0}
 #define MCST_ALPHAS {1e-7, 1e-7}, {1e4, 1e4}
 static const mcst_claim mcst_claims_line[] = {{MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 0}}};
@@ -310,7 +324,8 @@ static const mcst_claim mcst_claims_ashikhmin[] = {
 };
 /* clang-format on */
 
-/* --- the functions of the rows ------------------------------------------------------------------------------------------- */
+/* --- the functions of the rows
+ * ------------------------------------------------------------------------------------------- */
 
 #if defined(MCS_NO_WIDE) || defined(MCST_ARRAYS)
 #undef MCST_WIDE
@@ -337,7 +352,7 @@ static const mcst_claim mcst_claims_ashikhmin[] = {
     mcst_value_fn mcst1_##row##_weight, mcst4_##row##_weight, mcst8_##row##_weight, mcst16_##row##_weight; \
     mcst_value_n_fn mcstn_##row##_pdf, mcstn_##row##_eval;                                                 \
     mcst_exact_fn mcsto_##row##_eval, mcsto_##row##_weight;
-#define MCST_DECLARE(shape, row, fn, arg, base, coord, grid)                                                    \
+#define MCST_DECLARE(shape, row, fn, arg, base, coord, grid)                                                \
     mcst_sample_fn mcst1_##row##_sample, mcst4_##row##_sample, mcst8_##row##_sample, mcst16_##row##_sample; \
     mcst_value_fn mcst1_##row##_pdf, mcst4_##row##_pdf, mcst8_##row##_pdf, mcst16_##row##_pdf;              \
     mcst_sample_n_fn mcstn_##row;                                                                           \
@@ -362,7 +377,8 @@ MCST_ROWS(MCST_DECLARE)
 #include "truth.h"
 #endif
 
-/* --- the table ----------------------------------------------------------------------------------------------------------- */
+/* --- the table
+ * ----------------------------------------------------------------------------------------------------------- */
 
 /* clang-format off */
 #ifdef MCST_WIDE
@@ -415,8 +431,8 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_T_VLOBE(row) MCST_TAIL_UV(row)
 #define MCST_T_BRDF(row) MCST_TAIL_BRDF(row)
 #define MCST_TABLE(X, shape, row, fn, arg, base, coord, grid, claims, vary, traits) \
-    {#row, #fn, MCST_SHAPE_##shape(row), MCST_##coord, MCST_SIZE_##shape, MCST_COUNT_##arg, MCST_WO_##shape, mcst_grid_##grid, \
-     MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row), \
+    {#row, #fn, MCST_SHAPE_##shape(row), MCST_##coord, MCST_SIZE_##shape, MCST_COUNT_##arg, MCST_WO_##shape, \
+     mcst_grid_##grid, MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row), \
      mcst_claims_##claims, MCST_COUNT(mcst_claims_##claims), vary, traits, MCST_DOMAIN_##grid},
 /* clang-format on */
 
@@ -453,7 +469,8 @@ static inline void mcst_grid_get(const mcst_row *row, size_t i, float p[MCST_P])
     mcst_fill(row, g[0], g[1], o[0], o[1], p);
 }
 
-/* --- random numbers of the tests: splitmix64 (Steele, Lea, Flood 2014) -------------------------------------------------------- */
+/* --- random numbers of the tests: splitmix64 (Steele, Lea, Flood 2014)
+ * -------------------------------------------------------- */
 
 static inline uint64_t mcst_mix(uint64_t *state) {
     uint64_t z = *state += 0x9E3779B97F4A7C15u;

@@ -10,9 +10,10 @@
 
 /* ---- distributions ---- */
 
-/* x^a exp(-x) / Gamma(a+1). Large a by the saddle point of Loader 2000, "Fast and accurate computation of binomial probabilities":
- * exp(-a (m - log1p(m)) - S(a)) / sqrt(2 pi a), m = (x - a)/a, S Stirling's series (DLMF 5.11.1; at a = 16 the first term left out
- * is 3e-14). The difference m - log1p(m) near 0 by its own series, so that its product with a keeps its digits. */
+/* x^a exp(-x) / Gamma(a+1). Large a by the saddle point of Loader 2000, "Fast and accurate computation of binomial
+ * probabilities": exp(-a (m - log1p(m)) - S(a)) / sqrt(2 pi a), m = (x - a)/a, S Stirling's series (DLMF 5.11.1; at a =
+ * 16 the first term left out is 3e-14). The difference m - log1p(m) near 0 by its own series, so that its product with
+ * a keeps its digits. */
 static inline double st_poisson(double a, double x) {
     if (a < 16.0) return exp(a * log(x) - x) / tgamma(a + 1.0);
     const double m = (x - a) / a;
@@ -27,9 +28,9 @@ static inline double st_poisson(double a, double x) {
     return exp(-a * g - s) / sqrt(2.0 * ST_PI * a);
 }
 
-/* Regularised upper incomplete gamma Q(a, x): below x = a + 1 one minus the series DLMF 8.11.4 (8.7.1), above it the continued
- * fraction DLMF 8.9.2 in its even part, by the method of Lentz as in Thompson and Barnett 1986, "Coulomb and Bessel functions of
- * complex arguments and order". Both settle within some multiple of sqrt(a) terms. */
+/* Regularised upper incomplete gamma Q(a, x): below x = a + 1 one minus the series DLMF 8.11.4 (8.7.1), above it the
+ * continued fraction DLMF 8.9.2 in its even part, by the method of Lentz as in Thompson and Barnett 1986, "Coulomb and
+ * Bessel functions of complex arguments and order". Both settle within some multiple of sqrt(a) terms. */
 static inline double gamma_q(double a, double x) {
     enum { TERMS = 200000 };
     double sum = 1.0;
@@ -88,13 +89,14 @@ static inline double ks_p(double d, double n) {
     return sum;
 }
 
-/* Level of each of `tests` independent tests when all together are to fail by chance with probability alpha (Sidak 1967). */
+/* Level of each of `tests` independent tests when all together are to fail by chance with probability alpha (Sidak
+ * 1967). */
 static inline double sidak(double alpha, double tests) { return -expm1(log1p(-alpha) / tests); }
 
-/* Chi-square of counts against expected counts; returns p. Both arrays must cover the same total: give lost samples a bin.
- * Bins expecting less than 5 are pooled in index order until a pool reaches 5; what is left at the end joins the group closed last.
- * p = 0 when a bin that expects exactly nothing was hit; NaN when an expectation is negative or NaN, or when fewer than two groups
- * are left: then nothing was tested. */
+/* Chi-square of counts against expected counts; returns p. Both arrays must cover the same total: give lost samples a
+ * bin. Bins expecting less than 5 are pooled in index order until a pool reaches 5; what is left at the end joins the
+ * group closed last. p = 0 when a bin that expects exactly nothing was hit; NaN when an expectation is negative or NaN,
+ * or when fewer than two groups are left: then nothing was tested. */
 static inline double chi2_test(const double *observed, const double *expected, size_t bins, double *stat, int *dof) {
     double sum = 0.0;
     double group_o = 0.0;
@@ -188,8 +190,9 @@ static inline void quad_rule1(const quad_of *q, quad_cell *c) {
     c->axis = 0;
 }
 
-/* Genz and Malik 1980, "Remarks on algorithm 006: an adaptive algorithm for numerical integration over an N-dimensional rectangular
- * region", N = 2: 17 points, degree 7, error against the degree 5 embedded in it; cut along the larger fourth difference. */
+/* Genz and Malik 1980, "Remarks on algorithm 006: an adaptive algorithm for numerical integration over an N-dimensional
+ * rectangular region", N = 2: 17 points, degree 7, error against the degree 5 embedded in it; cut along the larger
+ * fourth difference. */
 static inline void quad_rule2(const quad_of *q, quad_cell *c) {
     const double l2 = 0.35856858280031809;
     const double l3 = 0.94868329805051380;
@@ -211,12 +214,14 @@ static inline void quad_rule2(const quad_of *q, quad_cell *c) {
                       q->f2(mx - l5 * hx, my + l5 * hy, q->ctx) + q->f2(mx + l5 * hx, my + l5 * hy, q->ctx);
     const double s2 = two[0] + two[1];
     const double s3 = three[0] + three[1];
-    c->value = -424.0 / 2187.0 * f0 + 980.0 / 6561.0 * s2 + 340.0 / 6561.0 * s3 + 200.0 / 19683.0 * s4 + 6859.0 / 78732.0 * s5;
+    c->value =
+        -424.0 / 2187.0 * f0 + 980.0 / 6561.0 * s2 + 340.0 / 6561.0 * s3 + 200.0 / 19683.0 * s4 + 6859.0 / 78732.0 * s5;
     const double low = -971.0 / 729.0 * f0 + 245.0 / 486.0 * s2 + 65.0 / 1458.0 * s3 + 25.0 / 729.0 * s4;
     c->error = fabs((c->value - low) * 4.0 * hx * hy);
     c->value *= 4.0 * hx * hy;
     double fourth[2];
-    for (int i = 0; i < 2; i++) fourth[i] = fabs(two[i] - 2.0 * f0 - (three[i] - 2.0 * f0) / 7.0); /* 1/7 = (9/70) / (9/10) */
+    for (int i = 0; i < 2; i++)
+        fourth[i] = fabs(two[i] - 2.0 * f0 - (three[i] - 2.0 * f0) / 7.0); /* 1/7 = (9/70) / (9/10) */
     c->axis = fourth[1] > fourth[0];
     if (fabs(fourth[0] - fourth[1]) <= 1e-10 * (fourth[0] + fourth[1])) /* no preference: the relatively longer side */
         c->axis = c->cuts[1] < c->cuts[0];
@@ -227,11 +232,13 @@ static inline void quad_rule(const quad_of *q, quad_cell *c) {
     else quad_rule1(q, c);
 }
 
-/* Global adaptive subdivision: the cell with the largest estimated error is halved until the sum of the errors meets the tolerance
- * or QUAD_CELLS are in use. In one dimension and with split > 1 the first and the last piece are also graded towards the ends of
- * the range, QUAD_GRADES times by 4: poles and horizons, where densities peak and break off, tend to lie there. */
+/* Global adaptive subdivision: the cell with the largest estimated error is halved until the sum of the errors meets
+ * the tolerance or QUAD_CELLS are in use. In one dimension and with split > 1 the first and the last piece are also
+ * graded towards the ends of the range, QUAD_GRADES times by 4: poles and horizons, where densities peak and break off,
+ * tend to lie there. */
 enum { QUAD_CELLS = 1024, QUAD_GRADES = 6 };
-static inline double quad_adapt(const quad_of *q, quad_cell box, int split, double rel_tol, double abs_tol, double *err) {
+static inline double quad_adapt(const quad_of *q, quad_cell box, int split, double rel_tol, double abs_tol,
+                                double *err) {
     int n = 0;
     const int nx = split < 1 ? 1 : split > 16 ? 16 : split;
     const int ny = q->f2 ? nx : 1;
@@ -243,7 +250,8 @@ static inline double quad_adapt(const quad_of *q, quad_cell box, int split, doub
         cell[n].y0 = box.y0 + (box.y1 - box.y0) * (n / nx) / ny;
         cell[n].y1 = n / nx + 1 == ny ? box.y1 : box.y0 + (box.y1 - box.y0) * (n / nx + 1) / ny;
     }
-    for (int i = 0; nx > 1 && ny == 1 && i < QUAD_GRADES; i++) { /* cell 0 stays the one at x0, cell nx - 1 the one at x1 */
+    for (int i = 0; nx > 1 && ny == 1 && i < QUAD_GRADES;
+         i++) { /* cell 0 stays the one at x0, cell nx - 1 the one at x1 */
         cell[n] = cell[0];
         cell[0].x1 = cell[n].x0 = cell[0].x0 + 0.25 * (cell[0].x1 - cell[0].x0);
         cell[n + 1] = cell[nx - 1];
@@ -287,10 +295,11 @@ static inline quad_cell quad_box(double x0, double x1, double y0, double y1) {
     return c;
 }
 
-/* Integral of f over [x0, x1]. The range is first cut into `split` (1 to 16) equal pieces: 1 for a smooth integrand, more where a
- * peak may hide between the points. *err (err may be NULL) is the estimated absolute error: above max(abs_tol, rel_tol |integral|)
- * only when the integrand did not allow more. NaN from f comes through. */
-static inline double quad1(quad1_fn f, void *ctx, double x0, double x1, double rel_tol, double abs_tol, int split, double *err) {
+/* Integral of f over [x0, x1]. The range is first cut into `split` (1 to 16) equal pieces: 1 for a smooth integrand,
+ * more where a peak may hide between the points. *err (err may be NULL) is the estimated absolute error: above
+ * max(abs_tol, rel_tol |integral|) only when the integrand did not allow more. NaN from f comes through. */
+static inline double quad1(quad1_fn f, void *ctx, double x0, double x1, double rel_tol, double abs_tol, int split,
+                           double *err) {
     quad_of q;
     q.f1 = f;
     q.f2 = NULL;
@@ -318,22 +327,21 @@ static inline double quad_row_sum(double y, void *ctx) {
     return v;
 }
 
-/* The same over [x0, x1] x [y0, y1]; `split` cuts each axis.
- * split 1, a small rectangle: cubature, few points where f is smooth. It does not see an edge that only cuts off the rim of a cell
- * (2.6 % on each side), so it is for bins, where that does not matter.
- * split > 1, or when cubature does not settle: nested integrals, x inside, where an edge across the rectangle is a point to close
- * in on. They are repeated with one more piece per axis until two in a row agree: an edge along the rim of a piece in one
- * (0.4 % on each side) is well inside a piece of the other. */
-static inline double quad2(quad2_fn f, void *ctx, double x0, double x1, double y0, double y1, double rel_tol, double abs_tol,
-                           int split, double *err) {
+/* The same over [x0, x1] x [y0, y1]; `split` cuts each axis. split 1, a small rectangle: cubature, few points where f
+ * is smooth. It does not see an edge that only cuts off the rim of a cell (2.6 % on each side), so it is for bins,
+ * where that does not matter. split > 1, or when cubature does not settle: nested integrals, x inside, where an edge
+ * across the rectangle is a point to close in on. They are repeated with one more piece per axis until two in a row
+ * agree: an edge along the rim of a piece in one (0.4 % on each side) is well inside a piece of the other. */
+static inline double quad2(quad2_fn f, void *ctx, double x0, double x1, double y0, double y1, double rel_tol,
+                           double abs_tol, int split, double *err) {
     enum { ROUNDS = 6 };
     quad_of q;
     q.f1 = NULL;
     q.f2 = f;
     q.ctx = ctx;
     double e;
-    double value =
-        quad_adapt(&q, quad_box(x0, x1, y0, y1), split, split > 1 ? 0.01 : rel_tol, abs_tol, &e); /* at least the magnitude */
+    double value = quad_adapt(&q, quad_box(x0, x1, y0, y1), split, split > 1 ? 0.01 : rel_tol, abs_tol,
+                              &e); /* at least the magnitude */
     double tol = fmax(abs_tol, rel_tol * fabs(value));
     if (split > 1 || e > tol) {
         quad_row row;

@@ -10,8 +10,9 @@
 typedef long double ld;
 
 enum { GRID = 1 << 24, STRATA = 1 << 16, MAX_N = 1000003 };
-static const double level = 1e-5;      /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
-static const double eps = 0x1p-24;     /* rounding of a float, relative; also the step of u and the largest step of x below 1 */
+static const double level = 1e-5; /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
+static const double eps =
+    0x1p-24; /* rounding of a float, relative; also the step of u and the largest step of x below 1 */
 static const double quantum = 0x1p-31; /* probabilities of a table are integers over 2^31 */
 
 /* ---- the three kinds behind one interface ---- */
@@ -33,7 +34,9 @@ typedef struct {
 } kind;
 
 static inline size_t pwc_bytes(uint32_t n) { return mcs_pwc_bytes(n); }
-static inline int pwc_build(void *t, size_t bytes, const float *w, uint32_t n) { return mcs_pwc_build((mcs_pwc *)t, bytes, w, n); }
+static inline int pwc_build(void *t, size_t bytes, const float *w, uint32_t n) {
+    return mcs_pwc_build((mcs_pwc *)t, bytes, w, n);
+}
 static inline draw pwc_sample(const void *t, float u) {
     const mcs_cell c = mcs_pwc_sample((const mcs_pwc *)t, u);
     draw d;
@@ -62,7 +65,9 @@ static inline draw discrete_sample(const void *t, float u) {
 }
 
 static inline size_t pwl_bytes(uint32_t n) { return mcs_pwl_bytes(n); }
-static inline int pwl_build(void *t, size_t bytes, const float *w, uint32_t n) { return mcs_pwl_build((mcs_pwl *)t, bytes, w, n); }
+static inline int pwl_build(void *t, size_t bytes, const float *w, uint32_t n) {
+    return mcs_pwl_build((mcs_pwl *)t, bytes, w, n);
+}
 static inline draw pwl_sample(const void *t, float u) {
     const mcs_cell c = mcs_pwl_sample((const mcs_pwl *)t, u);
     draw d;
@@ -93,10 +98,11 @@ static inline double alias_total(const void *t) { return ((const mcs_alias *)t)-
 static inline unsigned long long alias_bad(const void *t) { return ((const mcs_alias *)t)->bad; }
 static inline uint32_t alias_uniform(const void *t) { return ((const mcs_alias *)t)->uniform; }
 
-static const kind kinds[4] = {{"pwc", 0, pwc_bytes, pwc_build, pwc_sample, pwc_total, pwc_bad, pwc_uniform},
-                              {"discrete", 0, discrete_bytes, discrete_build, discrete_sample, pwc_total, pwc_bad, pwc_uniform},
-                              {"pwl", 1, pwl_bytes, pwl_build, pwl_sample, pwl_total, pwl_bad, pwl_uniform},
-                              {"alias", 0, alias_bytes, alias_build, alias_sample, alias_total, alias_bad, alias_uniform}};
+static const kind kinds[4] = {
+    {"pwc", 0, pwc_bytes, pwc_build, pwc_sample, pwc_total, pwc_bad, pwc_uniform},
+    {"discrete", 0, discrete_bytes, discrete_build, discrete_sample, pwc_total, pwc_bad, pwc_uniform},
+    {"pwl", 1, pwl_bytes, pwl_build, pwl_sample, pwl_total, pwl_bad, pwl_uniform},
+    {"alias", 0, alias_bytes, alias_build, alias_sample, alias_total, alias_bad, alias_uniform}};
 enum { PWC, DISCRETE, PWL, ALIAS };
 
 /* ---- weights to build from ---- */
@@ -168,7 +174,8 @@ static ld mass[MAX_N], cumulative[MAX_N + 1], sum;
 static uint32_t lit;
 static uint32_t hits[MAX_N];
 
-/* Masses of the cells: the weights, or the means of neighbouring vertices. They are normalised by their long double sum. */
+/* Masses of the cells: the weights, or the means of neighbouring vertices. They are normalised by their long double
+ * sum. */
 static inline void load(const weights *s, uint32_t extra) {
     for (uint32_t i = 0; i < s->n + extra; i++) weight[i] = s->w(i, s->n + extra);
     sum = 0;
@@ -183,8 +190,9 @@ static inline void load(const weights *s, uint32_t extra) {
 }
 
 /* u in increasing order: the middle of each stratum moved at random, and the corners of the floats of [0,1). */
-static const float corner[] = {0.0f,     1.4e-45f, FLT_MIN, 1e-30f,         0x1p-32f,      0x1p-25f,      0x1p-24f,
-                               0x1p-23f, 0.25f,    0.5f,    0x0.7fffffcp0f, 0x0.800001p0f, 0x0.fffffep0f, 0x0.ffffffp0f};
+static const float corner[] = {0.0f,           1.4e-45f,      FLT_MIN,       1e-30f,       0x1p-32f,
+                               0x1p-25f,       0x1p-24f,      0x1p-23f,      0.25f,        0.5f,
+                               0x0.7fffffcp0f, 0x0.800001p0f, 0x0.fffffep0f, 0x0.ffffffp0f};
 enum { CORNERS = (int)(sizeof corner / sizeof *corner), US = STRATA + CORNERS };
 static float us[US];
 
@@ -204,9 +212,10 @@ static inline void make_us(void) {
     qsort(us, US, sizeof *us, by_value);
 }
 
-/* Probabilities are integers over 2^31 with at least one for each entry that is not zero. However the ones are found (one for each
- * and the rest shared, or raised from zero), a cumulative probability moves by one integer for each such entry at most, and by
- * one of rounding. A single probability p moves by its own one, its share of those for all, and one of rounding: 2 + lit p. */
+/* Probabilities are integers over 2^31 with at least one for each entry that is not zero. However the ones are found
+ * (one for each and the rest shared, or raised from zero), a cumulative probability moves by one integer for each such
+ * entry at most, and by one of rounding. A single probability p moves by its own one, its share of those for all, and
+ * one of rounding: 2 + lit p. */
 static inline double slack_of(void) { return (lit + 1.0) * quantum; }
 
 static inline arena build(const kind *k, uint32_t n, double *total_error) {

@@ -1,11 +1,13 @@
-/* Same bits everywhere: one hash per public function over 2432 deterministic inputs, good, extreme and bad, against tests/bits.txt.
- * Scalar, 4, 8, 16 wide and array forms must all give it, whatever the machine, its byte order, the compiler and its optimisation.
+/* Same bits everywhere: one hash per public function over 2432 deterministic inputs, good, extreme and bad, against
+ * tests/bits.txt. Scalar, 4, 8, 16 wide and array forms must all give it, whatever the machine, its byte order, the
+ * compiler and its optimisation.
  *
- * The functions are those of the header's index: a new one without an adapter (registry.h or bits.h) or without a line in bits.txt
+ * The functions are those of the header's index: a new one without an adapter (registry.h, bits.h) or a line in bits.txt
  * fails by name. Where results change on purpose:   build/tests/test_bits --print > tests/bits.txt
  *
- * As CUDA (nvcc -x cu --fmad=false) the same file evaluates every scalar function in kernels too, where a GPU is present.
- * The terms of the promise are no contraction of a*b + c and floats evaluated as floats; any other build skips, and says so. */
+ * As CUDA (nvcc -x cu --fmad=false) the same file evaluates every scalar function in kernels too, where a GPU is
+ * present. The terms of the promise are no contraction of a*b + c and floats evaluated as floats; any other build
+ * skips, and says so. */
 #include "functions.h"
 
 #ifndef MCST_BITS
@@ -14,7 +16,8 @@
 
 static float given[CASES][BITS_IN], result[CASES][BITS_OUT];
 
-/* --- inputs ----------------------------------------------------------------------------------------------------------------- */
+/* --- inputs
+ * ----------------------------------------------------------------------------------------------------------------- */
 
 /* Mostly in 2^-7 ... 2, a quarter in 2^-24 ... 2^31, some over all floats, some special. */
 static float any_parameter(uint64_t *state) {
@@ -38,15 +41,16 @@ static float any_u(uint64_t *state) {
     return z >> 8 & 31 ? edge[z >> 16 & 15] : from_bits(0x7fc00000);
 }
 
-/* A unit vector from the pole to the horizon, now and then below it or bad. Only + - * / and sqrt, which no machine rounds
- * differently. */
+/* A unit vector from the pole to the horizon, now and then below it or bad. Only + - * / and sqrt, which no machine
+ * rounds differently. */
 static void any_direction(uint64_t *state, float w[3]) {
     static const double cosines[8] = {1, 0.7, 0.35, 0.0871557, 1e-2, 1e-3, 1e-6, 1e-7};
     const uint64_t z = mcst_mix(state);
     const double t = (double)(int32_t)(z >> 40) * 0x1p-23 - 1,
                  c = z & 1 ? cosines[z >> 1 & 7] : (double)(int32_t)(z >> 16 & 0xFFFFFF) * 0x1p-24;
     const double s = sqrt((1 - c) * (1 + c)), up = z >> 4 & 7 ? 1 : -1, turn = z >> 7 & 1 ? 1 : -1;
-    w[0] = (float)(turn * s * (1 - t * t) / (1 + t * t)), w[1] = (float)(s * 2 * t / (1 + t * t)), w[2] = (float)(up * c);
+    w[0] = (float)(turn * s * (1 - t * t) / (1 + t * t)), w[1] = (float)(s * 2 * t / (1 + t * t)),
+    w[2] = (float)(up * c);
     if (z >> 8 & 15) return;
     switch (z >> 12 & 3) {
     case 0: w[z % 3] = any_parameter(state); break;
@@ -84,7 +88,8 @@ static void make_inputs(const mcst_row *row) {
     }
 }
 
-/* --- evaluation ------------------------------------------------------------------------------------------------------------- */
+/* --- evaluation
+ * ------------------------------------------------------------------------------------------------------------- */
 
 /* Fills `result` at width w; neighbouring lanes get cases of different parameter sets. */
 static void evaluate(target t, int w) {
@@ -141,13 +146,15 @@ static void evaluate_arrays(target t) {
     else evaluate_blocks(t);
 }
 
-/* --- the same on a GPU ------------------------------------------------------------------------------------------------------ */
+/* --- the same on a GPU
+ * ------------------------------------------------------------------------------------------------------ */
 
 #ifdef __CUDACC__
 namespace gpu {
 typedef void (*kernel)(const float *in, float *out);
 __device__ int here() { return (int)(blockIdx.x * blockDim.x + threadIdx.x); }
-template <void (*F)(const float *, const float *, const float *, float *)> __global__ void sample(const float *in, float *out) {
+template <void (*F)(const float *, const float *, const float *, float *)>
+__global__ void sample(const float *in, float *out) {
     const int i = here();
     if (i < CASES) F(in + i * BITS_IN, in + i * BITS_IN + U, in + i * BITS_IN + U + 1, out + i * BITS_OUT);
 }
@@ -164,7 +171,8 @@ template <void (*F)(const float *, float *)> __global__ void other(const float *
 #define GPU_DIR GPU_LINE
 #define GPU_LOBE GPU_LINE
 #define GPU_VLOBE GPU_LINE
-#define GPU_BRDF(r) {sample<mcst1_##r##_sample>, value<mcst1_##r##_pdf>, NULL, value<mcst1_##r##_eval>, value<mcst1_##r##_weight>},
+#define GPU_BRDF(r) \
+    {sample<mcst1_##r##_sample>, value<mcst1_##r##_pdf>, NULL, value<mcst1_##r##_eval>, value<mcst1_##r##_weight>},
 #define GPU_ROW(shape, row, fn, arg, base, coord, grid) GPU_##shape(row)
 static const kernel rows[][SAMPLE_N] = {MCST_ROWS(GPU_ROW)};
 #define GPU_OTHER(x) other<bits1_##x>,
@@ -191,7 +199,8 @@ static const char *evaluate(target t) {
 } // namespace gpu
 #endif
 
-/* --- stored hashes ---------------------------------------------------------------------------------------------------------- */
+/* --- stored hashes
+ * ---------------------------------------------------------------------------------------------------------- */
 
 static char stored_name[MCST_NAMES][MCST_NAME];
 static uint64_t stored[MCST_NAMES];
@@ -233,7 +242,8 @@ static uint64_t hash_of(target t, int way) {
 #endif
         if (t.form != OTHER || others[t.at].floats)
             for (i = 0; i < CASES * BITS_OUT; i++)
-                CHECK(r[i] - r[i] == 0, "%s: result %d of case %d is %g", name_of(way), i % BITS_OUT, i / BITS_OUT, (double)r[i]);
+                CHECK(r[i] - r[i] == 0, "%s: result %d of case %d is %g", name_of(way), i % BITS_OUT, i / BITS_OUT,
+                      (double)r[i]);
         hash = bits_hash(hash, r, CASES * BITS_OUT);
     } while (next_row(&t));
     return hash;
@@ -248,8 +258,8 @@ static void check(const char *name, int promised) {
     for (way = 0; promised && t.at >= 0 && line >= 0 && way <= GPU; way++)
         if (can(t, way)) {
             const uint64_t got = hash_of(t, way);
-            CHECK(got == stored[line], "%s: %08x%08x, stored %08x%08x", name_of(way), (unsigned)(got >> 32), (unsigned)got,
-                  (unsigned)(stored[line] >> 32), (unsigned)stored[line]);
+            CHECK(got == stored[line], "%s: %08x%08x, stored %08x%08x", name_of(way), (unsigned)(got >> 32),
+                  (unsigned)got, (unsigned)(stored[line] >> 32), (unsigned)stored[line]);
         }
 }
 
@@ -287,15 +297,16 @@ int main(int argc, char **argv) {
     }
     mcst_group("bits");
     if (mcst_case("the index, the adapters and %s agree", MCST_BITS)) {
-        CHECK(mcst_name_count > 100, "%d functions in the index of %s; run the test where it is, or compile with -DMCS_HEADER",
+        CHECK(mcst_name_count > 100,
+              "%d functions in the index of %s; run the test where it is, or compile with -DMCS_HEADER",
               mcst_name_count, MCS_HEADER);
         CHECK(stored_count == mcst_name_count, "%d hashes for %d functions", stored_count, mcst_name_count);
         for (i = 0; i < stored_count; i++)
             CHECK(mcst_name_at(stored_name[i], mcst_name, mcst_name_count) >= 0, "%s is stored, but not in the index",
                   stored_name[i]);
         for (i = 0; i < (int)MCST_COUNT(others); i++)
-            CHECK(mcst_name_at(others[i].name, mcst_name, mcst_name_count) >= 0, "%s has an adapter, but is not in the index",
-                  others[i].name);
+            CHECK(mcst_name_at(others[i].name, mcst_name, mcst_name_count) >= 0,
+                  "%s has an adapter, but is not in the index", others[i].name);
     }
     for (i = 0; i < mcst_name_count; i++)
         if (mcst_case("%s", mcst_name[i])) check(mcst_name[i], reason == NULL);

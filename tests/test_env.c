@@ -19,7 +19,8 @@ static void check_samples(const map *m, const mcs_env *e) {
     }
 }
 
-/* The row never decreases with u2 whatever u1, nor the column with u1 at a given u2; within a cell z falls and phi grows. */
+/* The row never decreases with u2 whatever u1, nor the column with u1 at a given u2; within a cell z falls and phi
+ * grows. */
 static void check_monotone(const map *m, const mcs_env *e) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 43);
     enum { STEPS = 1 << 14 };
@@ -110,7 +111,8 @@ static void test_whole_map(void) {
     arena_free(&a);
 }
 
-/* Eight cells of phi by eight of cos(theta) in each of 4 x 2 texels; a big texel is where theta in place of cos(theta) shows. */
+/* Eight cells of phi by eight of cos(theta) in each of 4 x 2 texels; a big texel is where theta in place of cos(theta)
+ * shows. */
 static void test_inside_texels(void) {
     enum { CELLS = 8 * 64 };
     static double observed[CELLS], expected[CELLS];
@@ -139,7 +141,8 @@ static void test_inside_texels(void) {
     arena_free(&a);
 }
 
-/* Both caps of 4099 rows: 1 - |z| = 2 sin^2(theta/2) spreads evenly from 0 to 1 - cos(pi/4099) = 2.9e-7. Taken from x and y. */
+/* Both caps of 4099 rows: 1 - |z| = 2 sin^2(theta/2) spreads evenly from 0 to 1 - cos(pi/4099) = 2.9e-7. Taken from x
+ * and y. */
 static void test_caps(void) {
     static double observed[64], expected[64];
     const map *m = &maps[POLES];
@@ -209,8 +212,8 @@ static void test_batch(void) {
                     p[k] = skip >> k & 1 ? NULL : out[k] + at;
                 }
                 for (size_t i = 0; i < count + 8; i++) col[i] = row[i] = 77777;
-                mcs_env_sample_n(env_in(&a), count, u1 + shift, u2 + at, p[0], p[1], p[2], p[3], skip & 4 ? NULL : col + at,
-                                 skip & 8 ? NULL : row + at);
+                mcs_env_sample_n(env_in(&a), count, u1 + shift, u2 + at, p[0], p[1], p[2], p[3],
+                                 skip & 4 ? NULL : col + at, skip & 8 ? NULL : row + at);
                 for (size_t i = 0; i < count; i++) {
                     const mcs_texel s = mcs_env_sample(env_in(&a), u1[shift + i], u2[at + i]);
                     const float want[4] = {s.w.x, s.w.y, s.w.z, s.pdf};
@@ -271,7 +274,8 @@ static void test_size(void) {
     for (int i = 0; i < 2; i++) {
         const double each = (double)mcs_env_bytes(w[i], w[i] / 2) / ((double)w[i] * w[i] / 2);
         mcst_note("     %u x %u: %.3f bytes a texel\n", w[i], w[i] / 2, each);
-        CHECK(each >= 4 && each <= 16, "%u x %u: %g bytes a texel", w[i], w[i] / 2, each); /* at most what the largest peer takes */
+        CHECK(each >= 4 && each <= 16, "%u x %u: %g bytes a texel", w[i], w[i] / 2,
+              each); /* at most what the largest peer takes */
     }
 }
 

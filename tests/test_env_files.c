@@ -11,8 +11,8 @@ static mcs_env *copy_of(const void *from, size_t bytes) {
     return (mcs_env *)to;
 }
 
-/* A forged table that was accepted may be wrong, but draws texels of the map, with densities that are numbers and along unit
- * directions: dot products of the frame are off by 1e-4 at most, thus squares of lengths by 3 times as much. */
+/* A forged table that was accepted may be wrong, but draws texels of the map, with densities that are numbers and along
+ * unit directions: dot products of the frame are off by 1e-4 at most, thus squares of lengths by 3 times as much. */
 static void check_harmless(const mcs_env *e, const char *what, size_t at) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 113);
     enum { N = 68 };
@@ -34,24 +34,29 @@ static void check_harmless(const mcs_env *e, const char *what, size_t at) {
         const mcs_vec2 u = mcs_env_invert(e, s.w);
         const double length = sqrt((double)s.w.x * s.w.x + (double)s.w.y * s.w.y + (double)s.w.z * s.w.z);
         outside += !(s.col < e->w && s.row < e->h && t.col < e->w && t.row < e->h);
-        no_density += !(s.pdf >= 0 && s.pdf <= FLT_MAX && t.pdf >= 0 && t.pdf <= FLT_MAX && out[3][i] >= 0 && pdf[i] >= 0);
+        no_density +=
+            !(s.pdf >= 0 && s.pdf <= FLT_MAX && t.pdf >= 0 && t.pdf <= FLT_MAX && out[3][i] >= 0 && pdf[i] >= 0);
         no_direction += !(fabs(length - 1) <= 1.6e-4);
         no_inverse += !(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1);
     }
     CHECK(outside + no_density + no_direction + no_inverse == 0,
-          "%s %zu changed, accepted: of %d draws %d outside the map, %d without density, %d without direction, %d inverses", what,
-          at, N, outside, no_density, no_direction, no_inverse);
+          "%s %zu changed, accepted: of %d draws %d outside the map, %d without density, %d without direction, %d "
+          "inverses",
+          what, at, N, outside, no_density, no_direction, no_inverse);
 }
 
-static int in_frame(size_t at) { return at >= offsetof(mcs_env, frame) && at < offsetof(mcs_env, frame) + sizeof(mcs_frame); }
+static int in_frame(size_t at) {
+    return at >= offsetof(mcs_env, frame) && at < offsetof(mcs_env, frame) + sizeof(mcs_frame);
+}
 
-/* Memory of a table, `was`, that now differs: refused with MCS_ERR_FORMAT or, where the size that the header tells is larger,
- * MCS_ERR_MEMORY. A changed frame may be one, and a forged table, too: then they are harmless. Puts the table back and returns
- * whether the forged one was refused. */
+/* Memory of a table, `was`, that now differs: refused with MCS_ERR_FORMAT or, where the size that the header tells is
+ * larger, MCS_ERR_MEMORY. A changed frame may be one, and a forged table, too: then they are harmless. Puts the table
+ * back and returns whether the forged one was refused. */
 static int check_damaged(mcs_env *e, const arena *was, const char *what, size_t at) {
     const mcs_env *good = env_in(was);
     mcs_status rc = mcs_env_check(e, was->bytes);
-    CHECK(rc == MCS_ERR_FORMAT || rc == MCS_ERR_MEMORY || (rc == MCS_OK && in_frame(at)), "%s %zu changed: %d", what, at, rc);
+    CHECK(rc == MCS_ERR_FORMAT || rc == MCS_ERR_MEMORY || (rc == MCS_OK && in_frame(at)), "%s %zu changed: %d", what,
+          at, rc);
     if (e->w == good->w && e->h == good->h && memcmp(&e->offset, &good->offset, sizeof e->offset) == 0) {
         seal(e);
         rc = mcs_env_check(e, was->bytes);
@@ -62,7 +67,8 @@ static int check_damaged(mcs_env *e, const arena *was, const char *what, size_t 
     return rc != MCS_OK;
 }
 
-/* What must be noticed when the word at i of the header is `now` instead of `was`; odd: it is none of its neighbours. */
+/* What must be noticed when the word at i of the header is `now` instead of `was`; odd: it is none of its neighbours.
+ */
 static void check_word(mcs_env *e, const arena *a, size_t i, uint32_t now, uint32_t was, int odd) {
     const int no = check_damaged(e, a, "header word at", i);
     /* magic, version, the whole layout and both sizes are what everything else is found by */
@@ -104,12 +110,14 @@ static void check_sums(const picture *p, mcs_env *e, const arena *a, mcs_pcg32 *
     for (size_t i = 0; i < (size_t)scaled(4000); i++) {
         const size_t at = sizeof *e + mcs_pcg32_next(rng) % (bytes - sizeof *e);
         const size_t n = 1 + mcs_pcg32_next(rng) % 8;
-        for (size_t k = at; k < at + n && k < bytes; k++) byte[k] = (unsigned char)(i % 3 ? mcs_pcg32_next(rng) : i % 2 ? 0xff : 0);
+        for (size_t k = at; k < at + n && k < bytes; k++)
+            byte[k] = (unsigned char)(i % 3 ? mcs_pcg32_next(rng) : i % 2 ? 0xff : 0);
         const size_t guides = env_in(a)->offset.col_guide;
         const int changed = memcmp(e, a->at, bytes) != 0;
         const int no = changed && check_damaged(e, a, "table byte", at);
         /* guides follow from the sums: none but the right one passes, forged or not */
-        if (all_lit && changed && at >= guides && at + n <= guides + (size_t)p->h * env_in(a)->offset.guide_length * 2) {
+        if (all_lit && changed && at >= guides &&
+            at + n <= guides + (size_t)p->h * env_in(a)->offset.guide_length * 2) {
             guides_tried++;
             CHECK(no, "guide byte %zu changed, accepted", at);
         }
@@ -118,7 +126,8 @@ static void check_sums(const picture *p, mcs_env *e, const arena *a, mcs_pcg32 *
 }
 static void check_cut(const arena *a, mcs_pcg32 *rng) {
     const size_t bytes = a->bytes;
-    for (size_t i = 0; i < bytes; i += i < sizeof(mcs_env) || i + 64 >= bytes ? 1 : 1 + mcs_pcg32_next(rng) % (bytes / 64 + 1)) {
+    for (size_t i = 0; i < bytes;
+         i += i < sizeof(mcs_env) || i + 64 >= bytes ? 1 : 1 + mcs_pcg32_next(rng) % (bytes / 64 + 1)) {
         mcs_env *cut = copy_of(a->at, i);
         CHECK(mcs_env_check(cut, i) == MCS_ERR_MEMORY, "%zu of %zu bytes: %d", i, bytes, mcs_env_check(cut, i));
         free(cut);
@@ -199,8 +208,8 @@ static void check_every_bit(picture p, brightness want) {
         a.at[bit / 8] ^= (unsigned char)(1u << bit % 8);
         const mcs_status rc = mcs_env_check(env_in(&a), a.bytes);
         passed += rc == MCS_OK;
-        CHECK((rc == MCS_OK) == (in_frame(bit / 8) && orthonormal(&env_in(&a)->frame)), "%s: bit %zu of byte %zu of %zu: %d",
-              p.name, bit % 8, bit / 8, a.bytes, rc);
+        CHECK((rc == MCS_OK) == (in_frame(bit / 8) && orthonormal(&env_in(&a)->frame)),
+              "%s: bit %zu of byte %zu of %zu: %d", p.name, bit % 8, bit / 8, a.bytes, rc);
         a.at[bit / 8] ^= (unsigned char)(1u << bit % 8);
     }
     CHECK(passed > 0 && mcs_env_check(env_in(&a), a.bytes) == MCS_OK, "%s: %zu frames pass", p.name, passed);
@@ -217,8 +226,9 @@ static void test_every_bit(void) {
     check_every_bit(make("16 x 2", 16, 2, v_random), LIT);
 }
 
-/* Damage of any kind outside the frame: single bits, two and three of them, runs of bytes, zeroed or exchanged blocks; of a row,
- * two words exchanged, or one bit of both changed, 64 bytes or a multiple apart as sums take words together that are. */
+/* Damage of any kind outside the frame: single bits, two and three of them, runs of bytes, zeroed or exchanged blocks;
+ * of a row, two words exchanged, or one bit of both changed, 64 bytes or a multiple apart as sums take words together
+ * that are. */
 static void test_random_damage(void) {
     const picture p = make("sky", 64, 32, v_sky);
     arena a = build(&p, LIT);
@@ -348,8 +358,9 @@ static void test_file(void) {
         const float f2 = mcs_pcg32_float(&rng);
         const mcs_texel s = mcs_env_sample(env_in(&b), f1, f2);
         CHECK(same(s, mcs_env_sample(env_in(&a), f1, f2)), "draw %d differs", i);
-        CHECK(same(mcs_env_window_sample(window, env_in(&a), f1, f2), mcs_env_window_sample(window, env_in(&b), f1, f2)),
-              "draw %d through the window differs", i);
+        CHECK(
+            same(mcs_env_window_sample(window, env_in(&a), f1, f2), mcs_env_window_sample(window, env_in(&b), f1, f2)),
+            "draw %d through the window differs", i);
     }
     arena_free(&a);
     arena_free(&b);

@@ -1,4 +1,5 @@
-/* Environment maps of any input: channels, strides, bad pixels and arguments, a turned map. The truth is the image itself. */
+/* Environment maps of any input: channels, strides, bad pixels and arguments, a turned map. The truth is the image
+ * itself. */
 #include "env_maps.h"
 
 /* ---- input ---- */
@@ -14,7 +15,8 @@ static void test_channels(void) {
             const size_t stride = padded ? STRIDE : W * channels;
             arena a = arena_make(mcs_env_bytes(W, H));
             ld sum = 0;
-            for (uint32_t r = 0; r < H * STRIDE; r++) in[r] = NAN; /* padding and further channels must not be read as light */
+            for (uint32_t r = 0; r < H * STRIDE; r++)
+                in[r] = NAN; /* padding and further channels must not be read as light */
             for (uint32_t r = 0; r < H; r++)
                 for (uint32_t c = 0; c < W; c++) {
                     float *px = in + r * stride + c * channels;
@@ -34,18 +36,18 @@ static void test_channels(void) {
                 for (uint32_t c = 0; c < W; c++) row_prob[r] += prob[r * W + c] /= sum;
             }
             const int rc = build_from(env_in(&a), a.bytes, in, W, H, channels, padded ? STRIDE : 0);
-            CHECK(rc == MCS_OK && env_in(&a)->bad == 0, "%u channels, stride %zu: returns %d, %llu bad", channels, stride, rc,
-                  (unsigned long long)env_in(&a)->bad);
-            CHECK(fabs((double)(env_in(&a)->total / sum - 1)) <= 4 * eps, "%u channels, stride %zu: total %g, not %g", channels,
-                  stride, env_in(&a)->total, (double)sum);
+            CHECK(rc == MCS_OK && env_in(&a)->bad == 0, "%u channels, stride %zu: returns %d, %llu bad", channels,
+                  stride, rc, (unsigned long long)env_in(&a)->bad);
+            CHECK(fabs((double)(env_in(&a)->total / sum - 1)) <= 4 * eps, "%u channels, stride %zu: total %g, not %g",
+                  channels, stride, env_in(&a)->total, (double)sum);
             check_density(&m, env_in(&a));
             arena_free(&a);
         }
     }
 }
 
-/* The same picture however it lies in memory: apart, with padding, upside down, as a channel of a larger one. The memory of the
- * picture ends with its last float, and what is not a pixel is NaN. */
+/* The same picture however it lies in memory: apart, with padding, upside down, as a channel of a larger one. The
+ * memory of the picture ends with its last float, and what is not a pixel is NaN. */
 static void test_strides(void) {
     enum { W = 21, H = 13 };
     static const struct {
@@ -84,8 +86,8 @@ static void test_strides(void) {
         image.row_stride = way[k].row < 0 ? -row : way[k].row || k % 2 ? row : 0;
         rc = mcs_env_build(env_in(&b), b.bytes, &image);
         CHECK(rc == MCS_OK && arena_intact(&b) && memcmp(a.at, b.at, a.bytes) == 0,
-              "%u channels, pixels %td apart, rows %td: returns %d, %u bad, or another table", way[k].channels, image.pixel_stride,
-              image.row_stride, rc, env_in(&b)->bad);
+              "%u channels, pixels %td apart, rows %td: returns %d, %u bad, or another table", way[k].channels,
+              image.pixel_stride, image.row_stride, rc, env_in(&b)->bad);
         free(in);
         arena_free(&a);
         arena_free(&b);
@@ -138,19 +140,20 @@ static void test_refused_strides(void) {
             rc[1] = mcs_env_build_rows(env_in(&a), need, &image, 0, 1);
             rc[2] = mcs_env_finish(env_in(&a), need, &image);
             CHECK(rc[0] == way[k].status && rc[1] == way[k].status && rc[2] == way[k].status && mean == 0,
-                  "pixels %td, rows %td apart: %d, %d, %d, mean %g", way[k].pixel, way[k].row, rc[0], rc[1], rc[2], (double)mean);
+                  "pixels %td, rows %td apart: %d, %d, %d, mean %g", way[k].pixel, way[k].row, rc[0], rc[1], rc[2],
+                  (double)mean);
             CHECK(untouched(a.at, need), "pixels %td, rows %td apart: refused, yet written", way[k].pixel, way[k].row);
         } else {
-            CHECK(rc[0] == MCS_OK && mean > 0, "pixels %td, rows %td apart: %d, mean %g", way[k].pixel, way[k].row, rc[0],
-                  (double)mean);
+            CHECK(rc[0] == MCS_OK && mean > 0, "pixels %td, rows %td apart: %d, mean %g", way[k].pixel, way[k].row,
+                  rc[0], (double)mean);
         }
         CHECK(arena_intact(&a), "written outside");
         arena_free(&a);
     }
 }
 
-/* Each bad channel is 0, but +infinity is FLT_MAX: mean, total and draws are those of a picture that says so, as it is, bilinear
- * and with a floor; `way` 0: whole texels are bad, 1: channels of them, 2: and some of these infinite. */
+/* Each bad channel is 0, but +infinity is FLT_MAX: mean, total and draws are those of a picture that says so, as it is,
+ * bilinear and with a floor; `way` 0: whole texels are bad, 1: channels of them, 2: and some of these infinite. */
 static void check_bad_pixels(uint32_t channels, int way, int mode) {
     enum { W = 24, H = 12 };
     const float bad[5] = {NAN, -1.0f, -INFINITY, -FLT_MAX, -FLT_MIN};
@@ -181,10 +184,11 @@ static void check_bad_pixels(uint32_t channels, int way, int mode) {
     CHECK(mcs_env_mean(&broken) == mcs_env_mean(&right) && mcs_env_mean(&right) <= FLT_MAX, "mean %g, not %g",
           (double)mcs_env_mean(&broken), (double)mcs_env_mean(&right));
     int rc = mcs_env_build(env_in(&a), a.bytes, &broken);
-    CHECK(rc == MCS_OK && env_in(&a)->bad == count && arena_intact(&a), "%u channels: returns %d, %llu bad, not %u", channels, rc,
-          (unsigned long long)env_in(&a)->bad, count);
+    CHECK(rc == MCS_OK && env_in(&a)->bad == count && arena_intact(&a), "%u channels: returns %d, %llu bad, not %u",
+          channels, rc, (unsigned long long)env_in(&a)->bad, count);
     rc = mcs_env_build(env_in(&b), b.bytes, &right);
-    CHECK(rc == MCS_OK && env_in(&b)->bad == 0 && env_in(&a)->total == env_in(&b)->total && env_in(&b)->total <= DBL_MAX,
+    CHECK(rc == MCS_OK && env_in(&b)->bad == 0 && env_in(&a)->total == env_in(&b)->total &&
+              env_in(&b)->total <= DBL_MAX,
           "%u channels: total %g, not %g", channels, env_in(&a)->total, env_in(&b)->total);
     CHECK(mcs_env_check(env_in(&a), a.bytes) == MCS_OK, "no table");
     for (uint32_t i = 0; i < 20000; i++) {
@@ -209,21 +213,25 @@ static void test_bad_channels(void) {
     enum { W = 9 };
     static const float in[W][3] = {{-150, 1000, 100}, {1, 1, 1},     {1, NAN, 1},        {-5, -1, 3},      {-1, -2, -3},
                                    {NAN, NAN, NAN},   {0, 2, -1000}, {-1e30f, 1e-3f, 0}, {-0.0f, -0.0f, 0}};
-    static const double want[W] = {0.7152 * 1000 + 0.0722 * 100, 1, 0.2126 + 0.0722, 0.0722 * 3, 0, 0, 0.7152 * 2, 0.7152e-3, 0};
-    static const float suns[4][3] = {{INFINITY, 0, 0}, {FLT_MAX, FLT_MAX, FLT_MAX}, {INFINITY, -INFINITY, NAN}, {1e30f, 0, 0}};
+    static const double want[W] = {
+        0.7152 * 1000 + 0.0722 * 100, 1, 0.2126 + 0.0722, 0.0722 * 3, 0, 0, 0.7152 * 2, 0.7152e-3, 0};
+    static const float suns[4][3] = {
+        {INFINITY, 0, 0}, {FLT_MAX, FLT_MAX, FLT_MAX}, {INFINITY, -INFINITY, NAN}, {1e30f, 0, 0}};
     static const double sun_want[4] = {0.2126, 1, 0.2126, 0.2126 * 1e30 / FLT_MAX};
     arena a = arena_make(mcs_env_bytes(W, 1));
     mcs_image image = mcs_image_make(&in[0][0], W, 1, 3);
     double sum = 0;
     for (uint32_t i = 0; i < W; i++) sum += want[i];
     CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == 7, "%u bad", env_in(&a)->bad);
-    CHECK(fabs(env_in(&a)->total / (sum * 4 * pi / W) - 1) <= 4 * eps, "total %g, not %g", env_in(&a)->total, sum * 4 * pi / W);
-    CHECK(fabs(mcs_env_mean(&image) / (sum / W) - 1) <= 4 * eps, "mean %g, not %g", (double)mcs_env_mean(&image), sum / W);
+    CHECK(fabs(env_in(&a)->total / (sum * 4 * pi / W) - 1) <= 4 * eps, "total %g, not %g", env_in(&a)->total,
+          sum * 4 * pi / W);
+    CHECK(fabs(mcs_env_mean(&image) / (sum / W) - 1) <= 4 * eps, "mean %g, not %g", (double)mcs_env_mean(&image),
+          sum / W);
     for (uint32_t i = 0; i < W; i++) {
         const double p = mcs_env_pdf(env_in(&a), point(W, 1, i, 0, 0.5, 0.5)) * 4 * pi / W;
         const double due = want[i] / sum;
-        CHECK((p > 0) == (due > 0) && fabs(p - due) <= 5 * eps * due + (2 + W * due) * quantum, "texel %u: probability %g, not %g",
-              i, p, due);
+        CHECK((p > 0) == (due > 0) && fabs(p - due) <= 5 * eps * due + (2 + W * due) * quantum,
+              "texel %u: probability %g, not %g", i, p, due);
     }
     /* an overflowed half is a sun; nothing overflows with it */
     image = mcs_image_make(&suns[0][0], 4, 1, 3);
@@ -232,17 +240,19 @@ static void test_bad_channels(void) {
     for (int mode = 0; mode < 2; mode++) {
         const double whole = sum * FLT_MAX * pi;
         image.bilinear = mode;
-        CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == 2, "suns: %u bad", env_in(&a)->bad);
+        CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == 2, "suns: %u bad",
+              env_in(&a)->bad);
         CHECK(fabs(env_in(&a)->total / whole - 1) <= 5 * eps, "suns: total %g, not %g", env_in(&a)->total, whole);
-        CHECK(fabs(mcs_env_mean(&image) / (whole / (4 * pi)) - 1) <= 5 * eps, "suns: mean %g", (double)mcs_env_mean(&image));
+        CHECK(fabs(mcs_env_mean(&image) / (whole / (4 * pi)) - 1) <= 5 * eps, "suns: mean %g",
+              (double)mcs_env_mean(&image));
         for (uint32_t i = 0; i < 4; i++) {
             const double p = mcs_env_pdf(env_in(&a), point(4, 1, i, 0, 0.5, 0.5)) * pi;
             const double before = sun_want[(i + 3) % 4];
             const double here = sun_want[i];
             const double after = sun_want[(i + 1) % 4];
             const double due = (mode ? 0.25 * before + 0.5 * here + 0.25 * after : here) / sum;
-            CHECK(p > 0 && fabs(p - due) <= 8 * eps * due + (2 + 4 * due) * quantum, "suns, texel %u: probability %g, not %g", i, p,
-                  due);
+            CHECK(p > 0 && fabs(p - due) <= 8 * eps * due + (2 + 4 * due) * quantum,
+                  "suns, texel %u: probability %g, not %g", i, p, due);
         }
     }
     arena_free(&a);
@@ -258,8 +268,8 @@ static void test_all_infinite(void) {
             mcs_image image = mcs_image_make(in, W, H, k & 2 ? 3 : 1);
             for (int i = 0; i < W * H * 3; i++) in[i] = fill;
             image.bilinear = mode;
-            CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == (k & 1 ? W * H : 0), "%u bad",
-                  env_in(&a)->bad);
+            CHECK(mcs_env_build(env_in(&a), a.bytes, &image) == MCS_OK && env_in(&a)->bad == (k & 1 ? W * H : 0),
+                  "%u bad", env_in(&a)->bad);
             CHECK(env_in(&a)->uniform && fabs(env_in(&a)->total / (4 * pi * FLT_MAX) - 1) <= 4 * eps, "total %g",
                   env_in(&a)->total);
             CHECK(mcs_env_mean(&image) <= FLT_MAX && mcs_env_mean(&image) >= FLT_MAX * (1 - 4 * (float)eps), "mean %g",
@@ -281,14 +291,14 @@ static void test_black(void) {
         load(&m);
         const int rc = build_from(env_in(&a), a.bytes, in, W, H, 1, 0);
         CHECK(rc == MCS_OK && env_in(&a)->uniform && arena_intact(&a), "all %g: returns %d", (double)fill[k], rc);
-        CHECK(env_in(&a)->total == 0 && env_in(&a)->bad == (k == 2 ? W * H : 0), "all %g: total %g, %llu bad", (double)fill[k],
-              env_in(&a)->total, (unsigned long long)env_in(&a)->bad);
+        CHECK(env_in(&a)->total == 0 && env_in(&a)->bad == (k == 2 ? W * H : 0), "all %g: total %g, %llu bad",
+              (double)fill[k], env_in(&a)->total, (unsigned long long)env_in(&a)->bad);
         for (int i = 0; i < 20000; i++) {
             const float u1 = mcs_pcg32_float(&rng);
             const float u2 = mcs_pcg32_float(&rng);
             const float pdf = mcs_env_sample(env_in(&a), u1, u2).pdf;
-            CHECK(fabs(pdf * 4 * pi - 1) <= 4 * eps + 2 * W * H * quantum, "u = %a, %a: density %g", (double)u1, (double)u2,
-                  (double)pdf);
+            CHECK(fabs(pdf * 4 * pi - 1) <= 4 * eps + 2 * W * H * quantum, "u = %a, %a: density %g", (double)u1,
+                  (double)u2, (double)pdf);
             check_sample(&m, env_in(&a), u1, u2);
         }
         arena_free(&a);
@@ -335,9 +345,10 @@ static void test_bad_sampler_input(void) {
             const float u1 = k == 1 ? 0.3f : odd[i];
             const float u2 = k == 0 ? 0.3f : odd[i];
             const mcs_texel s = mcs_env_sample(env_in(&a), u1, u2);
-            CHECK(s.pdf == 0 && fabsf(s.w.x) <= 2 && fabsf(s.w.y) <= 2 && fabsf(s.w.z) <= 2 && s.col < m->w && s.row < m->h,
-                  "u = %g, %g: pdf %g at (%g, %g, %g)", (double)u1, (double)u2, (double)s.pdf, (double)s.w.x, (double)s.w.y,
-                  (double)s.w.z);
+            CHECK(s.pdf == 0 && fabsf(s.w.x) <= 2 && fabsf(s.w.y) <= 2 && fabsf(s.w.z) <= 2 && s.col < m->w &&
+                      s.row < m->h,
+                  "u = %g, %g: pdf %g at (%g, %g, %g)", (double)u1, (double)u2, (double)s.pdf, (double)s.w.x,
+                  (double)s.w.y, (double)s.w.z);
         }
     for (size_t i = 4; i < n; i++)
         for (size_t j = 0; j < 3; j++) {
@@ -349,10 +360,11 @@ static void test_bad_sampler_input(void) {
             const float pdf = mcs_env_pdf(env_in(&a), w);
             const mcs_vec2 u = mcs_env_invert(env_in(&a), w);
             CHECK(pdf == 0, "w = (%g, %g, %g): pdf %g", (double)w.x, (double)w.y, (double)w.z, (double)pdf);
-            CHECK(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1, "w = (%g, %g, %g): invert", (double)w.x, (double)w.y, (double)w.z);
+            CHECK(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1, "w = (%g, %g, %g): invert", (double)w.x, (double)w.y,
+                  (double)w.z);
             const mcs_texel at = mcs_env_texel(env_in(&a), w);
-            CHECK(at.pdf == 0 && at.col < m->w && at.row < m->h && at.w.z == 1, "w = (%g, %g, %g): texel (%u, %u)", (double)w.x,
-                  (double)w.y, (double)w.z, at.col, at.row);
+            CHECK(at.pdf == 0 && at.col < m->w && at.row < m->h && at.w.z == 1, "w = (%g, %g, %g): texel (%u, %u)",
+                  (double)w.x, (double)w.y, (double)w.z, at.col, at.row);
         }
     arena_free(&a);
 }
@@ -367,15 +379,16 @@ static void test_axes(void) {
         const mcs_texel at = mcs_env_texel(env_in(&a), w);
         const float pdf = mcs_env_pdf(env_in(&a), w);
         if (w.x == 0 && w.y == 0 && w.z == 0) continue;
-        CHECK(at.col < m->w && at.row < m->h && pdf > 0 && pdf <= FLT_MAX, "(%g, %g, %g): (%u, %u), pdf %g", (double)w.x,
-              (double)w.y, (double)w.z, at.col, at.row, (double)pdf);
+        CHECK(at.col < m->w && at.row < m->h && pdf > 0 && pdf <= FLT_MAX, "(%g, %g, %g): (%u, %u), pdf %g",
+              (double)w.x, (double)w.y, (double)w.z, at.col, at.row, (double)pdf);
         if (w.x == 0 && w.y == 0) CHECK(at.row == (w.z > 0 ? 0 : m->h - 1), "pole %g: row %u", (double)w.z, at.row);
     }
     arena_free(&a);
 }
 
-/* Where sums keep more digits than a double has, that of a window's begin and a place in it can lie between the largest double
- * below 2^31 and 2^31 itself: it is a place in the first column, which is bright; the last one has a few of 2^31. */
+/* Where sums keep more digits than a double has, that of a window's begin and a place in it can lie between the largest
+ * double below 2^31 and 2^31 itself: it is a place in the first column, which is bright; the last one has a few of
+ * 2^31. */
 static void test_seam(void) {
     const float light[8] = {1, 1e-15f, 1, 1e-15f, 1, 1e-15f, 1, 1e-15f};
     const mcs_image image = mcs_image_make(light, 2, 4, 1);
@@ -396,7 +409,8 @@ static void test_seam(void) {
 
 static double dot(mcs_vec3 a, mcs_vec3 b) { return (double)a.x * b.x + (double)a.y * b.y + (double)a.z * b.z; }
 
-/* One draw of the map and of the turned one; 1 where the direction is found in a neighbour of the texel that was drawn. */
+/* One draw of the map and of the turned one; 1 where the direction is found in a neighbour of the texel that was drawn.
+ */
 static int check_turned_draw(const map *m, const mcs_env *straight, const mcs_env *turned, int k, float u1, float u2) {
     const mcs_texel s = mcs_env_sample(straight, u1, u2);
     const mcs_texel t = mcs_env_sample(turned, u1, u2);
@@ -418,7 +432,8 @@ static int check_turned_draw(const map *m, const mcs_env *straight, const mcs_en
     col -= floor(col);
     row -= floor(row);
     mcs_texel at = mcs_env_texel(turned, t.w);
-    CHECK(mcs_env_pdf(turned, t.w) == at.pdf && at.pdf == mcs_env_pdf(straight, point(m->w, m->h, at.col, at.row, 0.5, 0.5)),
+    CHECK(mcs_env_pdf(turned, t.w) == at.pdf &&
+              at.pdf == mcs_env_pdf(straight, point(m->w, m->h, at.col, at.row, 0.5, 0.5)),
           "axis %d: pdf %g is not the texel's", k, (double)at.pdf);
     if (at.col == s.col && at.row == s.row) return 0;
     CHECK((at.col == s.col || col <= margin_col || 1 - col <= margin_col) &&
@@ -440,9 +455,9 @@ static void check_turned_mass(const map *m, const mcs_env *turned, int k) {
     CHECK(fabs(mass - 1) <= 4 * eps, "axis %d: the density integrates to 1 + %g", k, mass - 1);
 }
 
-/* A turned map is the same map: drawn where the turned sample lies, with its density. Turning rounds each coordinate by 4 eps,
- * so a direction closer than that to a border of its texel may be found on the other side of it: 8 eps of a turn for columns,
- * divided by sin(theta), and for rows; such ones are counted, and few. */
+/* A turned map is the same map: drawn where the turned sample lies, with its density. Turning rounds each coordinate by
+ * 4 eps, so a direction closer than that to a border of its texel may be found on the other side of it: 8 eps of a turn
+ * for columns, divided by sin(theta), and for rows; such ones are counted, and few. */
 static void test_frame(void) {
     const map *m = &maps[SKY];
     const int draws = scaled(200000);
@@ -465,8 +480,10 @@ static void test_frame(void) {
             const float u2 = mcs_pcg32_float(&rng);
             neighbours += check_turned_draw(m, env_in(&a), turned, k, u1, u2);
         }
-        /* at both borders of a column 8 eps w / sin(theta), 1.3 in the mean, at those of a row 8 eps h, twice as much allowed */
-        CHECK(neighbours <= draws * 64 * eps * m->w + 10, "axis %d: %d of %d draws found in a neighbour", k, neighbours, draws);
+        /* at both borders of a column 8 eps w / sin(theta), 1.3 in the mean, at those of a row 8 eps h, twice as much
+         * allowed */
+        CHECK(neighbours <= draws * 64 * eps * m->w + 10, "axis %d: %d of %d draws found in a neighbour", k, neighbours,
+              draws);
         check_turned_mass(m, turned, k);
     }
     arena_free(&a);

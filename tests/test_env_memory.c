@@ -1,15 +1,15 @@
-/* What the environment map keeps in memory: probabilities that are integers, places that are skipped, the same bytes whatever was
- * there before. The truth is the picture; the layout is the one documented at mcsi_env_offsets. MCS_TEST_BIG adds a map of
- * 16384 x 8192, in 1.2 GB. */
+/* What the environment map keeps in memory: probabilities that are integers, places that are skipped, the same bytes
+ * whatever was there before. The truth is the picture; the layout is the one documented at mcsi_env_offsets.
+ * MCS_TEST_BIG adds a map of 16384 x 8192, in 1.2 GB. */
 #include "env_pictures.h"
 
 /* ---- probabilities in integers ---- */
 
-/* A list of cumulative sums against the weights: differences add up to 2^31, nothing gets nothing, everything else at least one and
- * its share. A share moves by one of rounding, its own one, and its part of the ones of all that are lit; `loose` is the relative
- * rounding of the weights, n 2^-22 that of sums of doubles. */
-static void check_list(const picture *p, const uint32_t *cdf, const ld *weight, uint32_t n, double loose, const char *what,
-                       uint32_t at) {
+/* A list of cumulative sums against the weights: differences add up to 2^31, nothing gets nothing, everything else at
+ * least one and its share. A share moves by one of rounding, its own one, and its part of the ones of all that are lit;
+ * `loose` is the relative rounding of the weights, n 2^-22 that of sums of doubles. */
+static void check_list(const picture *p, const uint32_t *cdf, const ld *weight, uint32_t n, double loose,
+                       const char *what, uint32_t at) {
     uint64_t sum = 0;
     ld total = 0;
     uint32_t lit = 0;
@@ -23,17 +23,18 @@ static void check_list(const picture *p, const uint32_t *cdf, const ld *weight, 
         const double want = (double)(weight[i] / total * one);
         falls += cdf[i + 1] < cdf[i];
         sum += share;
-        CHECK((share > 0) == (weight[i] > 0), "%s: %s %u, entry %u has %u of 2^31 and weight %Lg", p->name, what, at, i, share,
-              weight[i]);
+        CHECK((share > 0) == (weight[i] > 0), "%s: %s %u, entry %u has %u of 2^31 and weight %Lg", p->name, what, at, i,
+              share, weight[i]);
         CHECK(fabs(share - want) <= 2 + lit * (want / one) + loose * want + n * 0x1p-22,
               "%s: %s %u, entry %u has %u of 2^31, not %g", p->name, what, at, i, share, want);
     }
-    CHECK(cdf[0] == 0 && cdf[n] == one && falls == 0 && sum == one, "%s: %s %u: from %u to %u, %u falls, sum 2^31 + %lld", p->name,
-          what, at, cdf[0], cdf[n], falls, (long long)sum - (long long)one);
+    CHECK(cdf[0] == 0 && cdf[n] == one && falls == 0 && sum == one,
+          "%s: %s %u: from %u to %u, %u falls, sum 2^31 + %lld", p->name, what, at, cdf[0], cdf[n], falls,
+          (long long)sum - (long long)one);
 }
 
-/* The density times the solid angle is the product of the two integers over 2^62, rounded once to float. A small one must therefore
- * be an integer to the eye, whatever lies in memory. Returns how many small ones there were. */
+/* The density times the solid angle is the product of the two integers over 2^62, rounded once to float. A small one
+ * must therefore be an integer to the eye, whatever lies in memory. Returns how many small ones there were. */
 static size_t check_integers(const picture *p, const arena *a) {
     const mcs_env *e = env_in(a);
     ld *weight = (ld *)malloc((p->w + p->h) * sizeof *weight);
@@ -59,12 +60,12 @@ static size_t check_integers(const picture *p, const arena *a) {
             const ld nearest = roundl(found);
             const ld want = lit ? (ld)(rows[r + 1] - rows[r]) * (cdf_of(a, r)[c + 1] - cdf_of(a, r)[c]) : 0;
             mass += pdf * omega;
-            CHECK(fabsl(found - want) <= loose * want, "%s: texel (%u, %u) has probability %Lg / 2^62, not %Lg", p->name, c, r,
-                  found, want);
+            CHECK(fabsl(found - want) <= loose * want, "%s: texel (%u, %u) has probability %Lg / 2^62, not %Lg",
+                  p->name, c, r, found, want);
             if (found == 0 || found >= 0x1p20L) continue;
             small++;
-            CHECK(nearest >= 1 && fabsl(found - nearest) <= loose * nearest, "%s: texel (%u, %u) has probability %Lg / 2^62",
-                  p->name, c, r, found);
+            CHECK(nearest >= 1 && fabsl(found - nearest) <= loose * nearest,
+                  "%s: texel (%u, %u) has probability %Lg / 2^62", p->name, c, r, found);
         }
     }
     check_list(p, rows, row_weight, p->h, 4 * eps, "rows of", 0);
@@ -73,14 +74,16 @@ static size_t check_integers(const picture *p, const arena *a) {
     return small;
 }
 
-/* The first and the last number of every row, and many others: each draws the texel whose share holds it, never a black one. */
+/* The first and the last number of every row, and many others: each draws the texel whose share holds it, never a black
+ * one. */
 static void check_lit(const picture *p, const arena *a) {
     const uint32_t *rows = rows_of(a);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 89);
     const int draws = env_in(a)->uniform ? 0 : scaled(100000);
     for (uint32_t r = 0; r < p->h; r++)
         for (uint32_t k = 0; k < 2 && rows[r] < rows[r + 1]; k++) {
-            const mcs_texel s = mcs_env_sample_bits(env_in(a), mcs_pcg32_next(&rng), k ? 2 * (rows[r + 1] - 1) + 1 : 2 * rows[r]);
+            const mcs_texel s =
+                mcs_env_sample_bits(env_in(a), mcs_pcg32_next(&rng), k ? 2 * (rows[r + 1] - 1) + 1 : 2 * rows[r]);
             CHECK(s.row == r, "%s: %s of row %u draws row %u", p->name, k ? "end" : "begin", r, s.row);
         }
     for (int i = 0; i < draws; i++) {
@@ -89,7 +92,8 @@ static void check_lit(const picture *p, const arena *a) {
         const mcs_texel s = mcs_env_sample_bits(env_in(a), b1, b2);
         const int in = s.col < p->w && s.row < p->h;
         const uint32_t *cdf = cdf_of(a, in ? s.row : 0) + (in ? s.col : 0);
-        CHECK(in && p->lum[(size_t)s.row * p->w + s.col] > 0 && s.pdf > 0, "%s: black texel (%u, %u) drawn", p->name, s.col, s.row);
+        CHECK(in && p->lum[(size_t)s.row * p->w + s.col] > 0 && s.pdf > 0, "%s: black texel (%u, %u) drawn", p->name,
+              s.col, s.row);
         CHECK(in && rows[s.row] <= b2 / 2 && b2 / 2 < rows[s.row + 1] && cdf[0] <= b1 / 2 && b1 / 2 < cdf[1],
               "%s: bits %08x, %08x draw texel (%u, %u)", p->name, b1, b2, s.col, s.row);
     }
@@ -138,7 +142,8 @@ static void test_integers(void) {
     }
 }
 
-/* Texels 1e8 times darker than one of their row: 15 to 30 integers each, to within 2, and bits that reach each of them. */
+/* Texels 1e8 times darker than one of their row: 15 to 30 integers each, to within 2, and bits that reach each of them.
+ */
 static void test_contrast(void) {
     const picture p = make("sun in every row", 4096, 16, v_sun_rows);
     arena a = build(&p, LIT);
@@ -200,8 +205,8 @@ static void test_parts(void) {
             first[k] = first[n];
             end[k] = end[n];
         }
-        CHECK(rc == MCS_OK && mcs_env_finish(env_in(&b), b.bytes, &image) == whole && arena_intact(&b), "%u x %u: returns %d", p.w,
-              p.h, rc);
+        CHECK(rc == MCS_OK && mcs_env_finish(env_in(&b), b.bytes, &image) == whole && arena_intact(&b),
+              "%u x %u: returns %d", p.w, p.h, rc);
         CHECK(memcmp(a.at, b.at, a.bytes) == 0, "%u x %u: another table than at once", p.w, p.h);
         CHECK(mcs_env_check(env_in(&b), b.bytes) == MCS_OK, "%u x %u: no table", p.w, p.h);
         arena_free(&a);
@@ -245,7 +250,9 @@ static size_t zeros(const unsigned char *p, size_t n) {
     for (size_t i = 0; i < n; i++) count += p[i] == 0;
     return count;
 }
-static size_t row_bytes(const mcs_env *e) { return (e->w + (size_t)1) * sizeof(uint32_t) + e->offset.guide_length * (size_t)2; }
+static size_t row_bytes(const mcs_env *e) {
+    return (e->w + (size_t)1) * sizeof(uint32_t) + e->offset.guide_length * (size_t)2;
+}
 
 enum { DRAWS = 4096 };
 static float u1[DRAWS], u2[DRAWS], x[4][DRAWS], again[4][DRAWS];
@@ -276,7 +283,8 @@ static double record(const mcs_env *e, float *pdf) {
     return sum;
 }
 
-/* Draws, densities and inverse without the memory of rows that hold nothing to know. `lit`: rows of light that the map has. */
+/* Draws, densities and inverse without the memory of rows that hold nothing to know. `lit`: rows of light that the map
+ * has. */
 static void check_skips(picture p, brightness want, uint32_t lit, int uniform) {
     arena a = build(&p, want);
     const mcs_env *e = env_in(&a);
@@ -290,10 +298,10 @@ static void check_skips(picture p, brightness want, uint32_t lit, int uniform) {
     for (uint32_t r = 0; r < p.h; r++) {
         int black = 1;
         for (uint32_t c = 0; c < p.w; c++) black &= p.lum[(size_t)r * p.w + c] == 0;
-        const size_t none =
-            zeros((unsigned char *)cdf_of(&a, r), (p.w + (size_t)1) * 4) + zeros(guide_of(&a, r), e->offset.guide_length * (size_t)2);
-        CHECK(!black || none == row_bytes(e), "%s: %zu of %zu bytes of black row %u are not 0", p.name, row_bytes(e) - none,
-              row_bytes(e), r);
+        const size_t none = zeros((unsigned char *)cdf_of(&a, r), (p.w + (size_t)1) * 4) +
+                            zeros(guide_of(&a, r), e->offset.guide_length * (size_t)2);
+        CHECK(!black || none == row_bytes(e), "%s: %zu of %zu bytes of black row %u are not 0", p.name,
+              row_bytes(e) - none, row_bytes(e), r);
         if (black || uniform) {
             poison(&a, r);
             unread++;
@@ -302,8 +310,8 @@ static void check_skips(picture p, brightness want, uint32_t lit, int uniform) {
     CHECK(unread == (uniform ? p.h : p.h - lit), "%s: %u rows spoilt", p.name, unread);
     if (uniform) memset(rows_of(&a), 0xff, e->offset.col_sums - e->offset.row_sums);
     const double second = record(e, after);
-    CHECK(first == second && memcmp(before, after, texels * sizeof *before) == 0, "%s: draws or densities read what was spoilt",
-          p.name);
+    CHECK(first == second && memcmp(before, after, texels * sizeof *before) == 0,
+          "%s: draws or densities read what was spoilt", p.name);
     CHECK(unread == 0 || mcs_env_check(e, a.bytes) == MCS_ERR_FORMAT, "%s: spoilt, and accepted", p.name);
     if (uniform)
         for (uint32_t r = 0; r < texels; r++)
@@ -322,7 +330,8 @@ static void test_skips(void) {
     check_skips(make("region", 200, 96, v_region), LIT, 32, 0);
 }
 
-/* Outside [row0, row1) x [col0, col1), the smallest rectangle of light, densities are found without reading the sums. */
+/* Outside [row0, row1) x [col0, col1), the smallest rectangle of light, densities are found without reading the sums.
+ */
 static void test_region(void) {
     const picture p = make("region", 200, 96, v_region);
     arena a = build(&p, LIT);
@@ -340,8 +349,8 @@ static void test_region(void) {
             col0 = c < col0 ? c : col0;
             col1 = c + 1 > col1 ? c + 1 : col1;
         }
-    CHECK(e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1, "light in [%u, %u) x [%u, %u)", e->row0,
-          e->row1, e->col0, e->col1);
+    CHECK(e->row0 == row0 && e->row1 == row1 && e->col0 == col0 && e->col1 == col1, "light in [%u, %u) x [%u, %u)",
+          e->row0, e->row1, e->col0, e->col1);
     for (uint32_t r = 0; r < p.h; r++) {
         uint32_t *cdf = cdf_of(&a, r);
         for (uint32_t c = 0; c < col0; c++) cdf[c] = 0x9e3779b9u * (c + 1);
@@ -355,8 +364,8 @@ static void test_region(void) {
             float batch = -1;
             mcs_env_pdf_n(e, 1, &v.x, &v.y, &v.z, &batch);
             zero += pdf == 0;
-            CHECK((pdf > 0) == (p.lum[r * p.w + c] > 0) && batch == pdf, "texel (%u, %u): density %g, in a batch %g", c, r,
-                  (double)pdf, (double)batch);
+            CHECK((pdf > 0) == (p.lum[r * p.w + c] > 0) && batch == pdf, "texel (%u, %u): density %g, in a batch %g", c,
+                  r, (double)pdf, (double)batch);
         }
     CHECK(zero >= p.w * p.h - (row1 - row0) * (col1 - col0), "%u texels without density", zero);
     arena_free(&a);
@@ -365,8 +374,8 @@ static void test_region(void) {
 
 /* ---- bits, and the largest maps ---- */
 
-/* Every texel of a map has bits that reach it: those in the middle of its share. First, middle and last ones lie in it, as seen by
- * a double arctangent and by mcs_env_texel: the margin that keeps places off borders is enough. */
+/* Every texel of a map has bits that reach it: those in the middle of its share. First, middle and last ones lie in it,
+ * as seen by a double arctangent and by mcs_env_texel: the margin that keeps places off borders is enough. */
 static void check_every(const picture *p, const arena *a, int places) {
     const mcs_env *e = env_in(a);
     const uint32_t *rows = rows_of(a);
@@ -439,8 +448,8 @@ static void check_bits(const picture *p, const mcs_env *e) {
         const float f2 = (float)b2 * 0x1p-32f;
         const mcs_texel s = mcs_env_sample_bits(e, b1, b2);
         const mcs_texel t = mcs_env_sample(e, f1, f2);
-        CHECK(same(s, t), "%s: u = %a, %a: (%u, %u), by bits (%u, %u)", p->name, (double)f1, (double)f2, t.col, t.row, s.col,
-              s.row);
+        CHECK(same(s, t), "%s: u = %a, %a: (%u, %u), by bits (%u, %u)", p->name, (double)f1, (double)f2, t.col, t.row,
+              s.col, s.row);
     }
 }
 
@@ -459,8 +468,8 @@ static void check_found(const picture *p, const mcs_env *e) {
         off += !(t.col == s.col && t.row == s.row && t.pdf == s.pdf && s.pdf > 0);
         strayed += floor(col) != s.col || floor(row) != s.row;
     }
-    CHECK(off == 0 && strayed == 0, "%s: of %d draws the header finds %d in another texel, a double arctangent %d", p->name, draws,
-          off, strayed);
+    CHECK(off == 0 && strayed == 0, "%s: of %d draws the header finds %d in another texel, a double arctangent %d",
+          p->name, draws, off, strayed);
 }
 
 static void test_long(uint32_t w, uint32_t h, shade value) {
@@ -484,7 +493,8 @@ static void check_same(size_t bytes, builder f, const void *from, const char *wh
         a[past] = arena_make(bytes);
         arena_past(&a[past], past);
         rc[past] = f(a[past].at, bytes, from);
-        CHECK(rc[past] >= 0 && rc[past] == rc[0] && arena_intact(&a[past]), "%s (%u, %u): returns %d", what, i, j, rc[past]);
+        CHECK(rc[past] >= 0 && rc[past] == rc[0] && arena_intact(&a[past]), "%s (%u, %u): returns %d", what, i, j,
+              rc[past]);
         CHECK(arena_differ(&a[0], &a[past]) == bytes, "%s (%u, %u): byte %zu of %zu is another one", what, i, j,
               arena_differ(&a[0], &a[past]), bytes);
     }
@@ -496,7 +506,9 @@ static int image_builds(void *to, size_t bytes, const void *from) {
 static int rows_build(void *to, size_t bytes, const void *from) {
     const mcs_image *im = (const mcs_image *)from;
     const int rc = mcs_env_build_rows((mcs_env *)to, bytes, im, im->h / 2, im->h);
-    return rc ? rc : mcs_env_build_rows((mcs_env *)to, bytes, im, 0, im->h / 2) ? -1 : mcs_env_finish((mcs_env *)to, bytes, im);
+    return rc                                                           ? rc
+           : mcs_env_build_rows((mcs_env *)to, bytes, im, 0, im->h / 2) ? -1
+                                                                        : mcs_env_finish((mcs_env *)to, bytes, im);
 }
 typedef struct {
     const mcs_env *e;
@@ -552,13 +564,14 @@ static void test_same_windows(void) {
         free(p.lum);
     }
 }
-/* Maps that rows of tiles divide and do not divide, or that have fewer rows than tiles; surfaces that are matte, rough, glossy
- * enough for fine grids, turned from every light, and seen from behind. */
+/* Maps that rows of tiles divide and do not divide, or that have fewer rows than tiles; surfaces that are matte, rough,
+ * glossy enough for fine grids, turned from every light, and seen from behind. */
 static void test_same_products(void) {
     static const struct {
         uint32_t w, h;
         shade value;
-    } maps[] = {{64, 32, v_sky}, {50, 37, v_random}, {7, 5, v_thirds}, {40, 70, v_region}, {33, 30, v_black}, {32, 16, v_constant}};
+    } maps[] = {{64, 32, v_sky},    {50, 37, v_random}, {7, 5, v_thirds},
+                {40, 70, v_region}, {33, 30, v_black},  {32, 16, v_constant}};
     static float weight[2 * 32 * 32];
     for (size_t k = 0; k < sizeof maps / sizeof *maps; k++)
         for (uint32_t rows = 16; rows <= 32; rows *= 2) {

@@ -1,6 +1,6 @@
-/* The environment map on pictures of its caller: hits against expectation, bilinear look-ups, MIS compensation, windows, stratified
- * points. MCS_TEST_MAPS="a.hdr b.hdr" adds Radiance pictures, with 1e8 draws each; MCS_TEST_BIG draws as many from the
- * made-up sky. */
+/* The environment map on pictures of its caller: hits against expectation, bilinear look-ups, MIS compensation,
+ * windows, stratified points. MCS_TEST_MAPS="a.hdr b.hdr" adds Radiance pictures, with 1e8 draws each; MCS_TEST_BIG
+ * draws as many from the made-up sky. */
 static int asserted; /* how often a condition of the header did not hold */
 #define MCS_ASSERT(condition) ((void)((condition) ? 0 : asserted++))
 #include <float.h>
@@ -15,7 +15,7 @@ static int asserted; /* how often a condition of the header did not hold */
 typedef long double ld;
 
 static const double pi = 3.14159265358979323846;
-static const double level = 1e-5;      /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
+static const double level = 1e-5; /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
 static const double sigmas = 4.42;     /* the same level for a mean, both sides */
 static const double eps = 0x1p-24;     /* rounding of a float, relative; also the step of u */
 static const double quantum = 0x1p-31; /* probabilities of rows and of columns are integers over 2^31 */
@@ -38,8 +38,8 @@ static void *get(size_t bytes) {
 
 /* ---- pictures ---- */
 
-/* Luminance; then what the table should have, from luminance as it is, filtered, or less a floor: probabilities of texels and of
- * rows, and the integral over the sphere. */
+/* Luminance; then what the table should have, from luminance as it is, filtered, or less a floor: probabilities of
+ * texels and of rows, and the integral over the sphere. */
 typedef struct {
     const char *name;
     uint32_t w, h;
@@ -91,7 +91,9 @@ static float v_lamp(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
 }
 /* Smooth light: 1 + cos(phi) sin(theta) / 2 + 0.3 cos(theta) at the middle of the texel. */
 static double smooth(mcs_vec3 v) { return 1 + 0.5 * v.x + 0.3 * v.z; }
-static float v_smooth(uint32_t c, uint32_t r, uint32_t w, uint32_t h) { return (float)smooth(point(w, h, c, r, 0.5, 0.5)); }
+static float v_smooth(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    return (float)smooth(point(w, h, c, r, 0.5, 0.5));
+}
 
 static picture blank(const char *name, uint32_t w, uint32_t h) {
     picture p;
@@ -147,8 +149,9 @@ static arena build(const picture *p, brightness want) {
     return build_image(p->name, &image, want);
 }
 
-/* Probabilities of rows, and of columns within a row, are integers over 2^31 with at least one where there is light: each moves by
- * one of rounding, its own one, and its share of those for all. Relative to the probability of the texel. */
+/* Probabilities of rows, and of columns within a row, are integers over 2^31 with at least one where there is light:
+ * each moves by one of rounding, its own one, and its share of those for all. Relative to the probability of the texel.
+ */
 static double slack(const picture *p, uint32_t col, uint32_t row) {
     const double prow = (double)p->row_prob[row];
     const double pcol = (double)(p->prob[(size_t)row * p->w + col] / p->row_prob[row]);
@@ -199,8 +202,9 @@ static void each_map(void (*check)(const picture *p, const mcs_image *image)) {
     }
 }
 
-/* Hits of every texel, found by a double arctangent, against the picture; and of whole columns and rows, where the small biases of
- * many texels add up. The numbers are 32-bit integers: with floats, a step of u would be a part of the darkest texels' share. */
+/* Hits of every texel, found by a double arctangent, against the picture; and of whole columns and rows, where the
+ * small biases of many texels add up. The numbers are 32-bit integers: with floats, a step of u would be a part of the
+ * darkest texels' share. */
 static void count_hits(const picture *p, const mcs_image *image, int draws) {
     const size_t texels = (size_t)p->w * p->h;
     double *observed = (double *)get(texels * sizeof *observed);
@@ -231,11 +235,13 @@ static void count_hits(const picture *p, const mcs_image *image, int draws) {
     double prob;
     for (int k = 0; k < 4; k += 2) {
         prob = chi2_test(line[k], line[k + 1], k ? p->h : p->w, NULL, &dof);
-        CHECK(prob >= level, "%s: %d draws, %s, %d degrees of freedom: p = %g", p->name, draws, k ? "rows" : "columns", dof, prob);
+        CHECK(prob >= level, "%s: %d draws, %s, %d degrees of freedom: p = %g", p->name, draws, k ? "rows" : "columns",
+              dof, prob);
     }
     prob = chi2_test(observed, expected, texels, NULL, &dof);
     CHECK(prob >= level && black == 0 && stray == 0,
-          "%s: %d draws, %d degrees of freedom: p = %g; %zu black texels hit, %d strayed", p->name, draws, dof, prob, black, stray);
+          "%s: %d draws, %d degrees of freedom: p = %g; %zu black texels hit, %d strayed", p->name, draws, dof, prob,
+          black, stray);
     for (int k = 0; k < 4; k++) free(line[k]);
     free(observed);
     free(expected);
@@ -253,7 +259,8 @@ static void test_hits(void) {
 
 /* ---- bilinear look-ups ---- */
 
-/* The look-up of the radiance: texels are values at their centres in (phi, theta), columns wrap, rows end at the poles. */
+/* The look-up of the radiance: texels are values at their centres in (phi, theta), columns wrap, rows end at the poles.
+ */
 static double look_up(const picture *p, double col, double row) {
     const double x = floor(col - 0.5);
     const double y = floor(row - 0.5);
@@ -297,8 +304,8 @@ static double integral(picture *p) {
     return sum;
 }
 
-/* L / pdf of draws: at most four times the integral of the weights, apart from the integers and from roundings: four of floats in
- * the weights, two in the density. */
+/* L / pdf of draws: at most four times the integral of the weights, apart from the integers and from roundings: four of
+ * floats in the weights, two in the density. */
 static moments check_draws(const picture *p, const mcs_env *e, int draws) {
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 139);
     moments m = {0, 0, 0, 0};
@@ -309,8 +316,8 @@ static moments check_draws(const picture *p, const mcs_env *e, int draws) {
         texel_of(p->w, p->h, s.w, &col, &row);
         const double weight = look_up(p, fmin(col, p->w - 1e-9), fmin(row, p->h - 1e-9)) / s.pdf / (double)p->total;
         add(&m, weight);
-        CHECK(s.pdf > 0 && weight <= 4 * (1 + slack(p, s.col, s.row) + 8 * eps), "%s: texel (%u, %u): L / pdf is %g of the total",
-              p->name, s.col, s.row, weight);
+        CHECK(s.pdf > 0 && weight <= 4 * (1 + slack(p, s.col, s.row) + 8 * eps),
+              "%s: texel (%u, %u): L / pdf is %g of the total", p->name, s.col, s.row, weight);
     }
     return m;
 }
@@ -325,8 +332,8 @@ static void check_one_lit(uint32_t w, uint32_t h, uint32_t col, uint32_t row, fl
     weigh_filtered(&p);
     image.bilinear = 1;
     arena a = build_image(p.name, &image, LIT);
-    CHECK(fabs((double)(env_in(&a)->total / p.total - 1)) <= 8 * eps, "%u x %u, (%u, %u): total %g, not %Lg", w, h, col, row,
-          env_in(&a)->total, p.total);
+    CHECK(fabs((double)(env_in(&a)->total / p.total - 1)) <= 8 * eps, "%u x %u, (%u, %u): total %g, not %Lg", w, h, col,
+          row, env_in(&a)->total, p.total);
     for (uint32_t r = 0; r < h; r++)
         for (uint32_t c = 0; c < w; c++)
             for (uint32_t i = 0; i < 10; i++)
@@ -336,18 +343,18 @@ static void check_one_lit(uint32_t w, uint32_t h, uint32_t col, uint32_t row, fl
                     double x, y;
                     texel_of(w, h, v, &x, &y);
                     const double light = look_up(&p, x, y);
-                    CHECK(light <= 0 || pdf > 0, "%u x %u, (%u, %u) lit: no density at (%g, %g), light %g", w, h, col, row, x, y,
-                          light);
-                    CHECK((pdf > 0) == (p.prob[r * w + c] > 0), "%u x %u, (%u, %u) lit: density %g in (%u, %u)", w, h, col, row,
-                          pdf, c, r);
+                    CHECK(light <= 0 || pdf > 0, "%u x %u, (%u, %u) lit: no density at (%g, %g), light %g", w, h, col,
+                          row, x, y, light);
+                    CHECK((pdf > 0) == (p.prob[r * w + c] > 0), "%u x %u, (%u, %u) lit: density %g in (%u, %u)", w, h,
+                          col, row, pdf, c, r);
                     if (!(light > 0) || !(pdf > 0)) continue;
                     worst = fmax(worst, light / pdf / (double)p.total / (1 + slack(&p, c, r) + 8 * eps));
                 }
     CHECK(worst > 0 && worst <= 4, "%u x %u, (%u, %u) lit: weights up to %g of the total", w, h, col, row, worst);
     const moments m = check_draws(&p, env_in(&a), scaled(20000));
     const double truth = integral(&p) / (double)p.total;
-    CHECK(fabs(m.mean - truth) <= sigmas * error_of(&m) + 8 * eps, "%u x %u, (%u, %u) lit: mean %g +- %g, not %g", w, h, col, row,
-          m.mean, error_of(&m), truth);
+    CHECK(fabs(m.mean - truth) <= sigmas * error_of(&m) + 8 * eps, "%u x %u, (%u, %u) lit: mean %g +- %g, not %g", w, h,
+          col, row, m.mean, error_of(&m), truth);
     arena_free(&a);
     discard(&p);
 }
@@ -404,7 +411,8 @@ static void check_compensated(picture p, int bilinear) {
     const ld mean = p.total / (4 * acosl(-1.0L));
     image.floor = 0.5f; /* must not matter to the mean */
     image.floor = mcs_env_mean(&image);
-    CHECK(fabs((double)(image.floor / mean - 1)) <= 6 * eps, "%s: mean %.9g, not %.9Lg", p.name, (double)image.floor, mean);
+    CHECK(fabs((double)(image.floor / mean - 1)) <= 6 * eps, "%s: mean %.9g, not %.9Lg", p.name, (double)image.floor,
+          mean);
     for (uint32_t r = 0; r < p.h; r++)
         for (uint32_t c = 0; c < p.w; c++) {
             ld *w = &p.prob[(size_t)r * p.w + c];
@@ -457,14 +465,16 @@ static void test_complete_weight(void) {
     asserted = 0;
     CHECK(env_in(&a)->incomplete == 0, "incomplete without a floor");
     CHECK(mcs_env_weight(env_in(&a), 0.25f) == 4 && mcs_env_weight(env_in(&a), 3.0f) == 1.0f / 3.0f, "1 / pdf");
-    CHECK(mcs_env_weight(env_in(&a), 0.0f) == 0 && mcs_env_weight(env_in(&a), -1.0f) == 0 && mcs_env_weight(env_in(&a), NAN) == 0,
+    CHECK(mcs_env_weight(env_in(&a), 0.0f) == 0 && mcs_env_weight(env_in(&a), -1.0f) == 0 &&
+              mcs_env_weight(env_in(&a), NAN) == 0,
           "no density, no weight");
     CHECK(asserted == 0, "asserted %d times", asserted);
     arena_free(&a);
     discard(&p);
 }
 
-/* Uniform and map together by the balance heuristic, one draw of each: light times 1 + cos(theta)/2, summed over the texels. */
+/* Uniform and map together by the balance heuristic, one draw of each: light times 1 + cos(theta)/2, summed over the
+ * texels. */
 static void test_mis(void) {
     picture p = make("lamp", 64, 32, v_lamp);
     mcs_image image = image_of(&p);
@@ -502,13 +512,14 @@ static void test_mis(void) {
             }
             add(&m[k], sum);
         }
-        CHECK(fabs(m[k].mean - (double)truth) <= sigmas * error_of(&m[k]), "floor %g: %g +- %g, not %Lg", (double)image.floor,
-              m[k].mean, error_of(&m[k]), truth);
+        CHECK(fabs(m[k].mean - (double)truth) <= sigmas * error_of(&m[k]), "floor %g: %g +- %g, not %Lg",
+              (double)image.floor, m[k].mean, error_of(&m[k]), truth);
         arena_free(&a);
     }
     mcst_note("     variance of light and uniform together: %.4g, with compensation %.4g\n", variance_of(&m[0]),
               variance_of(&m[1]));
-    CHECK(variance_of(&m[1]) < variance_of(&m[0]), "compensation: variance %g, without %g", variance_of(&m[1]), variance_of(&m[0]));
+    CHECK(variance_of(&m[1]) < variance_of(&m[0]), "compensation: variance %g, without %g", variance_of(&m[1]),
+          variance_of(&m[0]));
     discard(&p);
 }
 
@@ -574,16 +585,20 @@ static void check_window_density(const windowed *v, int draws, double *expected)
         for (uint32_t c = 0; c < p->w; c++) {
             const int in = inside(p, &t, c, r);
             const double found = (double)(mcs_env_window_pdf(v->m, v->e, point(p->w, p->h, c, r, 0.5, 0.5)) * each);
-            const double want = (double)(!in ? 0 : v->uniform ? each / v->omega : p->prob[(size_t)r * p->w + c] / v->all);
+            const double want = (double)(!in          ? 0
+                                         : v->uniform ? each / v->omega
+                                                      : p->prob[(size_t)r * p->w + c] / v->all);
             double off = 4 * eps;
-            /* the integers of the texel in the map, of the window's part of the map, of the row in the window; four roundings */
+            /* the integers of the texel in the map, of the window's part of the map, of the row in the window; four
+             * roundings */
             if (!v->uniform && want > 0)
                 off += slack(p, c, r) + (double)(v->moved / v->all) + (2 / (double)in_row + t.rows) * quantum;
             mass += found;
             expected[(size_t)r * p->w + c] = want * draws;
             CHECK((found > 0) == (want > 0), "%s: texel (%u, %u): probability %g, not %g", v->what, c, r, found, want);
             if (want > 0)
-                CHECK(fabs(found - want) <= want * off, "%s: texel (%u, %u): probability %g, not %g", v->what, c, r, found, want);
+                CHECK(fabs(found - want) <= want * off, "%s: texel (%u, %u): probability %g, not %g", v->what, c, r,
+                      found, want);
         }
     }
     CHECK(fabsl(mass - 1) <= 2 * eps, "%s: the density integrates to 1 + %Lg", v->what, mass - 1);
@@ -619,7 +634,8 @@ static void check_window_draws(const windowed *v, int draws, double *observed) {
         row = fmin(floor(row), p->h - 1.0);
         stray += !(inside(p, &t, s.col, s.row) && inside(p, &t, (uint32_t)col, (uint32_t)row));
         unequal += !(mcs_env_window_pdf(v->m, v->e, s.w) == s.pdf && s.pdf > 0);
-        if (!v->uniform) CHECK(p->lum[(size_t)s.row * p->w + s.col] > 0, "%s: black texel (%u, %u)", v->what, s.col, s.row);
+        if (!v->uniform)
+            CHECK(p->lum[(size_t)s.row * p->w + s.col] > 0, "%s: black texel (%u, %u)", v->what, s.col, s.row);
         if (i >= CORNERS * CORNERS) observed[(size_t)(uint32_t)row * p->w + (uint32_t)col]++;
         if (at == BATCH - 1) unequal += unequal_in_batch(v, u1, u2);
     }
@@ -642,7 +658,8 @@ static void check_window_order(const windowed *v) {
     CHECK(falls == 0, "%s: rows fall with u2 or columns with u1 %u times", v->what, falls);
 }
 
-/* The table of a rectangle against the picture within it. `uniform`: the picture, or what the window shows of it, has no shape. */
+/* The table of a rectangle against the picture within it. `uniform`: the picture, or what the window shows of it, has
+ * no shape. */
 static void check_window(const picture *p, const mcs_env *e, rectangle t, int draws) {
     const size_t texels = (size_t)p->w * p->h;
     arena a = arena_make(mcs_env_window_bytes(t.rows));
@@ -651,7 +668,8 @@ static void check_window(const picture *p, const mcs_env *e, rectangle t, int dr
     double *expected = (double *)get(texels * sizeof *expected);
     const windowed v = windowed_of(p, e, m, t);
     const mcs_status rc = mcs_env_window_build(m, a.bytes, e, t.row, t.rows, t.col, t.cols);
-    CHECK(rc == MCS_OK && !m->uniform == (v.all > 0 && !e->uniform), "%s: returns %d, uniform %u", v.what, rc, m->uniform);
+    CHECK(rc == MCS_OK && !m->uniform == (v.all > 0 && !e->uniform), "%s: returns %d, uniform %u", v.what, rc,
+          m->uniform);
     CHECK(arena_intact(&a), "%s: written outside", v.what);
     check_window_density(&v, draws, expected);
     check_window_draws(&v, draws, observed);
@@ -760,7 +778,8 @@ static void test_refused_windows(void) {
         CHECK(mcs_env_window_build(m, i, env_in(&a), 3, 4, 18, 5) == MCS_ERR_MEMORY, "%zu of %zu bytes", i, need);
     CHECK(mcs_env_window_build(NULL, need, env_in(&a), 3, 4, 18, 5) == MCS_ERR_ARG, "no memory");
     CHECK(mcs_env_window_build(m, need, NULL, 3, 4, 18, 5) == MCS_ERR_ARG, "no map");
-    CHECK(mcs_env_window_build((mcs_env_window *)(void *)(b.at + 4), need, env_in(&a), 3, 4, 18, 5) == MCS_ERR_ARG, "misaligned");
+    CHECK(mcs_env_window_build((mcs_env_window *)(void *)(b.at + 4), need, env_in(&a), 3, 4, 18, 5) == MCS_ERR_ARG,
+          "misaligned");
     CHECK(mcs_env_window_bytes(0) == 0 && mcs_env_window_bytes(65537) == 0 && mcs_env_window_bytes(0xffffffffu) == 0 &&
               mcs_env_window_bytes(65536) > 65536 * 4,
           "bytes");
@@ -773,8 +792,8 @@ static void test_refused_windows(void) {
 
 /* ---- well-spread points ---- */
 
-/* 4096 points of a smooth sky, for light on the ground: its integral is 1.2 pi. The error of stratified and of Sobol points, over
- * repetitions with other seeds, is at most a fifth of that of independent ones. */
+/* 4096 points of a smooth sky, for light on the ground: its integral is 1.2 pi. The error of stratified and of Sobol
+ * points, over repetitions with other seeds, is at most a fifth of that of independent ones. */
 static void test_spread(void) {
     enum { SIDE = 64, POINTS = SIDE * SIDE };
     picture p = make("smooth", 256, 128, v_smooth);
@@ -812,8 +831,8 @@ static void test_spread(void) {
     discard(&p);
 }
 
-/* A window whose share of a row is a few units of 2^31, far from the row's beginning: begin + u mass must not round up to its
- * end. */
+/* A window whose share of a row is a few units of 2^31, far from the row's beginning: begin + u mass must not round up
+ * to its end. */
 static void test_few_units(void) {
     const float px[3] = {1e30f, 1e-20f, 1};
     const mcs_image image = mcs_image_make(px, 3, 1, 1);
@@ -821,12 +840,13 @@ static void test_few_units(void) {
     arena b = arena_make(mcs_env_window_bytes(1));
     mcs_env *e = (mcs_env *)(void *)a.at;
     mcs_env_window *m = (mcs_env_window *)(void *)b.at;
-    CHECK(mcs_env_build(e, a.bytes, &image) == MCS_OK && mcs_env_window_build(m, b.bytes, e, 0, 1, 1, 1) == MCS_OK, "build");
+    CHECK(mcs_env_build(e, a.bytes, &image) == MCS_OK && mcs_env_window_build(m, b.bytes, e, 0, 1, 1, 1) == MCS_OK,
+          "build");
     for (int i = 1; i < 256; i++) {
         const float u = 1 - (float)i * 0x1p-24f;
         const mcs_texel s = mcs_env_window_sample(m, e, u, 0.5f);
-        CHECK(s.col == 1 && s.pdf > 0 && mcs_env_window_pdf(m, e, s.w) == s.pdf, "u1 = %a: column %u, pdf %g, %g", (double)u, s.col,
-              (double)s.pdf, (double)mcs_env_window_pdf(m, e, s.w));
+        CHECK(s.col == 1 && s.pdf > 0 && mcs_env_window_pdf(m, e, s.w) == s.pdf, "u1 = %a: column %u, pdf %g, %g",
+              (double)u, s.col, (double)s.pdf, (double)mcs_env_window_pdf(m, e, s.w));
     }
     arena_free(&a);
     arena_free(&b);

@@ -1,14 +1,16 @@
-/* Floating-point exceptions and modes. Valid input raises no invalid operation, no division by zero and no overflow: hosts that
- * trap them must survive every function, so operands of branches and lanes that are not taken count too. And flush-to-zero with
- * denormals-are-zero, which renderers set, changes nothing but what is subnormal.
+/* Floating-point exceptions and modes. Valid input raises no invalid operation, no division by zero and no overflow:
+ * hosts that trap them must survive every function, so operands of branches and lanes that are not taken count too. And
+ * flush-to-zero with denormals-are-zero, which renderers set, changes nothing but what is subnormal.
  *
- * The functions are those of the header's index, by the adapters of functions.h, so that a new one is covered at once. */
+ * The functions are those of the header's index, by the adapters of functions.h, so that a new one is covered at once.
+ */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE /* feenableexcept */
 #endif
 #include <fenv.h>
 #if defined(__clang__)
-#pragma clang fp exceptions(maytrap) /* else lanes of its own making divide 0 by 0: in functions that are compiled here */
+#pragma clang fp exceptions( \
+    maytrap) /* else lanes of its own making divide 0 by 0: in functions that are compiled here */
 #undef MCST_LINKED
 #endif
 #if !defined(FE_INVALID) || !defined(FE_DIVBYZERO) || !defined(FE_OVERFLOW) || defined(__FAST_MATH__)
@@ -31,7 +33,8 @@ enum { FE_INVALID, FE_DIVBYZERO, FE_OVERFLOW };
 static float given[CASES][BITS_IN];
 enum { TRAPS = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW, NS = 68 };
 
-/* --- valid inputs ----------------------------------------------------------------------------------------------------------- */
+/* --- valid inputs
+ * ----------------------------------------------------------------------------------------------------------- */
 
 static double unit_of(uint64_t *state) { return (double)(mcst_mix(state) >> 11) * 0x1p-53; }
 static float spread(uint64_t *state, double lo, double hi) { return (float)(lo * pow(hi / lo, unit_of(state))); }
@@ -53,7 +56,8 @@ static void valid_direction(uint64_t *state, int above, float w[3]) {
     w[2] = (float)(above || z & 128 ? c : -c);
 }
 
-/* Parameters of a row: of its grid, with their largest and least; or of a function without a row, any positive float. */
+/* Parameters of a row: of its grid, with their largest and least; or of a function without a row, any positive float.
+ */
 static void valid_parameters(const mcst_row *row, uint64_t *state, float set[3]) {
     const mcst_domain *d;
     const uint64_t z = mcst_mix(state);
@@ -71,11 +75,13 @@ static void valid_parameters(const mcst_row *row, uint64_t *state, float set[3])
     set[0] = (d->either_sign && !(z & 2) ? -1.0f : 1.0f) * spread(state, d->least[0], d->most[0]);
     if (d->least[1] == 0) return;
     if (row->coord == MCST_UNIT && z & 2) return;
-    if (row->coord != MCST_TRUNCATED && row->coord != MCST_WHOLELINE && z & (row->coord == MCST_UNIT ? 4 : 2)) set[1] = set[0];
+    if (row->coord != MCST_TRUNCATED && row->coord != MCST_WHOLELINE && z & (row->coord == MCST_UNIT ? 4 : 2))
+        set[1] = set[0];
     else set[1] = spread(state, d->least[1], d->most[1]);
 }
 
-/* Points: mostly samples of the row; else, on a line or plane, about its scale or any float, and a direction that is any. */
+/* Points: mostly samples of the row; else, on a line or plane, about its scale or any float, and a direction that is
+ * any. */
 static void valid_point(const mcst_row *row, uint64_t *state, const float *of, float x[3]) {
     const uint64_t z = mcst_mix(state);
     valid_direction(state, 0, x);
@@ -88,7 +94,8 @@ static void valid_point(const mcst_row *row, uint64_t *state, const float *of, f
     } else if (row->shape == MCST_IS_LINE || row->shape == MCST_IS_PLANE) {
         int k;
         for (k = 0; k < 3; k++)
-            x[k] = (z >> (4 + k) & 1 ? 1.0f : -1.0f) * (z & 4 ? of[k & 1] * spread(state, 0.1, 10) : spread(state, 1e-45, 3.4e38));
+            x[k] = (z >> (4 + k) & 1 ? 1.0f : -1.0f) *
+                   (z & 4 ? of[k & 1] * spread(state, 0.1, 10) : spread(state, 1e-45, 3.4e38));
     }
 }
 
@@ -111,20 +118,21 @@ static void make_valid(const mcst_row *row) {
     }
 }
 
-/* --- exceptions ------------------------------------------------------------------------------------------------------------- */
+/* --- exceptions
+ * ------------------------------------------------------------------------------------------------------------- */
 
 static const char *flags_of(int raised) {
     static char text[64];
-    snprintf(text, sizeof text, "%s%s%s", raised & FE_INVALID ? " invalid" : "", raised & FE_DIVBYZERO ? " division by zero" : "",
-             raised & FE_OVERFLOW ? " overflow" : "");
+    snprintf(text, sizeof text, "%s%s%s", raised & FE_INVALID ? " invalid" : "",
+             raised & FE_DIVBYZERO ? " division by zero" : "", raised & FE_OVERFLOW ? " overflow" : "");
     return text;
 }
 /* What a call raises, and of what it was made, for the message. */
 static void judge(const char *way, const float *in, size_t n) {
     const int raised = fetestexcept(TRAPS);
     CHECK(!raised, "%s, n = %lu:%s; p %a %a, wo %a %a %a, u %a %a, x %a %a %a", way, (unsigned long)n, flags_of(raised),
-          (double)in[0], (double)in[1], (double)in[WO], (double)in[WO + 1], (double)in[WO + 2], (double)in[U], (double)in[U + 1],
-          (double)in[X], (double)in[X + 1], (double)in[X + 2]);
+          (double)in[0], (double)in[1], (double)in[WO], (double)in[WO + 1], (double)in[WO + 2], (double)in[U],
+          (double)in[U + 1], (double)in[X], (double)in[X + 1], (double)in[X + 2]);
 }
 
 static void raise_by_lanes(target t, int w) {
@@ -178,7 +186,8 @@ static void raise_all(target t) {
     } while (next_row(&t));
 }
 
-/* --- the same where exceptions trap ----------------------------------------------------------------------------------------- */
+/* --- the same where exceptions trap
+ * ----------------------------------------------------------------------------------------- */
 
 #if defined(__GLIBC__) && defined(FENV_FORK)
 /* A child with the exceptions unmasked goes through every function; what it dies of is its exit status. */
@@ -203,7 +212,8 @@ static void test_traps(void) {
 }
 #endif
 
-/* --- flush to zero, denormals are zero --------------------------------------------------------------------------------------- */
+/* --- flush to zero, denormals are zero
+ * --------------------------------------------------------------------------------------- */
 
 #if (defined(__x86_64__) || defined(__i386__)) && defined(__SSE2__)
 #define FENV_FLUSH
@@ -237,7 +247,8 @@ static double line_of(const mcst_row *row, const float *p) {
     default: return 0x1p-24;
     }
 }
-/* How small a BRDF's value may be to be lost: its Gaussian is subnormal below 2^-126, times what the cosines make of it. */
+/* How small a BRDF's value may be to be lost: its Gaussian is subnormal below 2^-126, times what the cosines make of
+ * it. */
 static double lost_eval(const mcst_row *row, const float *in) {
     if (row->coord != MCST_SLOPES) return 0;
     return 0x1p-125 / (ST_PI * (double)in[0] * (double)in[1] * 4 * (double)in[WO + 2] * fabs((double)in[X + 2]));
@@ -255,9 +266,9 @@ static void make_normal(const mcst_row *row) {
         if (in[X + 2] != 0 && fabsf(in[X + 2]) < 1e-7f) in[X + 2] = in[X + 2] > 0 ? 1e-7f : -1e-7f;
     }
 }
-/* Results of a row with the mode off and on: points within the documented error of one another, as both are within it of the truth;
- * densities within 2 E, and below 2^-100 of the largest of the same parameters only as small: a density is a product of a few
- * factors, each of which may lose what is below 2^-126 of its own size. */
+/* Results of a row with the mode off and on: points within the documented error of one another, as both are within it
+ * of the truth; densities within 2 E, and below 2^-100 of the largest of the same parameters only as small: a density
+ * is a product of a few factors, each of which may lose what is below 2^-126 of its own size. */
 static void check_flush(const mcst_row *row) {
     static float plain[FORMS][CASES][BITS_OUT];
     static const int forms[] = {SAMPLE, PDF, INVERT, EVAL, WEIGHT};
@@ -291,7 +302,8 @@ static void check_flush(const mcst_row *row) {
                     const double a = (double)plain[t.form][i][k], b = (double)out[k], top = peak[t.form][k];
                     const int density = t.form == SAMPLE ? k >= 3 : t.form != INVERT, point = t.form == SAMPLE && k < 3;
                     const double larger = fmax(fabs(a), fabs(b));
-                    const double e = density ? 2e-6 * (1 + (larger > 0 ? log(fmax(top, larger) / larger) : 0)) : 0x1p-20;
+                    const double e =
+                        density ? 2e-6 * (1 + (larger > 0 ? log(fmax(top, larger) / larger) : 0)) : 0x1p-20;
                     const double of = density ? larger : point && !vector ? fmax(larger, line_of(row, given[i])) : 1;
                     CHECK(isfinite(b) && fabs(a - b) <= e * of + (density ? 0x1p-100 * top + FLT_MIN : 0) +
                                                             (t.form == EVAL ? lost_eval(row, given[i]) : 0),
@@ -313,7 +325,8 @@ int main(int argc, char **argv) {
     mcst_start(argc, argv);
 #ifdef FENV_NONE
     mcst_group("exceptions");
-    if (mcst_case("none in this build")) puts("SKIPPED: exceptions and modes, which this machine or build does not have");
+    if (mcst_case("none in this build"))
+        puts("SKIPPED: exceptions and modes, which this machine or build does not have");
     return mcst_finish();
 #endif
     bits_valid = 1;

@@ -1,5 +1,6 @@
-/* examples/hdr.h, the reader and writer of Radiance pictures: that writing and reading is unbiased, that it reads what Radiance's
- * own reader reads, and that no damage to a file does more than to be named. The files are made here, in memory. */
+/* examples/hdr.h, the reader and writer of Radiance pictures: that writing and reading is unbiased, that it reads what
+ * Radiance's own reader reads, and that no damage to a file does more than to be named. The files are made here, in
+ * memory. */
 #define _POSIX_C_SOURCE 200809L /* fmemopen */
 #include <float.h>
 #include <stdlib.h>
@@ -75,7 +76,9 @@ static void expect_fault(const bytes *file, const char *part) {
     free(p.pixel);
 }
 
-static int same(hdr_pixel a, int r, int g, int b, int e) { return a.c[0] == r && a.c[1] == g && a.c[2] == b && a.c[3] == e; }
+static int same(hdr_pixel a, int r, int g, int b, int e) {
+    return a.c[0] == r && a.c[1] == g && a.c[2] == b && a.c[3] == e;
+}
 
 /* The picture has these pixels, numbered along the rows from the top: pixel i is (i + 128, i, 3 i, 129). */
 static void put_numbered(bytes *to, int i) { put_pixel(to, i + 128, i, 3 * i, 129); }
@@ -87,7 +90,8 @@ static void expect_numbered(const bytes *file, uint32_t w, uint32_t h) {
     CHECK(p.w == w && p.h == h, "%u x %u", p.w, p.h);
     for (uint32_t i = 0; i < w * h; i++) {
         const unsigned char *c = p.pixel[i].c;
-        CHECK(same(p.pixel[i], (int)i + 128, (int)i, 3 * (int)i, 129), "pixel %u: %d %d %d %d", i, c[0], c[1], c[2], c[3]);
+        CHECK(same(p.pixel[i], (int)i + 128, (int)i, 3 * (int)i, 129), "pixel %u: %d %d %d %d", i, c[0], c[1], c[2],
+              c[3]);
     }
     free(p.pixel);
 }
@@ -101,9 +105,9 @@ static void decode(hdr_pixel pixel, float rgb[3]) {
     hdr_color(&p, 0, rgb);
 }
 
-/* The place of a value in its step is as good as uniform: u has 24 bits, of which 8 choose the step and 16 the place in it, whose
- * mean is 2^-17 below 1/2. So the error of a channel in steps has mean 0 and variance 1/12, and the mean of n is within five
- * standard deviations of 0 but in one of 1.7 million cases; 2^-17 is a fortieth of one of them. */
+/* The place of a value in its step is as good as uniform: u has 24 bits, of which 8 choose the step and 16 the place in
+ * it, whose mean is 2^-17 below 1/2. So the error of a channel in steps has mean 0 and variance 1/12, and the mean of n
+ * is within five standard deviations of 0 but in one of 1.7 million cases; 2^-17 is a fortieth of one of them. */
 static void test_bias(void) {
     const int n = 300000;
     mcst_group("bias");
@@ -139,14 +143,16 @@ static void test_bias(void) {
         }
         CHECK(fabs(off) <= 5 * sigma, "mean error %g steps, sigma %g", off, sigma);
         CHECK(fabs(read / light - 1) <= 5 * sigma * 3.0 * n / light, "light %g %%", 100 * (read / light - 1));
-        CHECK(fabs(dark_read / dark - 1) <= 5 * sqrt(dark_n / 12) / dark, "dark channels %g %%", 100 * (dark_read / dark - 1));
+        CHECK(fabs(dark_read / dark - 1) <= 5 * sqrt(dark_n / 12) / dark, "dark channels %g %%",
+              100 * (dark_read / dark - 1));
         mcst_note("    2^%d: mean error %+.5f steps, light %+.5f %%, dark channels %+.4f %%\n", exponent, off,
                   100 * (read / light - 1), 100 * (dark_read / dark - 1));
     }
 }
 
 static void test_pixels(void) {
-    static const float nothing[][3] = {{0, 0, 0}, {-1, -0.0f, 0}, {NAN, -INFINITY, 0}, {0x1p-107f, 1e-33f, FLT_MIN / 8}};
+    static const float nothing[][3] = {
+        {0, 0, 0}, {-1, -0.0f, 0}, {NAN, -INFINITY, 0}, {0x1p-107f, 1e-33f, FLT_MIN / 8}};
     static const float most[][3] = {{FLT_MAX, 0, 1}, {1, INFINITY, NAN}, {0x1.fffffep126f, -INFINITY, 0x1p126f}};
     mcst_group("pixels");
     float c[3];
@@ -155,7 +161,8 @@ static void test_pixels(void) {
             const hdr_pixel p = hdr_encode(nothing[i]);
             CHECK(same(p, 0, 0, 0, 0), "row %d", (int)i);
             decode(p, c);
-            CHECK(c[0] == 0 && c[1] == 0 && c[2] == 0, "row %d: %g %g %g", (int)i, (double)c[0], (double)c[1], (double)c[2]);
+            CHECK(c[0] == 0 && c[1] == 0 && c[2] == 0, "row %d: %g %g %g", (int)i, (double)c[0], (double)c[1],
+                  (double)c[2]);
         }
     }
     if (mcst_case("the brightest are not black")) {
@@ -168,12 +175,13 @@ static void test_pixels(void) {
         }
     }
     if (mcst_case("known values")) {
-        static const float value[][3] = {{1, 0.5f, 0.25f}, {0x1.fffffep-1f, 0, 0x1p-9f}, {3, 255, 256}, {0x1p-100f, 0, 0x1p-101f}};
+        static const float value[][3] = {
+            {1, 0.5f, 0.25f}, {0x1.fffffep-1f, 0, 0x1p-9f}, {3, 255, 256}, {0x1p-100f, 0, 0x1p-101f}};
         static const int code[][4] = {{128, 64, 32, 129}, {255, 0, 0, 128}, {1, 127, 128, 137}, {128, 0, 64, 29}};
         for (int i = 0; i < 4; i++) {
             const hdr_pixel p = hdr_encode(value[i]);
-            CHECK(same(p, code[i][0], code[i][1], code[i][2], code[i][3]), "row %d: %d %d %d %d", i, p.c[0], p.c[1], p.c[2],
-                  p.c[3]);
+            CHECK(same(p, code[i][0], code[i][1], code[i][2], code[i][3]), "row %d: %d %d %d %d", i, p.c[0], p.c[1],
+                  p.c[2], p.c[3]);
         }
         hdr_pixel p = {{128, 64, 0, 129}};
         decode(p, c); /* as Radiance: (m + 1/2) 2^(e - 136) */
@@ -183,7 +191,8 @@ static void test_pixels(void) {
     if (mcst_case("what has been read is written as it was")) { /* from 1e-32 to HDR_MOST */
         for (int e = 23; e <= 187; e++) {
             for (int m = 0; m < 256; m += 5) {
-                const hdr_pixel p = {{(unsigned char)(128 + m / 2), (unsigned char)m, (unsigned char)(255 - m), (unsigned char)e}};
+                const hdr_pixel p = {
+                    {(unsigned char)(128 + m / 2), (unsigned char)m, (unsigned char)(255 - m), (unsigned char)e}};
                 decode(p, c);
                 const hdr_pixel again = hdr_encode(c);
                 CHECK(!memcmp(&p, &again, sizeof p), "%d %d %d %d", p.c[0], p.c[1], p.c[2], p.c[3]);
@@ -350,7 +359,8 @@ static void test_orientations(void) {
         expect_numbered(&file, (uint32_t)w, (uint32_t)h);
         granted = 1; /* for the pixels as they come, not for turning them */
         hdr_picture p;
-        CHECK(which == 5 ? load(&p, &file) : !load(&p, &file) && strstr(p.fault, "not enough memory to turn"), "'%s'", p.fault);
+        CHECK(which == 5 ? load(&p, &file) : !load(&p, &file) && strstr(p.fault, "not enough memory to turn"), "'%s'",
+              p.fault);
         granted = ALWAYS;
         free(p.pixel);
     }
@@ -557,7 +567,8 @@ static void expect_matrix(const char *lines, const double m[3][3], double tolera
     for (int i = 0; i < 3; i++) {
         double sum = 0;
         for (int k = 0; k < 3; k++) {
-            CHECK(fabs(p.matrix.m[i][k] - m[i][k]) <= tolerance, "[%d][%d] %g instead of %g", i, k, p.matrix.m[i][k], m[i][k]);
+            CHECK(fabs(p.matrix.m[i][k] - m[i][k]) <= tolerance, "[%d][%d] %g instead of %g", i, k, p.matrix.m[i][k],
+                  m[i][k]);
             sum += p.matrix.m[i][k] * (200.5 - 50 * k) / 64;
         }
         sum = fmax(sum, 0);
@@ -584,7 +595,8 @@ static void test_colours(void) {
     static const double as_is[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     static const double scaled[3][3] = {{1 / 12.0, 0, 0}, {0, 1 / 3.0, 0}, {0, 0, 1 / 1.5}};
     /* ITU-R BT.2087: BT.2020 to BT.709 */
-    static const double from2020[3][3] = {{1.6605, -0.5876, -0.0728}, {-0.1246, 1.1329, -0.0083}, {-0.0182, -0.1006, 1.1187}};
+    static const double from2020[3][3] = {
+        {1.6605, -0.5876, -0.0728}, {-0.1246, 1.1329, -0.0083}, {-0.0182, -0.1006, 1.1187}};
     /* IEC 61966-2-1: XYZ to sRGB */
     static const double srgb[3][3] = {{3.2406, -1.5372, -0.4986}, {-0.9689, 1.8758, 0.0415}, {0.0557, -0.2040, 1.0570}};
     /* Lindbloom, "RGB/XYZ matrices": XYZ of D50 to sRGB, by Bradford's adaptation */
@@ -599,12 +611,15 @@ static void test_colours(void) {
     if (mcst_case("PRIMARIES of Rec. 2020"))
         expect_matrix("#?RADIANCE\nPRIMARIES= 0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.3290\n", from2020, 0.6e-4);
     if (mcst_case("COLORCORR goes before PRIMARIES")) {
-        static const double corrected[3][3] = {
-            {1.6605 / 2, -0.5876 / 4, -0.0728 * 2}, {-0.1246 / 2, 1.1329 / 4, -0.0083 * 2}, {-0.0182 / 2, -0.1006 / 4, 1.1187 * 2}};
-        expect_matrix("#?RADIANCE\nPRIMARIES= .708 .292 .170 .797 .131 .046 .3127 .329\nCOLORCORR=2 4 .5\n", corrected, 1.2e-4);
+        static const double corrected[3][3] = {{1.6605 / 2, -0.5876 / 4, -0.0728 * 2},
+                                               {-0.1246 / 2, 1.1329 / 4, -0.0083 * 2},
+                                               {-0.0182 / 2, -0.1006 / 4, 1.1187 * 2}};
+        expect_matrix("#?RADIANCE\nPRIMARIES= .708 .292 .170 .797 .131 .046 .3127 .329\nCOLORCORR=2 4 .5\n", corrected,
+                      1.2e-4);
     }
     if (mcst_case("the last PRIMARIES count"))
-        expect_matrix("#?RGBE\nPRIMARIES=.5 .3 .2 .6 .2 .1 .3 .3\nPRIMARIES=.64 .33 .3 .6 .15 .06 .3127 .329\n", as_is, 1e-12);
+        expect_matrix("#?RGBE\nPRIMARIES=.5 .3 .2 .6 .2 .1 .3 .3\nPRIMARIES=.64 .33 .3 .6 .15 .06 .3127 .329\n", as_is,
+                      1e-12);
     if (mcst_case("XYZ with a white of D65"))
         expect_matrix("#?RADIANCE\nFORMAT=32-bit_rle_xyze\nPRIMARIES=1 0 0 1 0 0 .3127 .3290\n", srgb, 5e-4);
     if (mcst_case("XYZ with a white of D50"))
@@ -612,11 +627,12 @@ static void test_colours(void) {
     if (mcst_case("white stays white")) {
         expect_white("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n");
         expect_white("#?RADIANCE\nPRIMARIES= .640 .330 .290 .600 .150 .060 .3333 .3333\n"); /* Radiance's own */
-        expect_white("#?RADIANCE\nPRIMARIES= .7347 .2653 0 1 .0001 -.077 .32168 .33767\n"); /* ACES 2065-1, an imaginary blue */
+        expect_white(
+            "#?RADIANCE\nPRIMARIES= .7347 .2653 0 1 .0001 -.077 .32168 .33767\n"); /* ACES 2065-1, an imaginary blue */
     }
     if (mcst_case("EXPOSURE goes with PRIMARIES"))
         expect_white("#?RADIANCE\nEXPOSURE=.5\nPRIMARIES= .64 .33 .29 .6 .15 .06 .3333 .3333\nEXPOSURE=2\n");
-    if (mcst_case("bright and dark")) { /* what leaves the range after the scale is clipped at HDR_MOST, what returns is not */
+    if (mcst_case("bright and dark")) { /* clipped at HDR_MOST after the scale */
         static bytes file;
         begin(&file, "#?RADIANCE\nCOLORCORR=1 1e20 1e-20\n", "-Y 1 +X 2");
         put_pixel(&file, 255, 255, 255, 200);
@@ -671,8 +687,8 @@ static void make_kind(bytes *file, int kind) {
     }
 }
 
-/* Either a fault or a whole picture with colours that a renderer can use; and no more memory than twice what was decoded, one
- * coded scan line or the first block. */
+/* Either a fault or a whole picture with colours that a renderer can use; and no more memory than twice what was
+ * decoded, one coded scan line or the first block. */
 static int check_damaged(const bytes *file) {
     hdr_picture p;
     const int ok = load(&p, file);
@@ -728,7 +744,8 @@ static void test_damage(void) {
         }
     }
     if (mcst_case("sizes without pixels")) {
-        static const char *const resolution[] = {"-Y 11585 +X 11585", "-Y 1 +X 134217728", "-Y 134217728 +X 1", "+X 32767 -Y 4096"};
+        static const char *const resolution[] = {"-Y 11585 +X 11585", "-Y 1 +X 134217728", "-Y 134217728 +X 1",
+                                                 "+X 32767 -Y 4096"};
         for (int i = 0; i < 4; i++) {
             for (int pixels = 0; pixels < 3; pixels++) {
                 begin(&file, "#?RADIANCE\n", resolution[i]);

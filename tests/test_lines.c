@@ -1,5 +1,5 @@
-/* The maps of one dimension over all of the 2^24 numbers that mcs_u01 gives: the estimator that they make at the ends of unbounded
- * densities, and that they never fall. */
+/* The maps of one dimension over all of the 2^24 numbers that mcs_u01 gives: the estimator that they make at the ends
+ * of unbounded densities, and that they never fall. */
 #define MCST_WIDE
 #define MCST_LIST MCST_LINES /* alone: the others cost compile time */
 #include "registry.h"
@@ -27,12 +27,13 @@ static void draw_block(const mcst_row *row, const float *p, int form, int first,
     }
 }
 
-/* The integral of f(x) = e^(-|x| / width), estimated with every u = k h, h = 2^-24, once, is a sum of rectangles h F(u) with
- * F(u) = f(x(u)) / pdf(u). F falls on [0,1/4] at least and rises on its mirror image. So k = 0 counts h F(h/2); those of
- * k = 1 ... n - 1 lie between I, the integral of f from x(h) to x(n h), and I + h F(h); and those of k = 1 ... 2^24 - 1 between I,
- * from x(h) to x(1 - h), and I + 2 h F(h). Near the middle F turns back by less than 4, which moves the sum by less than 8 h. x is
- * within 7 ulp of |x| < 17.4 and pdf within 0.45 E of a density above 2e-8 of the peak, which moves F by
- * 7 * 17.4 * 2^-23 + 0.45e-6 * 18.8 < 2.4e-5 of itself. The array form sums all k, the others the first block. */
+/* The integral of f(x) = e^(-|x| / width), estimated with every u = k h, h = 2^-24, once, is a sum of rectangles h F(u)
+ * with F(u) = f(x(u)) / pdf(u). F falls on [0,1/4] at least and rises on its mirror image. So k = 0 counts h F(h/2);
+ * those of k = 1 ... n - 1 lie between I, the integral of f from x(h) to x(n h), and I + h F(h); and those of k = 1 ...
+ * 2^24 - 1 between I, from x(h) to x(1 - h), and I + 2 h F(h). Near the middle F turns back by less than 4, which moves
+ * the sum by less than 8 h. x is within 7 ulp of |x| < 17.4 and pdf within 0.45 E of a density above 2e-8 of the peak,
+ * which moves F by 7 * 17.4 * 2^-23 + 0.45e-6 * 18.8 < 2.4e-5 of itself. The array form sums all k, the others the
+ * first block. */
 static void check_zero(const char *name, double width) {
     const mcst_row *row = mcst_find(name);
     const double h = 0x1p-24, rounding = 2.4e-5, turn = 8 * h;
@@ -77,12 +78,13 @@ static void draw_set(const mcst_row *row, uint64_t *state, float p[MCST_P]) {
     const double lo[MCST_SLOPES] = {1e-5, 1e-18, 1e-18, 1e-3, 1e-3, 1e-3, 1e-3};
     const double hi[MCST_SLOPES] = {1, 1e18, 1e18, 1e3, 1e3, 1e9, 1e9};
     const int own = row->coord >= MCST_SLOPES; /* a line beyond the list has its domain */
-    const float a = between(state, own ? row->domain.least[0] : lo[row->coord], own ? row->domain.most[0] : hi[row->coord]);
+    const float a =
+        between(state, own ? row->domain.least[0] : lo[row->coord], own ? row->domain.most[0] : hi[row->coord]);
     mcst_fill(row, a, between(state, 1e-3, 1e3), 1, 0, p);
 }
 
-/* No x below that of the u before, by the array form, whose bits the others share. Parameters of `linear` that are of a size are
- * the hard case: its closed form in float falls at up to 1e6 of the 2^24 steps. */
+/* No x below that of the u before, by the array form, whose bits the others share. Parameters of `linear` that are of a
+ * size are the hard case: its closed form in float falls at up to 1e6 of the 2^24 steps. */
 static void check_increase(const mcst_row *row) {
     uint64_t state = mcst_seed_for(row->name, "increase", 0);
     size_t set;

@@ -1,6 +1,7 @@
-/* The vector maths of the header, scalar pass, against double libm: largest error in ulp over a dense sweep of every range, and the
- * sign, range and monotonicity that the samplers rely on. Double results are good to 2^-29 of a float ulp, so they count as exact
- * here. The bounds are those that the header documents; MCS_TEST_VERBOSE=1 prints what was found. */
+/* The vector maths of the header, scalar pass, against double libm: largest error in ulp over a dense sweep of every
+ * range, and the sign, range and monotonicity that the samplers rely on. Double results are good to 2^-29 of a float
+ * ulp, so they count as exact here. The bounds are those that the header documents; MCS_TEST_VERBOSE=1 prints what was
+ * found. */
 #include "mcs_test.h"
 #include "mcsample.h"
 #include <math.h>
@@ -99,18 +100,19 @@ static void sweep(const kernel *k) {
         }
         /* Monotone up to rounding: a step back may be no larger than both errors, 2 bound ulp. */
         if (rises)
-            CHECK((double)(y - before) * rises >= -2 * k->bound * fabs((double)y) * 0x1p-23, "%s(%.9g) turns back", k->name,
-                  (double)x);
+            CHECK((double)(y - before) * rises >= -2 * k->bound * fabs((double)y) * 0x1p-23, "%s(%.9g) turns back",
+                  k->name, (double)x);
         before = y;
     }
     mcst_note("     %-14s max %.3f ulp at %.9g\n", k->name, worst, at);
     CHECK(worst <= k->bound, "%s: %.3f ulp at %.9g, bound %g", k->name, worst, at, k->bound);
 }
 
-/* Bounds: half an ulp for the last rounding, plus the roundings before it weighted by their share of the result, plus the fit
- * (below 0.1 ulp but for the tail, 0.5); they hold with and without contraction. The tail, worst where Phi is just below 1/2: v =
- * 1/(1 + 0.35 y) has a relative error of 2^-24, which d ln G/d ln v = 2.3 makes 2.3 ulp; the sums of Horner's rule 2, its products
- * 2, e^x 1, the last product 0.5: 8 ulp. The quantile likewise: t 1, v 0.5, Horner 3, the difference t - R 1 ulp. */
+/* Bounds: half an ulp for the last rounding, plus the roundings before it weighted by their share of the result, plus
+ * the fit (below 0.1 ulp but for the tail, 0.5); they hold with and without contraction. The tail, worst where Phi is
+ * just below 1/2: v = 1/(1 + 0.35 y) has a relative error of 2^-24, which d ln G/d ln v = 2.3 makes 2.3 ulp; the sums
+ * of Horner's rule 2, its products 2, e^x 1, the last product 0.5: 8 ulp. The quantile likewise: t 1, v 0.5, Horner 3,
+ * the difference t - R 1 ulp. */
 static const kernel kernels[] = {
     {"sin", sin_turns, exact_sin_turns, 0x1p-30f, 1.0f, 13, 1.5, 0},
     {"sin, t < 0", sin_turns, exact_sin_turns, -0x1p-30f, -0.125f, 31, 1.5, 1},
@@ -138,7 +140,8 @@ static void quantile(void) {
         const float x = mcsi_normal_quantile(p);
         const double X = (double)x;
         const double phi = 0.39894228040143267794 * exp(-0.5 * X * X);
-        const double off = X < 0 ? exact_tail(-X) - (double)p : (1 - (double)p) - exact_tail(X); /* towards too large an x */
+        const double off =
+            X < 0 ? exact_tail(-X) - (double)p : (1 - (double)p) - exact_tail(X); /* towards too large an x */
         const double e = x == 0 ? fabs(off) / (phi * 0x1p-149) : fabs(off) / phi / ldexp(1.0, ilogb(X) - 23);
         if (!(e <= worst)) {
             worst = e;

@@ -7,8 +7,8 @@
 #include "oracle.h"
 #include "stats.h"
 
-static const double eps = 0x1p-24;  /* rounding of a float, relative */
-static const double level = 1e-5;   /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
+static const double eps = 0x1p-24; /* rounding of a float, relative */
+static const double level = 1e-5; /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
 static const double z_level = 4.42; /* that level of the normal distribution, both sides */
 
 static mcs_vec3 unit(double x, double y, double z) {
@@ -33,17 +33,20 @@ static int finite3(mcs_vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfini
 
 /* ---- frame ---- */
 
-/* With d = |n|^2 - 1 of the rounded normal the exact formulas (Duff et al. 2017) are off by d at most in every product of two
- * axes. An axis has components of up to 1 that pass five roundings, so its products with the other unit axes move by 5 sqrt(3). */
+/* With d = |n|^2 - 1 of the rounded normal the exact formulas (Duff et al. 2017) are off by d at most in every product
+ * of two axes. An axis has components of up to 1 that pass five roundings, so its products with the other unit axes
+ * move by 5 sqrt(3). */
 static void check_frame(mcs_vec3 n) {
     const mcs_frame f = mcs_frame_make(n);
     const double d = fabs(dot(n, n) - 1);
     const double tol = 10 * eps + d;
-    CHECK(f.n.x == n.x && f.n.y == n.y && f.n.z == n.z, "n = (%a, %a, %a): not kept", (double)n.x, (double)n.y, (double)n.z);
-    CHECK(fabs(dot(f.s, f.s) - 1) <= tol && fabs(dot(f.t, f.t) - 1) <= tol, "n = (%a, %a, %a): lengths 1 + %g, 1 + %g", (double)n.x,
-          (double)n.y, (double)n.z, dot(f.s, f.s) / 2 - 0.5, dot(f.t, f.t) / 2 - 0.5);
+    CHECK(f.n.x == n.x && f.n.y == n.y && f.n.z == n.z, "n = (%a, %a, %a): not kept", (double)n.x, (double)n.y,
+          (double)n.z);
+    CHECK(fabs(dot(f.s, f.s) - 1) <= tol && fabs(dot(f.t, f.t) - 1) <= tol, "n = (%a, %a, %a): lengths 1 + %g, 1 + %g",
+          (double)n.x, (double)n.y, (double)n.z, dot(f.s, f.s) / 2 - 0.5, dot(f.t, f.t) / 2 - 0.5);
     CHECK(fabs(dot(f.s, f.t)) <= tol && fabs(dot(f.s, n)) <= tol && fabs(dot(f.t, n)) <= tol,
-          "n = (%a, %a, %a): products %g, %g, %g", (double)n.x, (double)n.y, (double)n.z, dot(f.s, f.t), dot(f.s, n), dot(f.t, n));
+          "n = (%a, %a, %a): products %g, %g, %g", (double)n.x, (double)n.y, (double)n.z, dot(f.s, f.t), dot(f.s, n),
+          dot(f.t, n));
     const double det = ((double)f.s.y * f.t.z - (double)f.s.z * f.t.y) * n.x +
                        ((double)f.s.z * f.t.x - (double)f.s.x * f.t.z) * n.y +
                        ((double)f.s.x * f.t.y - (double)f.s.y * f.t.x) * n.z;
@@ -61,14 +64,16 @@ static void check_round_trip(mcs_vec3 n, mcs_vec3 v) {
     const double y = (double)f.s.y * v.x + (double)f.t.y * v.y + (double)f.n.y * v.z;
     const double z = (double)f.s.z * v.x + (double)f.t.z * v.y + (double)f.n.z * v.z;
     CHECK(err <= tol, "v = (%a, %a, %a): off by %g", (double)v.x, (double)v.y, (double)v.z, err);
-    CHECK(fabs(w.x - x) <= 6 * eps && fabs(w.y - y) <= 6 * eps && fabs(w.z - z) <= 6 * eps, "v = (%a, %a, %a): to_world",
-          (double)v.x, (double)v.y, (double)v.z);
+    CHECK(fabs(w.x - x) <= 6 * eps && fabs(w.y - y) <= 6 * eps && fabs(w.z - z) <= 6 * eps,
+          "v = (%a, %a, %a): to_world", (double)v.x, (double)v.y, (double)v.z);
 }
 
 static const mcs_vec3 odd_normals[] = {
-    {0, 0, 1},       {0, 0, -1},           {-0.0f, -0.0f, 1},   {-0.0f, 0, -1},  {1, 0, 0},           {-1, 0, 0},
-    {0, 1, 0},       {0, -1, 0},           {1, 0, -0.0f},       {0, 1, -0.0f},   {1e-40f, 1e-42f, 1}, {1e-45f, -1e-45f, -1},
-    {1e-40f, 0, -1}, {1e-20f, 1e-30f, -1}, {1e-8f, -1e-8f, -1}, {0, 1e-10f, -1}, {1, 1e-40f, 1e-45f}, {1e-40f, 1, -1e-45f},
+    {0, 0, 1},           {0, 0, -1},           {-0.0f, -0.0f, 1},   {-0.0f, 0, -1},
+    {1, 0, 0},           {-1, 0, 0},           {0, 1, 0},           {0, -1, 0},
+    {1, 0, -0.0f},       {0, 1, -0.0f},        {1e-40f, 1e-42f, 1}, {1e-45f, -1e-45f, -1},
+    {1e-40f, 0, -1},     {1e-20f, 1e-30f, -1}, {1e-8f, -1e-8f, -1}, {0, 1e-10f, -1},
+    {1, 1e-40f, 1e-45f}, {1e-40f, 1, -1e-45f},
 };
 static const mcs_vec3 bad_normals[] = {
     {0, 0, 0},
@@ -109,7 +114,8 @@ static void test_frame(void) {
         }
     if (mcst_case("to_local undoes to_world")) {
         for (size_t i = 0; i < 300000; i++) check_round_trip(random_unit(&r), random_unit(&r));
-        for (size_t i = 0; i < sizeof odd_normals / sizeof *odd_normals; i++) check_round_trip(odd_normals[i], random_unit(&r));
+        for (size_t i = 0; i < sizeof odd_normals / sizeof *odd_normals; i++)
+            check_round_trip(odd_normals[i], random_unit(&r));
     }
     if (mcst_case("+z goes to the normal, exactly"))
         for (size_t i = 0; i < 1000; i++) {
@@ -121,16 +127,17 @@ static void test_frame(void) {
         }
 }
 
-/* Components up to 1e37 count, larger ones and NaN are as 0. Vectors along an axis scale exactly: one product, and zeros added. */
+/* Components up to 1e37 count, larger ones and NaN are as 0. Vectors along an axis scale exactly: one product, and
+ * zeros added. */
 static void same_moved(const mcs_frame *f, mcs_vec3 v, mcs_vec3 instead, float scale) {
     const mcs_vec3 w = mcs_to_world(f, v);
     const mcs_vec3 x = mcs_to_world(f, instead);
     const mcs_vec3 l = mcs_to_local(f, v);
     const mcs_vec3 m = mcs_to_local(f, instead);
-    CHECK(w.x == x.x * scale && w.y == x.y * scale && w.z == x.z * scale, "(%g, %g, %g): to_world", (double)v.x, (double)v.y,
-          (double)v.z);
-    CHECK(l.x == m.x * scale && l.y == m.y * scale && l.z == m.z * scale, "(%g, %g, %g): to_local", (double)v.x, (double)v.y,
-          (double)v.z);
+    CHECK(w.x == x.x * scale && w.y == x.y * scale && w.z == x.z * scale, "(%g, %g, %g): to_world", (double)v.x,
+          (double)v.y, (double)v.z);
+    CHECK(l.x == m.x * scale && l.y == m.y * scale && l.z == m.z * scale, "(%g, %g, %g): to_local", (double)v.x,
+          (double)v.y, (double)v.z);
 }
 
 static void test_huge_vectors(void) {
@@ -144,7 +151,8 @@ static void test_huge_vectors(void) {
             const mcs_vec3 rest = {k == 0 ? 0 : 0.5f, k == 1 ? 0 : -0.25f, k == 2 ? 0 : 0.75f};
             same_moved(&f, far, axis, 1e37f);
             for (int j = 0; j < (int)(sizeof beyond / sizeof *beyond); j++) {
-                const mcs_vec3 v = {k == 0 ? beyond[j] : rest.x, k == 1 ? beyond[j] : rest.y, k == 2 ? beyond[j] : rest.z};
+                const mcs_vec3 v = {k == 0 ? beyond[j] : rest.x, k == 1 ? beyond[j] : rest.y,
+                                    k == 2 ? beyond[j] : rest.z};
                 same_moved(&f, v, rest, 1);
             }
         }
@@ -153,9 +161,9 @@ static void test_huge_vectors(void) {
 
 /* ---- cone ---- */
 
-/* Draws at its rim: k u1, its cosine, the sine and their products are each rounded, so 1 - cos of the vector lies past k at times.
- * They are all inside, yet 4e-6 of k past it is out: the header allows 5e-7, and x of the vector built here, its square, 1 + cos
- * and the quotient round by 6 eps = 4e-7. */
+/* Draws at its rim: k u1, its cosine, the sine and their products are each rounded, so 1 - cos of the vector lies past
+ * k at times. They are all inside, yet 4e-6 of k past it is out: the header allows 5e-7, and x of the vector built
+ * here, its square, 1 + cos and the quotient round by 6 eps = 4e-7. */
 static void test_cone_rim(float k) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 151);
     const double t = k * (1 + 4e-6);
@@ -196,7 +204,8 @@ static void check_reflect(mcs_pcg32 *r) {
     }
 }
 
-/* wo + wi is rounded once a component, hence right to eps however much it cancels; squares, sum and root 3, quotient 1 */
+/* wo + wi is rounded once a component, hence right to eps however much it cancels; squares, sum and root 3, quotient 1
+ */
 static void check_half(mcs_pcg32 *r) {
     for (int i = 0; i < 300000; i++) {
         const double s = pow(10, -7.0 * mcs_pcg32_float(r));
@@ -235,15 +244,16 @@ static void check_half_of_bad(void) {
         const mcs_vec3 h = mcs_half(wo, wi);
         const mcs_vec3 w = mcs_reflect(wo, wi);
         const float c = mcs_cos_d(wo, wi);
-        CHECK(finite3(h) && finite3(w) && isfinite(c), "directions %d and %d: half (%g, %g, %g), reflect (%g, %g, %g), cos_d %g",
-              i / n, i % n, (double)h.x, (double)h.y, (double)h.z, (double)w.x, (double)w.y, (double)w.z, (double)c);
-        CHECK(c == 0 || (fabs(dot(wo, wo) - 1) < 0.1 && fabs(dot(wi, wi) - 1) < 0.1), "bad directions %d and %d: cos_d %g", i / n,
-              i % n, (double)c);
+        CHECK(finite3(h) && finite3(w) && isfinite(c),
+              "directions %d and %d: half (%g, %g, %g), reflect (%g, %g, %g), cos_d %g", i / n, i % n, (double)h.x,
+              (double)h.y, (double)h.z, (double)w.x, (double)w.y, (double)w.z, (double)c);
+        CHECK(c == 0 || (fabs(dot(wo, wo) - 1) < 0.1 && fabs(dot(wi, wi) - 1) < 0.1),
+              "bad directions %d and %d: cos_d %g", i / n, i % n, (double)c);
     }
 }
 
-/* A mirror pair at grazing incidence: |H|^2 = 4 z^2 and L = ax/(2 sqrt(pi) z), so the weight is G2 = sqrt(pi) z/ax. z L takes
- * 8 eps (t 2, its constant 1, e^x 2, three operations), the rest 7; what the form leaves out is below 1. */
+/* A mirror pair at grazing incidence: |H|^2 = 4 z^2 and L = ax/(2 sqrt(pi) z), so the weight is G2 = sqrt(pi) z/ax. z L
+ * takes 8 eps (t 2, its constant 1, e^x 2, three operations), the rest 7; what the form leaves out is below 1. */
 static void check_grazing_mirror(void) {
     for (int i = 9; i < 16; i++) { /* the form holds for z far below ax */
         const float z = (float)pow(10, -i);
@@ -257,8 +267,8 @@ static void check_grazing_mirror(void) {
     }
 }
 
-/* H = wo + wi is about (6e-20, 0, 2e-15): the square of x, and with it the azimuth, lies below FLT_MIN. Within E of the header,
- * which is 1e-6 at least. */
+/* H = wo + wi is about (6e-20, 0, 2e-15): the square of x, and with it the azimuth, lies below FLT_MIN. Within E of the
+ * header, which is 1e-6 at least. */
 static void check_near_normal(void) {
     const mcs_ashikhmin m = mcs_ashikhmin_make(1e9f, 0.0194f);
     const mcs_vec3 wo = {-1.8e-16f, -1, 1.03e-15f};
@@ -280,7 +290,8 @@ static void check_reflect_pdf(mcs_pcg32 *r) {
         CHECK(fabs(got - want) <= 2 * eps * want, "%g / (4 * %g): %g", (double)p, (double)c, got);
     }
     for (int i = 0; i < 6; i++)
-        CHECK(mcs_reflect_pdf(1.0f, odd[i]) == 0, "cos_d %g: %g", (double)odd[i], (double)mcs_reflect_pdf(1.0f, odd[i]));
+        CHECK(mcs_reflect_pdf(1.0f, odd[i]) == 0, "cos_d %g: %g", (double)odd[i],
+              (double)mcs_reflect_pdf(1.0f, odd[i]));
     CHECK(isfinite(mcs_reflect_pdf(FLT_MAX, 1e-30f)) && isfinite(mcs_reflect_pdf(NAN, 0.5f)) &&
               isfinite(mcs_reflect_pdf(INFINITY, 0.5f)) && isfinite(mcs_reflect_pdf(1.0f, 1e-45f)),
           "overflow, NaN and infinity");
@@ -294,7 +305,8 @@ static void check_schlick(mcs_pcg32 *r) {
         const float c = i % 5 ? mcs_pcg32_float(r) : (float)(1 - pow(10, -7.0 * mcs_pcg32_float(r)));
         const double want = (double)o_schlick(f0, c);
         const double got = mcs_schlick(f0, c);
-        CHECK(fabs(got - want) <= 12 * eps * want + FLT_MIN, "f0 = %g, cos_d = %g: %g, not %g", (double)f0, (double)c, got, want);
+        CHECK(fabs(got - want) <= 12 * eps * want + FLT_MIN, "f0 = %g, cos_d = %g: %g, not %g", (double)f0, (double)c,
+              got, want);
     }
     CHECK(mcs_schlick(0.04f, 0.0f) == 1.0f && mcs_schlick(0.04f, 1.0f) == 0.04f, "both ends");
     for (int i = 0; i < 144; i++) {
@@ -330,11 +342,12 @@ static void test_microfacet(void) {
 
 /* ---- one dimension ---- */
 
-/* Subnormal weights, and numbers u that only some generator of the caller makes: x within 4 ulp, its density within 0.2 E, as the
- * header promises for all; densities below 2^-126 of the peak may be lost. */
+/* Subnormal weights, and numbers u that only some generator of the caller makes: x within 4 ulp, its density within 0.2
+ * E, as the header promises for all; densities below 2^-126 of the peak may be lost. */
 static void test_linear_tiny(void) {
     static const float weights[] = {0.0f, 1e-45f, 3e-45f, 1e-44f, 1e-42f, 1e-40f, 1e-38f, FLT_MIN, 1e-30f},
-                       u[] = {0.0f, 1e-45f, 1e-40f, FLT_MIN, 1e-35f, 1e-32f, 1e-25f, 1e-20f, 1e-12f, 1e-6f, 0.3f, 0.99999994f};
+                       u[] = {0.0f,   1e-45f, 1e-40f, FLT_MIN, 1e-35f, 1e-32f,
+                              1e-25f, 1e-20f, 1e-12f, 1e-6f,   0.3f,   0.99999994f};
     enum { WEIGHTS = (int)(sizeof weights / sizeof *weights), US = (int)(sizeof u / sizeof *u) };
     for (int i = 1; i < WEIGHTS * WEIGHTS; i++)
         for (int k = 0; k < US; k++) {
@@ -345,20 +358,22 @@ static void test_linear_tiny(void) {
             const ld pdf = o_linear_pdf_u(a, b, u[k]);
             const ld peak = 2 * fmaxl(a, b) / ((ld)a + b);
             const ld e = pdf > 0 ? 1e-6L * (1 + fabsl(logl(pdf / peak))) : 0;
-            CHECK(o_ulp(s.x, x) <= 4, "a = %g, b = %g, u = %g: x %g, not %Lg", (double)a, (double)b, (double)u[k], (double)s.x, x);
-            CHECK(fabsl((ld)s.pdf - pdf) <= 0.2L * e * pdf + FLT_MIN * peak, "a = %g, b = %g, u = %g: pdf %g, not %Lg", (double)a,
-                  (double)b, (double)u[k], (double)s.pdf, pdf);
+            CHECK(o_ulp(s.x, x) <= 4, "a = %g, b = %g, u = %g: x %g, not %Lg", (double)a, (double)b, (double)u[k],
+                  (double)s.x, x);
+            CHECK(fabsl((ld)s.pdf - pdf) <= 0.2L * e * pdf + FLT_MIN * peak, "a = %g, b = %g, u = %g: pdf %g, not %Lg",
+                  (double)a, (double)b, (double)u[k], (double)s.pdf, pdf);
         }
 }
 
 /* ---- multiple importance sampling ---- */
 
-static const float densities[] = {0.0f,  1e-45f, 1e-40f, FLT_MIN, 1e-30f, 1e-20f,  1e-10f,   0.3f, 1.0f,  1.0000001f, 3.0f,
-                                  1e10f, 1e19f,  1e20f,  1e30f,   1e38f,  FLT_MAX, INFINITY, NAN,  -1.0f, -INFINITY};
+static const float densities[] = {0.0f,  1e-45f, 1e-40f,     FLT_MIN,  1e-30f, 1e-20f, 1e-10f,
+                                  0.3f,  1.0f,   1.0000001f, 3.0f,     1e10f,  1e19f,  1e20f,
+                                  1e30f, 1e38f,  FLT_MAX,    INFINITY, NAN,    -1.0f,  -INFINITY};
 enum { DENSITIES = (int)(sizeof densities / sizeof *densities) };
 
-/* Quotient g/f: eps; balance: 1 + g/f and the reciprocal once each, 3 eps. Power: the square makes it 3, then the same, 5 eps.
- * A weight below FLT_MIN may be lost. */
+/* Quotient g/f: eps; balance: 1 + g/f and the reciprocal once each, 3 eps. Power: the square makes it 3, then the same,
+ * 5 eps. A weight below FLT_MIN may be lost. */
 static void check_heuristics(float f, float g) {
     const ld lf = f;
     const ld lg = g;
@@ -367,16 +382,21 @@ static void check_heuristics(float f, float g) {
     CHECK(b >= 0 && b <= 1 && p >= 0 && p <= 1, "f = %g, g = %g: balance %g, power %g", (double)f, (double)g, b, p);
     if (f == 0) CHECK(b == 0 && p == 0, "f = 0, g = %g: balance %g, power %g", (double)g, b, p);
     if (!(f >= 0 && g >= 0) || (f == 0 && g == 0)) return;
-    CHECK(fabs((double)(b + (ld)mcs_mis_balance(g, f) - 1)) <= 6 * eps, "f = %g, g = %g: balance sums to %g", (double)f, (double)g,
-          b + mcs_mis_balance(g, f));
-    CHECK(fabs((double)(p + (ld)mcs_mis_power(g, f) - 1)) <= 10 * eps, "f = %g, g = %g: power sums to %g", (double)f, (double)g,
-          p + mcs_mis_power(g, f));
+    CHECK(fabs((double)(b + (ld)mcs_mis_balance(g, f) - 1)) <= 6 * eps, "f = %g, g = %g: balance sums to %g", (double)f,
+          (double)g, b + mcs_mis_balance(g, f));
+    CHECK(fabs((double)(p + (ld)mcs_mis_power(g, f) - 1)) <= 10 * eps, "f = %g, g = %g: power sums to %g", (double)f,
+          (double)g, p + mcs_mis_power(g, f));
     if (isinf(f) || isinf(g)) {
-        CHECK(b == (f == g ? 0.5 : isinf(f) ? 1 : 0) && p == b, "f = %g, g = %g: balance %g, power %g", (double)f, (double)g, b, p);
+        CHECK(b == (f == g     ? 0.5
+                    : isinf(f) ? 1
+                               : 0) &&
+                  p == b,
+              "f = %g, g = %g: balance %g, power %g", (double)f, (double)g, b, p);
     } else {
         const double wb = (double)(lf / (lf + lg));
         const double wp = (double)(lf * lf / (lf * lf + lg * lg));
-        CHECK(fabs(b - wb) <= 3 * eps * wb + FLT_MIN, "f = %g, g = %g: balance %g, not %g", (double)f, (double)g, b, wb);
+        CHECK(fabs(b - wb) <= 3 * eps * wb + FLT_MIN, "f = %g, g = %g: balance %g, not %g", (double)f, (double)g, b,
+              wb);
         CHECK(fabs(p - wp) <= 5 * eps * wp + FLT_MIN, "f = %g, g = %g: power %g, not %g", (double)f, (double)g, p, wp);
     }
 }
@@ -384,7 +404,8 @@ static void check_heuristics(float f, float g) {
 static void test_heuristics(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 107);
     if (mcst_case("heuristics: extremes"))
-        for (int i = 0; i < DENSITIES * DENSITIES; i++) check_heuristics(densities[i / DENSITIES], densities[i % DENSITIES]);
+        for (int i = 0; i < DENSITIES * DENSITIES; i++)
+            check_heuristics(densities[i / DENSITIES], densities[i % DENSITIES]);
     if (mcst_case("heuristics: 1e-38 to 1e38, and close to each other"))
         for (int i = 0; i < 300000; i++) {
             const double f = pow(10, 76.0 * mcs_pcg32_float(&r) - 38);
@@ -402,8 +423,8 @@ static void test_heuristics(void) {
                 const double want = (double)((ld)c[j] * (f > 0 ? f : 0) + (1 - (ld)c[j]) * (g > 0 ? g : 0));
                 CHECK(isfinite(p), "c = %g, f = %g, g = %g: %g", (double)c[j], (double)f, (double)g, (double)p);
                 if (want <= FLT_MAX)
-                    CHECK(fabs(p - want) <= 3 * eps * want + FLT_MIN, "c = %g, f = %g, g = %g: %g, not %g", (double)c[j], (double)f,
-                          (double)g, (double)p, want);
+                    CHECK(fabs(p - want) <= 3 * eps * want + FLT_MIN, "c = %g, f = %g, g = %g: %g, not %g",
+                          (double)c[j], (double)f, (double)g, (double)p, want);
             }
         for (int i = 0; i < 100000; i++) {
             const float w = mcs_pcg32_float(&r);
@@ -411,14 +432,17 @@ static void test_heuristics(void) {
             const float g = 10 * mcs_pcg32_float(&r);
             const double want = (double)((ld)w * f + (1 - (ld)w) * g);
             const double p = mcs_mix_pdf(w, f, g);
-            CHECK(fabs(p - want) <= 3 * eps * want, "c = %g, f = %g, g = %g: %g, not %g", (double)w, (double)f, (double)g, p, want);
+            CHECK(fabs(p - want) <= 3 * eps * want, "c = %g, f = %g, g = %g: %g, not %g", (double)w, (double)f,
+                  (double)g, p, want);
         }
-        for (int i = 0; i < DENSITIES; i++) CHECK(isfinite(mcs_mix_pdf(densities[i], 1.0f, 2.0f)), "c = %g", (double)densities[i]);
+        for (int i = 0; i < DENSITIES; i++)
+            CHECK(isfinite(mcs_mix_pdf(densities[i], 1.0f, 2.0f)), "c = %g", (double)densities[i]);
         CHECK(mcs_mix_pdf(NAN, 1.0f, 2.0f) == 0, "c = NaN: %g", (double)mcs_mix_pdf(NAN, 1.0f, 2.0f));
     }
 }
 
-/* The integral of 12 x^2 (1 - x) over [0,1] is 1. Strategies: density 3 x^2 and density 2 (1 - x); each misses one factor. */
+/* The integral of 12 x^2 (1 - x) over [0,1] is 1. Strategies: density 3 x^2 and density 2 (1 - x); each misses one
+ * factor. */
 static void test_mis_estimates(void) {
     enum { ROWS = 5, N = 200000 };
     static const char *const names[ROWS] = {"balance 1+1", "power 1+1", "balance 1+3", "power 3+1", "one sample, 0.3"};
@@ -461,9 +485,9 @@ static void test_mis_estimates(void) {
 
 /* ---- estimator ---- */
 
-/* Badly conditioned: mean 1e9, deviation 1, so the condition number is k = 1e9. Chan, Golub and LeVeque 1983, table 1: updating has
- * a relative error of the sum of squares of n k u at most, u = 2^-53 (the textbook sum of squares n k^2 u, of which nothing is
- * left). The mean moves by half an ulp of itself at most in each step. */
+/* Badly conditioned: mean 1e9, deviation 1, so the condition number is k = 1e9. Chan, Golub and LeVeque 1983, table 1:
+ * updating has a relative error of the sum of squares of n k u at most, u = 2^-53 (the textbook sum of squares n k^2 u,
+ * of which nothing is left). The mean moves by half an ulp of itself at most in each step. */
 enum { HARD = 4000 };
 static double hard[HARD];
 static ld hard_mean, hard_m2;
@@ -488,7 +512,8 @@ static void check_hard(const char *what, const mcs_stat *s) {
           mcs_stat_variance(s));
     CHECK(fabs(mcs_stat_error(s) / sqrt(mcs_stat_variance(s) / HARD) - 1) <= 4 * u, "%s: standard error %g", what,
           mcs_stat_error(s));
-    CHECK(fabs(mcs_stat_ci(s, 1.96) / (1.96 * mcs_stat_error(s)) - 1) <= 4 * u, "%s: half width %g", what, mcs_stat_ci(s, 1.96));
+    CHECK(fabs(mcs_stat_ci(s, 1.96) / (1.96 * mcs_stat_error(s)) - 1) <= 4 * u, "%s: half width %g", what,
+          mcs_stat_ci(s, 1.96));
 }
 
 static mcs_stat stat_of(int from, int to) {
@@ -511,9 +536,10 @@ static mcs_stat stat_tree(int from, int to) {
 
 static int same_stat(mcs_stat a, mcs_stat b) { return a.n == b.n && a.mean == b.mean && a.m2 == b.m2; }
 
-/* Any five of these values, each with either sign: mean and sum of squares as sums in long double, of values divided by 2^600, give
- * them; sums of squares above DBL_MAX are DBL_MAX. Rounding: 5 steps of the mean, each to 2 u of the largest value, and of m2, each
- * to 6 u of the terms, which share a sign. A mean may be off by what its terms cancel, and m2 by its square root's part in that. */
+/* Any five of these values, each with either sign: mean and sum of squares as sums in long double, of values divided by
+ * 2^600, give them; sums of squares above DBL_MAX are DBL_MAX. Rounding: 5 steps of the mean, each to 2 u of the
+ * largest value, and of m2, each to 6 u of the terms, which share a sign. A mean may be off by what its terms cancel,
+ * and m2 by its square root's part in that. */
 static void check_huge(const mcs_stat *s, const double *x, int n) {
     const ld u = 0x1p-53L;
     const ld down = ldexpl(1, -600);
@@ -525,12 +551,12 @@ static void check_huge(const mcs_stat *s, const double *x, int n) {
         size = fmaxl(size, fabsl((ld)x[i]) * down);
     }
     for (int i = 0; i < n; i++) m2 += ((ld)x[i] * down - mean) * ((ld)x[i] * down - mean);
-    CHECK(s->n == n && fabsl((ld)s->mean * down - mean) <= 10 * u * size, "%g %g %g ...: mean %g, not %Lg 2^600", x[0], x[1], x[2],
-          s->mean, mean);
+    CHECK(s->n == n && fabsl((ld)s->mean * down - mean) <= 10 * u * size, "%g %g %g ...: mean %g, not %Lg 2^600", x[0],
+          x[1], x[2], s->mean, mean);
     const ld off = 30 * u * m2 + 2 * (10 * u * size) * sqrtl(n * m2) + n * (10 * u * size) * (10 * u * size);
     if ((m2 - off) / down < DBL_MAX * down)
-        CHECK(s->m2 >= 0 && fabsl((ld)s->m2 * down * down - m2) <= off + 0x1p-1074L, "%g %g %g ...: m2 %g, not %Lg 2^1200", x[0],
-              x[1], x[2], s->m2, m2);
+        CHECK(s->m2 >= 0 && fabsl((ld)s->m2 * down * down - m2) <= off + 0x1p-1074L,
+              "%g %g %g ...: m2 %g, not %Lg 2^1200", x[0], x[1], x[2], s->m2, m2);
     else CHECK(s->m2 == DBL_MAX, "%g %g %g ...: m2 %g, not DBL_MAX", x[0], x[1], x[2], s->m2);
     CHECK(mcs_stat_variance(s) <= DBL_MAX && mcs_stat_error(s) <= DBL_MAX, "variance %g", mcs_stat_variance(s));
 }
@@ -605,7 +631,8 @@ static void test_stat_values(void) {
         CHECK(same_stat(s, stat_merged(stat_of(0, 10), stat_of(0, 10))), "ten values merged with themselves");
         s = one;
         mcs_stat_add(&s, 5.5);
-        CHECK(s.mean == 4.5 && s.m2 == 2 && mcs_stat_variance(&s) == 2 && fabs(mcs_stat_error(&s) - 1) <= 0x1p-52, "3.5 and 5.5");
+        CHECK(s.mean == 4.5 && s.m2 == 2 && mcs_stat_variance(&s) == 2 && fabs(mcs_stat_error(&s) - 1) <= 0x1p-52,
+              "3.5 and 5.5");
     }
     if (mcst_case("equal values have no variance")) {
         mcs_stat s = {0, 0, 0};
@@ -615,9 +642,9 @@ static void test_stat_values(void) {
     if (mcst_case("values up to DBL_MAX")) test_huge_stat();
 }
 
-/* x^2 over [0,1]: integral 1/3, variance 4/45, kurtosis 15/7. Over R repetitions, (R - 1) var(means) N / (4/45) is chi-square with
- * R - 1 degrees of freedom (means of 64 and more values: their excess kurtosis, -6/7 / 64, moves its deviation by 0.3 %), and the
- * mean of the reported variances is off by sqrt((2/(N-1) - 6/7/N) / R) relative. */
+/* x^2 over [0,1]: integral 1/3, variance 4/45, kurtosis 15/7. Over R repetitions, (R - 1) var(means) N / (4/45) is
+ * chi-square with R - 1 degrees of freedom (means of 64 and more values: their excess kurtosis, -6/7 / 64, moves its
+ * deviation by 0.3 %), and the mean of the reported variances is off by sqrt((2/(N-1) - 6/7/N) / R) relative. */
 static void test_standard_error(void) {
     enum { R = 400 };
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 131);
@@ -641,22 +668,24 @@ static void test_standard_error(void) {
         CHECK(p >= level / 2 && 1 - p >= level / 2, "N = %d: the spread of the means has p = %g", n, p);
         CHECK(off <= z_level, "N = %d: reported variance %g, %g deviations from 4/45", n, reported.mean, off);
         CHECK(fabs(means.mean - 1.0 / 3) <= z_level * sqrt(4.0 / 45 / n / R), "N = %d: mean %g", n, means.mean);
-        /* Four times the samples halve the error. Its mean has a relative deviation of sqrt((2 - 6/7) / N / R) / 2; the mean of a
-         * root lies below the root of the mean by (2 - 6/7) / (8 N), which is known to a tenth of itself. */
+        /* Four times the samples halve the error. Its mean has a relative deviation of sqrt((2 - 6/7) / N / R) / 2; the
+         * mean of a root lies below the root of the mean by (2 - 6/7) / (8 N), which is known to a tenth of itself. */
         const double ratio = errors.mean * sqrt(n) / (1 - (2 - 6.0 / 7) / (8.0 * n)) / sqrt(4.0 / 45);
-        CHECK(fabs(ratio - 1) <= z_level * sqrt((2 - 6.0 / 7) / n / R) / 2 + 0.1 / (8.0 * n), "N = %d: error sqrt(N) / sigma = %g",
-              n, ratio);
+        CHECK(fabs(ratio - 1) <= z_level * sqrt((2 - 6.0 / 7) / n / R) / 2 + 0.1 / (8.0 * n),
+              "N = %d: error sqrt(N) / sigma = %g", n, ratio);
         CHECK(last == 0 || errors.mean < last, "N = %d: the error does not fall", n);
         last = errors.mean;
     }
 }
 
-/* Intervals mean +- 1.96 standard errors of 400 normal values hold the truth as often as |t| of 399 degrees of freedom stays below
- * 1.96: P(|normal| < z) - phi(z) (z^3 + z) / (2 * 399). The count over 2000 repetitions is binomial: tails summed exactly. */
+/* Intervals mean +- 1.96 standard errors of 400 normal values hold the truth as often as |t| of 399 degrees of freedom
+ * stays below 1.96: P(|normal| < z) - phi(z) (z^3 + z) / (2 * 399). The count over 2000 repetitions is binomial: tails
+ * summed exactly. */
 static void test_coverage(void) {
     enum { REPEAT = 2000, N = 400 };
     const double z = 1.96;
-    const double p = erf(z / sqrt(2.0)) - exp(-z * z / 2) / sqrt(2 * 3.14159265358979323846) * (z * z * z + z) / (2.0 * (N - 1));
+    const double p =
+        erf(z / sqrt(2.0)) - exp(-z * z / 2) / sqrt(2 * 3.14159265358979323846) * (z * z * z + z) / (2.0 * (N - 1));
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 137);
     double below = 0;
     double above = 0;
@@ -667,80 +696,82 @@ static void test_coverage(void) {
         held += fabs(s.mean - 5) <= mcs_stat_ci(&s, z);
     }
     for (int i = 0; i <= REPEAT; i++) {
-        const double mass =
-            exp(lgamma(REPEAT + 1.0) - lgamma(i + 1.0) - lgamma(REPEAT - i + 1.0) + i * log(p) + (REPEAT - i) * log1p(-p));
+        const double mass = exp(lgamma(REPEAT + 1.0) - lgamma(i + 1.0) - lgamma(REPEAT - i + 1.0) + i * log(p) +
+                                (REPEAT - i) * log1p(-p));
         if (i <= held) below += mass;
         if (i >= held) above += mass;
     }
-    CHECK(below >= level / 2 && above >= level / 2, "%d of %d intervals hold the mean, expected %g", held, REPEAT, p * REPEAT);
+    CHECK(below >= level / 2 && above >= level / 2, "%d of %d intervals hold the mean, expected %g", held, REPEAT,
+          p * REPEAT);
 }
 
 /* ---- widths ---- */
 
-/* Every lane of a wide form has the bits of the scalar one, in a build without contraction of a*b + c. NaN never appears. */
+/* Every lane of a wide form has the bits of the scalar one, in a build without contraction of a*b + c. NaN never
+ * appears. */
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wpsabi" /* wide functions are inlined: no vector crosses a call */
 #endif
-#define WIDE(W)                                                                                                               \
-    static void wide##W(const float(*in)[16]) {                                                                               \
-        mcs##W##_f v[6], c, b, p, m, d, rp;                                                                                   \
-        mcs##W##_vec3 n, w, h, world, local, mirror;                                                                          \
-        mcs##W##_frame f;                                                                                                     \
-        int i, k;                                                                                                             \
-        for (k = 0; k < 6; k++)                                                                                               \
-            for (i = 0; i < W; i++) v[k][i] = in[k][i];                                                                       \
-        n.x = v[0], n.y = v[1], n.z = v[2], w.x = v[3], w.y = v[4], w.z = v[5];                                               \
-        f = mcs##W##_frame_make(n);                                                                                           \
-        world = mcs##W##_to_world(&f, w);                                                                                     \
-        local = mcs##W##_to_local(&f, w);                                                                                     \
-        mirror = mcs##W##_reflect(n, w);                                                                                      \
-        h = mcs##W##_half(n, w);                                                                                              \
-        c = mcs##W##_cos_d(n, w);                                                                                             \
-        rp = mcs##W##_reflect_pdf(v[0], v[1]);                                                                                \
-        b = mcs##W##_mis_balance(v[0], v[3]);                                                                                 \
-        p = mcs##W##_mis_power(v[0], v[3]);                                                                                   \
-        m = mcs##W##_mix_pdf(v[1], v[0], v[3]);                                                                               \
-        d = mcs##W##_schlick(v[0], v[1]);                                                                                     \
-        for (i = 0; i < W; i++) {                                                                                             \
-            const mcs_vec3 sn = {in[0][i], in[1][i], in[2][i]}, sw = {in[3][i], in[4][i], in[5][i]};                          \
-            const mcs_frame sf = mcs_frame_make(sn);                                                                          \
-            const mcs_vec3 sworld = mcs_to_world(&sf, sw), slocal = mcs_to_local(&sf, sw), sh = mcs_half(sn, sw),             \
-                           sm = mcs_reflect(sn, sw);                                                                          \
-            const float got[] = {f.s.x[i],   f.s.y[i], f.s.z[i],   f.t.x[i],    f.t.y[i],    f.t.z[i],   f.n.x[i],            \
-                                 f.n.y[i],   f.n.z[i], world.x[i], world.y[i],  world.z[i],  local.x[i], local.y[i],          \
-                                 local.z[i], h.x[i],   h.y[i],     h.z[i],      c[i],        rp[i],      b[i],                \
-                                 p[i],       m[i],     d[i],       mirror.x[i], mirror.y[i], mirror.z[i]};                    \
-            const float want[] = {sf.s.x,                                                                                     \
-                                  sf.s.y,                                                                                     \
-                                  sf.s.z,                                                                                     \
-                                  sf.t.x,                                                                                     \
-                                  sf.t.y,                                                                                     \
-                                  sf.t.z,                                                                                     \
-                                  sf.n.x,                                                                                     \
-                                  sf.n.y,                                                                                     \
-                                  sf.n.z,                                                                                     \
-                                  sworld.x,                                                                                   \
-                                  sworld.y,                                                                                   \
-                                  sworld.z,                                                                                   \
-                                  slocal.x,                                                                                   \
-                                  slocal.y,                                                                                   \
-                                  slocal.z,                                                                                   \
-                                  sh.x,                                                                                       \
-                                  sh.y,                                                                                       \
-                                  sh.z,                                                                                       \
-                                  mcs_cos_d(sn, sw),                                                                          \
-                                  mcs_reflect_pdf(in[0][i], in[1][i]),                                                        \
-                                  mcs_mis_balance(in[0][i], in[3][i]),                                                        \
-                                  mcs_mis_power(in[0][i], in[3][i]),                                                          \
-                                  mcs_mix_pdf(in[1][i], in[0][i], in[3][i]),                                                  \
-                                  mcs_schlick(in[0][i], in[1][i]),                                                            \
-                                  sm.x,                                                                                       \
-                                  sm.y,                                                                                       \
-                                  sm.z};                                                                                      \
-            for (k = 0; k < (int)(sizeof got / sizeof *got); k++)                                                             \
-                CHECK(got[k] == want[k], #W " wide, output %d, lane %d: %a, scalar %a; first input %a", k, i, (double)got[k], \
-                      (double)want[k], (double)in[0][i]);                                                                     \
-        }                                                                                                                     \
+#define WIDE(W)                                                                                                      \
+    static void wide##W(const float(*in)[16]) {                                                                      \
+        mcs##W##_f v[6], c, b, p, m, d, rp;                                                                          \
+        mcs##W##_vec3 n, w, h, world, local, mirror;                                                                 \
+        mcs##W##_frame f;                                                                                            \
+        int i, k;                                                                                                    \
+        for (k = 0; k < 6; k++)                                                                                      \
+            for (i = 0; i < W; i++) v[k][i] = in[k][i];                                                              \
+        n.x = v[0], n.y = v[1], n.z = v[2], w.x = v[3], w.y = v[4], w.z = v[5];                                      \
+        f = mcs##W##_frame_make(n);                                                                                  \
+        world = mcs##W##_to_world(&f, w);                                                                            \
+        local = mcs##W##_to_local(&f, w);                                                                            \
+        mirror = mcs##W##_reflect(n, w);                                                                             \
+        h = mcs##W##_half(n, w);                                                                                     \
+        c = mcs##W##_cos_d(n, w);                                                                                    \
+        rp = mcs##W##_reflect_pdf(v[0], v[1]);                                                                       \
+        b = mcs##W##_mis_balance(v[0], v[3]);                                                                        \
+        p = mcs##W##_mis_power(v[0], v[3]);                                                                          \
+        m = mcs##W##_mix_pdf(v[1], v[0], v[3]);                                                                      \
+        d = mcs##W##_schlick(v[0], v[1]);                                                                            \
+        for (i = 0; i < W; i++) {                                                                                    \
+            const mcs_vec3 sn = {in[0][i], in[1][i], in[2][i]}, sw = {in[3][i], in[4][i], in[5][i]};                 \
+            const mcs_frame sf = mcs_frame_make(sn);                                                                 \
+            const mcs_vec3 sworld = mcs_to_world(&sf, sw), slocal = mcs_to_local(&sf, sw), sh = mcs_half(sn, sw),    \
+                           sm = mcs_reflect(sn, sw);                                                                 \
+            const float got[] = {f.s.x[i],   f.s.y[i], f.s.z[i],   f.t.x[i],    f.t.y[i],    f.t.z[i],   f.n.x[i],   \
+                                 f.n.y[i],   f.n.z[i], world.x[i], world.y[i],  world.z[i],  local.x[i], local.y[i], \
+                                 local.z[i], h.x[i],   h.y[i],     h.z[i],      c[i],        rp[i],      b[i],       \
+                                 p[i],       m[i],     d[i],       mirror.x[i], mirror.y[i], mirror.z[i]};           \
+            const float want[] = {sf.s.x,                                                                            \
+                                  sf.s.y,                                                                            \
+                                  sf.s.z,                                                                            \
+                                  sf.t.x,                                                                            \
+                                  sf.t.y,                                                                            \
+                                  sf.t.z,                                                                            \
+                                  sf.n.x,                                                                            \
+                                  sf.n.y,                                                                            \
+                                  sf.n.z,                                                                            \
+                                  sworld.x,                                                                          \
+                                  sworld.y,                                                                          \
+                                  sworld.z,                                                                          \
+                                  slocal.x,                                                                          \
+                                  slocal.y,                                                                          \
+                                  slocal.z,                                                                          \
+                                  sh.x,                                                                              \
+                                  sh.y,                                                                              \
+                                  sh.z,                                                                              \
+                                  mcs_cos_d(sn, sw),                                                                 \
+                                  mcs_reflect_pdf(in[0][i], in[1][i]),                                               \
+                                  mcs_mis_balance(in[0][i], in[3][i]),                                               \
+                                  mcs_mis_power(in[0][i], in[3][i]),                                                 \
+                                  mcs_mix_pdf(in[1][i], in[0][i], in[3][i]),                                         \
+                                  mcs_schlick(in[0][i], in[1][i]),                                                   \
+                                  sm.x,                                                                              \
+                                  sm.y,                                                                              \
+                                  sm.z};                                                                             \
+            for (k = 0; k < (int)(sizeof got / sizeof *got); k++)                                                    \
+                CHECK(got[k] == want[k], #W " wide, output %d, lane %d: %a, scalar %a; first input %a", k, i,        \
+                      (double)got[k], (double)want[k], (double)in[0][i]);                                            \
+        }                                                                                                            \
     }
 
 #ifndef MCS_NO_WIDE
@@ -782,15 +813,15 @@ static void test_widths(void) {
 
 /* ---- Phong's direction ---- */
 
-/* Its lobe is turned by a frame, which keeps lengths only to several roundings. |w|^2 is rounded by 3 eps of itself and the factor
- * that mends w by half of that, its own rounding and that of the product: 3.5 eps. */
+/* Its lobe is turned by a frame, which keeps lengths only to several roundings. |w|^2 is rounded by 3 eps of itself and
+ * the factor that mends w by half of that, its own rounding and that of the product: 3.5 eps. */
 static void check_phong_length(float n, mcs_vec3 wo, float u1, float u2) {
     enum { MANY = 21 }; /* one round of the widest unit, and a rest */
     const mcs_phong m = mcs_phong_make(n);
     const mcs_vec3 wi = mcs_phong_sample(&m, wo, u1, u2).wi;
     double off = fabs(sqrt(dot(wi, wi)) - 1);
-    CHECK(off <= 3.5 * eps, "n %a, wo %a %a %a, u %a %a: length off by %g of 2^-24", (double)n, (double)wo.x, (double)wo.y,
-          (double)wo.z, (double)u1, (double)u2, off / eps);
+    CHECK(off <= 3.5 * eps, "n %a, wo %a %a %a, u %a %a: length off by %g of 2^-24", (double)n, (double)wo.x,
+          (double)wo.y, (double)wo.z, (double)u1, (double)u2, off / eps);
     float a[MANY], b[MANY];
     for (int i = 0; i < MANY; i++) {
         a[i] = u1;

@@ -1,11 +1,17 @@
-/* The commonest mistakes of users, as MCS_ASSERT tells them: directions that are not unit vectors, random numbers outside [0,1).
- * What a careful caller gives, normalised in float and turned by many float frames, must pass. */
+/* The commonest mistakes of users, as MCS_ASSERT tells them: directions that are not unit vectors, random numbers
+ * outside [0,1). What a careful caller gives, normalised in float and turned by many float frames, must pass. */
 #include "asserting.h"
 #include "registry.h"
 
-static const float wrong_length[] = {0, 0.3f, 0.5f, 0.7f, 0.9f, 0.99f, 0.999f, 1.001f, 1.01f, 1.1f, 1.9f, 2.5f, 1e20f, NAN};
+static const float wrong_length[] = {0,      0.3f,  0.5f, 0.7f, 0.9f, 0.99f, 0.999f,
+                                     1.001f, 1.01f, 1.1f, 1.9f, 2.5f, 1e20f, NAN};
 static const float wrong_u[] = {1, -1e-7f, 2, -INFINITY, INFINITY, NAN};
-enum { LENGTHS = sizeof wrong_length / sizeof *wrong_length, US = sizeof wrong_u / sizeof *wrong_u, TURNS = 100, CAREFUL = 2000 };
+enum {
+    LENGTHS = sizeof wrong_length / sizeof *wrong_length,
+    US = sizeof wrong_u / sizeof *wrong_u,
+    TURNS = 100,
+    CAREFUL = 2000
+};
 
 /* A direction above the surface, as a user's program makes it. */
 static mcs_vec3 careful(uint64_t *state) {
@@ -198,7 +204,8 @@ static void check_tables(void) {
     TELLS("mcs_env_window_pdf", mcs_env_window_pdf(window, e, w));
 }
 
-/* A product is sampled with tiles of another size than it was built from. Every tile has light, so that draws end somewhere. */
+/* A product is sampled with tiles of another size than it was built from. Every tile has light, so that draws end
+ * somewhere. */
 static void check_products(void) {
     enum { W = 64, H = 32 };
     const mcs_vec3 unit = {0.48f, 0.6f, 0.64f};

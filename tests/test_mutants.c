@@ -1,12 +1,13 @@
 /* Design check 8: wrong formulas must be caught by name, by the very functions that judge the real rows.
  *
- * A mutant is a row of the registry with one function replaced by a slip: of the lecture, or a classical one. It is caught when a
- * p-value of the chi-square test falls under the suite's level, or when density and lost mass do not add up to 1. The right formula
- * of every row that a mutant was made from must pass the same checks with the same parameters. */
+ * A mutant is a row of the registry with one function replaced by a slip: of the lecture, or a classical one. It is
+ * caught when a p-value of the chi-square test falls under the suite's level, or when density and lost mass do not add
+ * up to 1. The right formula of every row that a mutant was made from must pass the same checks with the same
+ * parameters. */
 #include "mass.h"
 
-/* --- scaffolding -----------------------------------------------------------------------------------------------------------------
- * */
+/* --- scaffolding
+ */
 
 enum { SAMPLES = 1000000 }; /* not scaled: the power of the checks is what is tested */
 
@@ -50,8 +51,8 @@ typedef struct {
     void (*pdf)(const float *p, const float *x, float *out);                      /* NULL: the row's own */
 } mutant;
 
-/* --- samplers gone wrong ---------------------------------------------------------------------------------------------------------
- * */
+/* --- samplers gone wrong
+ */
 
 static void put(float *out, float x, float y, float z, float pdf) {
     out[0] = x;
@@ -167,7 +168,9 @@ static void changed_parameters(const char *row, const float *p, float a, float b
     mcst_find(row)->fn[0].pdf(q, x, out);
 }
 
-static void ggx_swapped_axes(const float *p, const float *h, float *out) { changed_parameters("ggx_h", p, p[1], p[0], h, out); }
+static void ggx_swapped_axes(const float *p, const float *h, float *out) {
+    changed_parameters("ggx_h", p, p[1], p[0], h, out);
+}
 
 static void ggx_alpha_off(const float *p, const float *h, float *out) {
     changed_parameters("ggx_h", p, 1.01f * p[0], 1.01f * p[1], h, out);
@@ -213,12 +216,14 @@ static void phong_with_brdf_norm(const float *p, const float *w, float *out) { /
     *out *= (p[0] + 2) / (p[0] + 1);
 }
 
-/* Beckmann visible normals, G1 D max(0, wo.h) / wo.z, with G1 = 1/(1 + Lambda): the rational fit that renderers use for Lambda
- * (Walter et al. 2007) is up to 0.3 % off, so that density does not integrate to 1. There is no such row: only the mass is looked
- * at. */
+/* Beckmann visible normals, G1 D max(0, wo.h) / wo.z, with G1 = 1/(1 + Lambda): the rational fit that renderers use for
+ * Lambda (Walter et al. 2007) is up to 0.3 % off, so that density does not integrate to 1. There is no such row: only
+ * the mass is looked at. */
 static double lambda_exact(double a) { return 0.5 * (erf(a) - 1) + exp(-a * a) / (2 * a * sqrt(acos(-1.0))); }
 
-static double lambda_rational(double a) { return a < 1.6 ? (1 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a) : 0; }
+static double lambda_rational(double a) {
+    return a < 1.6 ? (1 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a) : 0;
+}
 
 static void beckmann_visible(const float *p, const float *h, double (*lambda)(double), float *out) {
     const double wx = (double)p[3] * (double)p[0];
@@ -227,15 +232,18 @@ static void beckmann_visible(const float *p, const float *h, double (*lambda)(do
     const double cosine = (double)p[3] * (double)h[0] + (double)p[4] * (double)h[1] + wz * (double)h[2];
     float pdf_h;
     mcst_find("beckmann_h")->fn[0].pdf(p, h, &pdf_h);
-    *out = cosine > 0 ? (float)((double)pdf_h / (double)h[2] * cosine / wz / (1 + lambda(wz / sqrt(wx * wx + wy * wy)))) : 0;
+    *out = cosine > 0 ? (float)((double)pdf_h / (double)h[2] * cosine / wz / (1 + lambda(wz / sqrt(wx * wx + wy * wy))))
+                      : 0;
 }
 
 static void beckmann_exact(const float *p, const float *h, float *out) { beckmann_visible(p, h, lambda_exact, out); }
 
-static void beckmann_rational(const float *p, const float *h, float *out) { beckmann_visible(p, h, lambda_rational, out); }
+static void beckmann_rational(const float *p, const float *h, float *out) {
+    beckmann_visible(p, h, lambda_rational, out);
+}
 
 /* --- the list
- * ------------------------------------------------------------------------------------------------------------------------- */
+ */
 
 static const mutant mutants[] = {
     /* slips of the lecture */
@@ -285,8 +293,9 @@ static void check_mutant(const mutant *t, double level) {
     if (t->pdf) row.fn[0].pdf = t->pdf;
     const verdict v = judge(&row, p, mcst_seed_for(t->name, "mutant", 0));
     CHECK(is_caught(&v, level), "survived: p = %g, mass %.3g tolerances off", v.p, v.gap);
-    mcst_note("  %-50s %s%s%s p = %.3g, mass %.3g tolerances off\n", t->name, is_caught(&v, level) ? "caught by" : "SURVIVED",
-              !(v.p >= level) ? " chi-square" : "", !(v.gap <= 1) ? " mass" : "", v.p, v.gap);
+    mcst_note("  %-50s %s%s%s p = %.3g, mass %.3g tolerances off\n", t->name,
+              is_caught(&v, level) ? "caught by" : "SURVIVED", !(v.p >= level) ? " chi-square" : "",
+              !(v.gap <= 1) ? " mass" : "", v.p, v.gap);
 }
 /* The formula that the mutant is a slip of passes where the mutant does not. */
 static void check_control(const mutant *t, double level) {
@@ -319,11 +328,13 @@ int main(int argc, char **argv) {
     if (mcst_case("Beckmann visible normals with a rational Lambda")) {
         const mcst_mass m = mass_with(beckmann_rational);
         CHECK(!(fabs(m.integral - 1) <= m.tolerance), "survived: mass %.8f", m.integral);
-        mcst_note("  %-50s %s mass %.6f\n", mcst.name, fabs(m.integral - 1) <= m.tolerance ? "SURVIVED" : "caught by", m.integral);
+        mcst_note("  %-50s %s mass %.6f\n", mcst.name, fabs(m.integral - 1) <= m.tolerance ? "SURVIVED" : "caught by",
+                  m.integral);
     }
     if (mcst_case("u = bits * 2^-32")) {
         CHECK(leaves_unit_interval(u_by_rounding), "survived");
-        mcst_note("  %-50s %s\n", mcst.name, leaves_unit_interval(u_by_rounding) ? "caught by range: gives 1" : "SURVIVED");
+        mcst_note("  %-50s %s\n", mcst.name,
+                  leaves_unit_interval(u_by_rounding) ? "caught by range: gives 1" : "SURVIVED");
     }
     mcst_group("controls");
     for (size_t i = 0; i < MCST_COUNT(mutants); i++)

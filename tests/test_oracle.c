@@ -1,7 +1,9 @@
-/* Design checks 3 to 6 for every row of the registry: mass, accuracy against the long double truth, bad input, round trips.
+/* Design checks 3 to 6 for every row of the registry: mass, accuracy against the long double truth, bad input, round
+ * trips.
  *
- * MCS_TEST_VERBOSE=1 prints the worst error of each row, the figures that the header documents. Errors are in units of their
- * tolerance, so that 1 is the limit; the tolerances stand at the top of each check. EPS = 2^-24 is half an ulp of 1. */
+ * MCS_TEST_VERBOSE=1 prints the worst error of each row, the figures that the header documents. Errors are in units of
+ * their tolerance, so that 1 is the limit; the tolerances stand at the top of each check. EPS = 2^-24 is half an ulp of
+ * 1. */
 #include "asserting.h"
 #include "claims.h"
 #include "mass.h"
@@ -12,7 +14,8 @@
 
 #define EPS 0x1p-24
 
-/* --- the points u ----------------------------------------------------------------------------------------------------------- */
+/* --- the points u
+ * ----------------------------------------------------------------------------------------------------------- */
 
 /* 902: where the logarithm of a cosine near its power 1 rounds worst */
 static const float corners[] = {0,    0x1p-149f, 0x1p-24f,     0x1p-12f,           0.25f,       0.49999997f,
@@ -39,7 +42,8 @@ static int make_u(const mcst_row *row, uint64_t seed, float u[MAX_U][2]) {
     return n;
 }
 
-/* --- check 3: mass ----------------------------------------------------------------------------------------------------------- */
+/* --- check 3: mass
+ * ----------------------------------------------------------------------------------------------------------- */
 
 static void check_mass(const mcst_row *row, const float *p) {
     const mcst_mass m = mcst_mass_of(row, p);
@@ -47,8 +51,9 @@ static void check_mass(const mcst_row *row, const float *p) {
           m.integral - m.lit, m.tolerance);
 }
 
-/* --- check 4: accuracy ---------------------------------------------------------------------------------------------------------
- * */
+/* --- check 4: accuracy
+ * ---------------------------------------------------------------------------------------------------------
+ */
 
 enum { PDF_U, PDF_X, PDF_FAR, WHERE, WIDTH, UNIT, WEIGHT, WEIGHT_X, EVAL, CLOSURE, INVERT, ROUND_TRIP, ERRORS };
 static const char *const error_name[ERRORS] = {"pdf(u)", "pdf(x)",    "far",  "where",   "width",  "unit",
@@ -62,8 +67,8 @@ static int within(int what, double err, double tol) {
     return err <= tol;
 }
 
-/* Is got within a relative tolerance of want? Densities beyond FLT_MAX saturate. A density is the peak times a float in [0,1];
- * where that float is subnormal its digits are gone, and all that is asked is that the density is small, too. */
+/* Is got within a relative tolerance of want? Densities beyond FLT_MAX saturate. A density is the peak times a float in
+ * [0,1]; where that float is subnormal its digits are gone, and all that is asked is that the density is small, too. */
 static int near(int what, float got, ld want, double rel, ld peak) {
     const ld top = (ld)FLT_MAX;
     const ld w = want > top ? top : want;
@@ -75,8 +80,9 @@ static double pdf_tol(ld pdf, ld peak) {
     return 1e-6 * (1 + (pdf > 0 && peak > 0 ? fabs((double)logl(pdf / peak)) : 0));
 }
 
-/* The same for a given direction. A Gaussian half-vector has factors beside e^-e: the peak of the product is not where e is 0, and
- * the rounding is that of e itself, which has 12 EPS: twice the 5 of a slope over its alpha, and two more. */
+/* The same for a given direction. A Gaussian half-vector has factors beside e^-e: the peak of the product is not where
+ * e is 0, and the rounding is that of e itself, which has 12 EPS: twice the 5 of a slope over its alpha, and two more.
+ */
 static double direction_tol(const mcst_row *row, const float *p, const float *x, ld pdf, ld peak) {
     const o_vec3 v = o_v3(x[0], x[1], x[2]);
     const o_vec3 h = row->shape == MCST_IS_BRDF ? o_add(mcst_o3(p + 3), v) : v;
@@ -84,7 +90,8 @@ static double direction_tol(const mcst_row *row, const float *p, const float *x,
                                                : pdf_tol(pdf, peak);
 }
 
-/* Distances on a line are judged by the larger of |x| and this: where x is a difference, the rounding is that of its terms. */
+/* Distances on a line are judged by the larger of |x| and this: where x is a difference, the rounding is that of its
+ * terms. */
 static double line_scale(const mcst_row *row, const float *p) {
     if (row->coord == MCST_TENT) return (double)p[0];
     if (row->coord == MCST_WHOLELINE) return fabs((double)p[0]) + (double)p[1];
@@ -108,11 +115,12 @@ static double stretched_length(const float *p, o_vec3 h) {
     return (double)sqrtl(x * x + y * y + h.z * h.z);
 }
 
-/* How much the map to visible normals magnifies a rounding: h is (ax n.x, ay n.y, n.z) made unit and n is known to EPS |n|, so the
- * wider alpha times |n| against the length of that vector. */
+/* How much the map to visible normals magnifies a rounding: h is (ax n.x, ay n.y, n.z) made unit and n is known to EPS
+ * |n|, so the wider alpha times |n| against the length of that vector. */
 static double magnification(const float *p, const mcst_row *row, const ld *x) {
     const o_vec3 v = o_vec(x[0], x[1], x[2]);
-    return fmax((double)p[0], (double)p[1]) * stretched_length(p, row->shape == MCST_IS_BRDF ? o_half(mcst_o3(p + 3), v) : v);
+    return fmax((double)p[0], (double)p[1]) *
+           stretched_length(p, row->shape == MCST_IS_BRDF ? o_half(mcst_o3(p + 3), v) : v);
 }
 
 static void describe(const mcst_row *row, const float *p) {
@@ -121,8 +129,8 @@ static void describe(const mcst_row *row, const float *p) {
     else mcst_case("%g %g", (double)p[0], (double)p[1]);
 }
 
-/* A point of the grid: parameters, numbers, where they lead and how much the exact map magnifies rounding; all errors are in units
- * of their tolerances. */
+/* A point of the grid: parameters, numbers, where they lead and how much the exact map magnifies rounding; all errors
+ * are in units of their tolerances. */
 typedef struct {
     const mcst_row *row;
     const float *p, *u;
@@ -132,9 +140,9 @@ typedef struct {
     float x[3], out[5];
 } grid_point;
 
-/* Where: 4 ulp, that is 8 EPS; the normal distribution's quantile has 5, and two more operations. For a direction about +z or a
- * half-vector the unit is 1, and a direction without a lobe has 2^-23; the reflection 2 (h.wo) h - wo magnifies an error of h
- * (3 EPS) by 4 and adds 3 roundings. */
+/* Where: 4 ulp, that is 8 EPS; the normal distribution's quantile has 5, and two more operations. For a direction about
+ * +z or a half-vector the unit is 1, and a direction without a lobe has 2^-23; the reflection 2 (h.wo) h - wo magnifies
+ * an error of h (3 EPS) by 4 and adds 3 roundings. */
 static void check_where(const grid_point *g) {
     const mcst_row *row = g->row;
     const float *u = g->u;
@@ -157,8 +165,8 @@ static void check_where(const grid_point *g) {
           "u %a %a: (%.9g %.9g %.9g), exact (%.9Lg %.9Lg %.9Lg)", (double)u[0], (double)u[1], (double)x[0],
           (double)x[1], (double)x[2], exact[0], exact[1], exact[2]);
 }
-/* The same relative to the lobe's own width: slopes in units of alpha, off by a fraction of themselves or, of visible normals,
- * which are sums c + i, of the whole vector; the least radius is about the root of the least subnormal. */
+/* The same relative to the lobe's own width: slopes in units of alpha, off by a fraction of themselves or, of visible
+ * normals, which are sums c + i, of the whole vector; the least radius is about the root of the least subnormal. */
 static void check_width(const grid_point *g) {
     const mcst_row *row = g->row;
     const float *u = g->u;
@@ -376,7 +384,8 @@ static int finite5(const float *out) {
            out[3] >= 0 && out[4] >= 0;
 }
 
-/* One call of everything with p, u, x: all results finite, densities, weights and values not negative, inverses in [0,1). */
+/* One call of everything with p, u, x: all results finite, densities, weights and values not negative, inverses in
+ * [0,1). */
 static void call_all(const mcst_row *row, const float *p, const float *u, const float *x, float out[5]) {
     float v[2] = {0, 0};
     memset(out, 0, 5 * sizeof *out);

@@ -1,5 +1,6 @@
-/* The point sets: net properties counted, uniform marginals and independent randomisations by chi-square, permutations, array and
- * wide forms against scalar ones, and what all of it is for: the rate at which the error of a smooth integral falls. */
+/* The point sets: net properties counted, uniform marginals and independent randomisations by chi-square, permutations,
+ * array and wide forms against scalar ones, and what all of it is for: the rate at which the error of a smooth integral
+ * falls. */
 #include "mcs_test.h"
 #define MCS_PACKETS 16
 #include "mcsample.h"
@@ -8,8 +9,8 @@
 
 enum { LOG_N = 12, N = 1 << LOG_N, SEEDS = 16 };
 
-/* (t, m, 2)-net in base 2: every elementary interval of area 2^(t - LOG_N) of dimensions a and b holds 2^t of the N points from
- * `first` on. Counts the shapes (k bits of a, LOG_N - t - k of b) of which one does not. */
+/* (t, m, 2)-net in base 2: every elementary interval of area 2^(t - LOG_N) of dimensions a and b holds 2^t of the N
+ * points from `first` on. Counts the shapes (k bits of a, LOG_N - t - k of b) of which one does not. */
 static int broken_shapes(uint32_t first, uint32_t a, uint32_t b, int t, uint32_t seed) {
     static int hit[N];
     const int bits = LOG_N - t;
@@ -28,9 +29,10 @@ static int broken_shapes(uint32_t first, uint32_t a, uint32_t b, int t, uint32_t
     return broken;
 }
 
-/* Owen's scrambling flips a bit by those above it: two numbers, scrambled, differ first where they did before. Sobol's numbers of
- * two indices differ by the sum of the columns of the bits in which the indices differ. Columns by the recurrence of the primitive
- * polynomial: degree s, inner coefficients a and first numbers m of new-joe-kuo-6 (Joe and Kuo 2008). */
+/* Owen's scrambling flips a bit by those above it: two numbers, scrambled, differ first where they did before. Sobol's
+ * numbers of two indices differ by the sum of the columns of the bits in which the indices differ. Columns by the
+ * recurrence of the primitive polynomial: degree s, inner coefficients a and first numbers m of new-joe-kuo-6 (Joe and
+ * Kuo 2008). */
 static void columns(void) {
     static const struct { uint32_t s, a, m[3]; } poly[3] = {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}};
     if (!mcst_case("dimensions 0 to 3 are Sobol's: every column")) return;
@@ -51,7 +53,8 @@ static void columns(void) {
             column[k] = m << (31 - k);
         }
         uint32_t bad = 0;
-        for (uint32_t lead = 0; lead < 32; lead++) /* sums of columns that cancel above bit `lead` show every bit of theirs */
+        for (uint32_t lead = 0; lead < 32;
+             lead++) /* sums of columns that cancel above bit `lead` show every bit of theirs */
             for (uint32_t draw = 0; draw < 128; draw++) {
                 const uint32_t i = mcs_hash(draw, 100 + lead);
                 const uint32_t sum = (mcs_hash(draw, 200 + lead) | 1u << 31) >> lead;
@@ -84,8 +87,8 @@ static void nets(void) {
                 for (uint32_t i = 0; i < N; i++) one &= !hit[mcs_sobol_bits(3u * N + i, d, seed) >> (32 - LOG_N)]++;
                 CHECK(one, "seed %u, dimension %u", seed, d);
             }
-    /* t of a projection is the sum of degree - 1 over the primitive polynomials of its dimensions (Niederreiter 1987); dimension 0
-     * adds nothing, 1 to 3 have degrees 1, 2, 3. */
+    /* t of a projection is the sum of degree - 1 over the primitive polynomials of its dimensions (Niederreiter 1987);
+     * dimension 0 adds nothing, 1 to 3 have degrees 1, 2, 3. */
     if (mcst_case("dimensions 0 to 3 are Sobol's: t of every pair"))
         for (uint32_t seed = 0; seed < SEEDS; seed++)
             for (uint32_t d = 0; d < 2; d++) {
@@ -112,11 +115,13 @@ static void randomisation(void) {
             uniform(count, BINS, DRAWS, "a point of Sobol");
         }
         memset(count, 0, sizeof count);
-        for (uint32_t s = 0; s < DRAWS; s++) count[(mcs_sobol_bits(77, 0, s) >> 27) * 32 + (mcs_sobol_bits(77, 1, s) >> 27)]++;
+        for (uint32_t s = 0; s < DRAWS; s++)
+            count[(mcs_sobol_bits(77, 0, s) >> 27) * 32 + (mcs_sobol_bits(77, 1, s) >> 27)]++;
         uniform(count, BINS, DRAWS, "two dimensions of a point");
         /* two points of one sequence: in different halves by the net, else uniform */
         memset(count, 0, sizeof count);
-        for (uint32_t s = 0; s < DRAWS; s++) count[(mcs_sobol_bits(0, 0, s) >> 27) * 32 + ((mcs_sobol_bits(1, 0, s) << 1) >> 27)]++;
+        for (uint32_t s = 0; s < DRAWS; s++)
+            count[(mcs_sobol_bits(0, 0, s) >> 27) * 32 + ((mcs_sobol_bits(1, 0, s) << 1) >> 27)]++;
         uniform(count, BINS, DRAWS, "the second point behind its first bit");
         memset(count, 0, sizeof count);
         for (uint32_t s = 0; s < DRAWS; s++) {
@@ -133,8 +138,9 @@ static void randomisation(void) {
         for (uint32_t i = 0; i < DRAWS; i++) count[(mcs_hash(i, 0) & 31) * 32 + (mcs_hash(i, 1) & 31)]++;
         uniform(count, BINS, DRAWS, "hashes of neighbouring keys");
     }
-    /* Indices that differ in bit 3 alone: shuffled, bit 0, 1, 2 or 3 is the lowest in which they differ, with probabilities of 1/2,
-     * 1/4, 1/8, 1/8, and as far from the top the scrambled numbers of a group's first dimension differ first. */
+    /* Indices that differ in bit 3 alone: shuffled, bit 0, 1, 2 or 3 is the lowest in which they differ, with
+     * probabilities of 1/2, 1/4, 1/8, 1/8, and as far from the top the scrambled numbers of a group's first dimension
+     * differ first. */
     if (mcst_case("groups: shuffled by the seed, and each by itself")) {
         double seen[16] = {0};
         double expected[16];
@@ -191,7 +197,8 @@ static void slabs_are_uniform(void) {
     uniform(count, SLABS * SLABS, DRAWS, "the slab");
 }
 
-/* each point in each slab, each pair of points in each pair of slabs; points 0 and 8 of 16 differ in the bit that moves last */
+/* each point in each slab, each pair of points in each pair of slabs; points 0 and 8 of 16 differ in the bit that moves
+ * last */
 static void permutation_is_random(void) {
     enum { LARGEST = 16, LEFT = LARGEST - 1, DRAWS = 1 << 18 };
     static double slab[LARGEST], pair[LARGEST * LEFT];
@@ -244,18 +251,20 @@ static void counts_out_of_range(void) {
 static void strata(void) {
     const uint32_t sizes[][2] = {{1, 1}, {2, 3}, {16, 16}, {7, 100}, {1, 4099}, {1000, 1000}, {1u << 20, 1}};
     for (uint32_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
-        if (mcst_case("one point to a cell, %u x %u", sizes[k][0], sizes[k][1])) one_to_a_cell(sizes[k][0], sizes[k][1]);
+        if (mcst_case("one point to a cell, %u x %u", sizes[k][0], sizes[k][1]))
+            one_to_a_cell(sizes[k][0], sizes[k][1]);
     if (mcst_case("Latin hypercube: one point to a slab in each dimension")) one_to_a_slab();
-    if (mcst_case("Latin hypercube: the slab of a point is uniform over seeds, and pairs of dimensions are independent"))
+    if (mcst_case(
+            "Latin hypercube: the slab of a point is uniform over seeds, and pairs of dimensions are independent"))
         slabs_are_uniform();
     if (mcst_case("Latin hypercube: the permutation is random over seeds")) permutation_is_random();
     if (mcst_case("the place within a cell is uniform, and independent in x and y")) place_is_uniform();
     if (mcst_case("counts out of range")) counts_out_of_range();
 }
 
-/* Coverage of R2 in one dimension. Gaps of N points of i alpha mod 1 are at most |q_(k-1) alpha| < 1/q_k for q_k <= N < q_(k+1),
- * the denominators of the convergents of alpha (three-gap theorem, Sos 1958); q_(k+1) <= (a_(k+1) + 1) q_k, so gap N <= a + 1 with
- * the largest partial quotient a up to there; one more for the rounding of points to 2^-24. */
+/* Coverage of R2 in one dimension. Gaps of N points of i alpha mod 1 are at most |q_(k-1) alpha| < 1/q_k for q_k <= N <
+ * q_(k+1), the denominators of the convergents of alpha (three-gap theorem, Sos 1958); q_(k+1) <= (a_(k+1) + 1) q_k, so
+ * gap N <= a + 1 with the largest partial quotient a up to there; one more for the rounding of points to 2^-24. */
 static double gap_bound(double alpha, double n) {
     double a = 0;
     double q0 = 0;
@@ -288,8 +297,8 @@ static void r2_gaps(void) {
             qsort(v[d], n, sizeof v[d][0], by_value);
             float gap = v[d][0] + 1 - v[d][n - 1];
             for (uint32_t i = 1; i < n; i++) gap = v[d][i] - v[d][i - 1] > gap ? v[d][i] - v[d][i - 1] : gap;
-            CHECK((double)gap * n <= gap_bound(d ? 0.56984029099805327 : 0.75487766624669276, n), "%u points, dimension %u: gap %g",
-                  n, d, (double)gap);
+            CHECK((double)gap * n <= gap_bound(d ? 0.56984029099805327 : 0.75487766624669276, n),
+                  "%u points, dimension %u: gap %g", n, d, (double)gap);
         }
     }
 }
@@ -329,11 +338,11 @@ static void forms(void) {
 #endif
 }
 
-/* rms error over seeds of the mean of a smooth function of two dimensions, from 2^6 to 2^14 points: the slope of its logarithm.
- * Owen 1997: N^-1.5 up to logarithms for scrambled nets; independent points have -0.5. With 64 seeds the logarithm (base 4) of an
- * rms has a standard deviation of 1/sqrt(2*64)/ln 4 = 0.064, the fitted slope over 5 points one of 0.064 sqrt(12/(5*24)) = 0.02:
- * the bound of -1.3 leaves five of them to the -1.4 of the logarithms. Latin hypercubes remove what is a sum of one-dimensional
- * terms (Stein 1987). */
+/* rms error over seeds of the mean of a smooth function of two dimensions, from 2^6 to 2^14 points: the slope of its
+ * logarithm. Owen 1997: N^-1.5 up to logarithms for scrambled nets; independent points have -0.5. With 64 seeds the
+ * logarithm (base 4) of an rms has a standard deviation of 1/sqrt(2*64)/ln 4 = 0.064, the fitted slope over 5 points
+ * one of 0.064 sqrt(12/(5*24)) = 0.02: the bound of -1.3 leaves five of them to the -1.4 of the logarithms. Latin
+ * hypercubes remove what is a sum of one-dimensional terms (Stein 1987). */
 static double smooth(double x, double y) { return x * x * y + (x - 0.3) * y * y * y; }
 static const double smooth_mean = 1.0 / 6 + 0.2 / 4;
 static double slope(mcs_vec2 (*point)(uint32_t i, uint32_t n, uint32_t seed), double *last) {
@@ -414,13 +423,15 @@ static void rates(void) {
     CHECK(fabs(s + 1) <= 0.1, "stratified: N^%.2f", s);
     double r2;
     s = slope(by_r2, &r2);
-    CHECK(s <= -0.54, "R2: N^%.2f", s); /* N^-1, but for a factor up to a + 1 = 13 between good and bad N: 1 - ln 13 / ln 2^8 */
+    CHECK(s <= -0.54, "R2: N^%.2f",
+          s); /* N^-1, but for a factor up to a + 1 = 13 between good and bad N: 1 - ln 13 / ln 2^8 */
     double independent;
     s = slope(by_philox, &independent);
     CHECK(fabs(s + 0.5) <= 0.1, "independent: N^%.2f", s);
     double latin;
     s = slope(by_latin, &latin);
-    CHECK(fabs(s + 0.5) <= 0.1 && latin < 0.6 * independent, "Latin hypercube: N^%.2f, error %g of %g", s, latin, independent);
+    CHECK(fabs(s + 0.5) <= 0.1 && latin < 0.6 * independent, "Latin hypercube: N^%.2f, error %g of %g", s, latin,
+          independent);
 }
 
 int main(int argc, char **argv) {

@@ -1,7 +1,7 @@
-/* Product of environment, reflection and cosine: means against the integral of the picture itself, for surfaces, for weights of the
- * caller and for mutants, and how fast well-spread points come near. MCS_TEST_SCALE scales the number of samples, from 10 on there
- * are 1e7 for every mean. The parts about edges and about variance lie in headers of their own: one program takes less time to
- * compile than three. */
+/* Product of environment, reflection and cosine: means against the integral of the picture itself, for surfaces, for
+ * weights of the caller and for mutants, and how fast well-spread points come near. MCS_TEST_SCALE scales the number of
+ * samples, from 10 on there are 1e7 for every mean. The parts about edges and about variance lie in headers of their
+ * own: one program takes less time to compile than three. */
 #include "product_edges.h"
 #include "product_variance.h"
 
@@ -78,28 +78,31 @@ static void test_mean(void) {
     mcst_group("product, means");
     for (int i = 0; i < CASES; i++)
         for (int form = 0; form < 2; form++) {
-            if (!mcst_case("%s, %s, %s", form ? "prepared" : "one-shot", cases[i].name, lobes[cases[i].lobe].name)) continue;
+            if (!mcst_case("%s, %s, %s", form ? "prepared" : "one-shot", cases[i].name, lobes[cases[i].lobe].name))
+                continue;
             scene m = scene_make(cases[i].name, cases[i].w, cases[i].h, cases[i].value, cases[i].rows);
-            const surface s = surface_make(normals[cases[i].normal], local_wo(cases[i].cosine, 0.11 * i), lobes[cases[i].lobe]);
+            const surface s =
+                surface_make(normals[cases[i].normal], local_wo(cases[i].cosine, 0.11 * i), lobes[cases[i].lobe]);
             sampler d = sampler_make(&m, &s, form);
             const double truth = true_light(&m, &s);
             const estimate e = estimate_of(&d, count, 80 + (uint64_t)i);
-            /* Four standard errors: 6e-5 for one, 1.2e-3 for all; 1e-6 for the quadrature and the densities as floats. */
-            CHECK(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth, "mean %.7g with error %.2g, not %.7g", e.mean, e.error,
-                  truth);
+            /* Four standard errors: 6e-5 for one, 1.2e-3 for all; 1e-6 for the quadrature and the densities as floats.
+             */
+            CHECK(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth, "mean %.7g with error %.2g, not %.7g", e.mean,
+                  e.error, truth);
             CHECK(lobes[cases[i].lobe].ax >= 0.03f || d.share > 0, "no share for the lobe");
-            mcst_note("    %-28s mean %.7g, off by %5.2f standard errors of %.1e\n", mcst.name, e.mean, (e.mean - truth) / e.error,
-                      e.error / truth);
+            mcst_note("    %-28s mean %.7g, off by %5.2f standard errors of %.1e\n", mcst.name, e.mean,
+                      (e.mean - truth) / e.error, e.error / truth);
             sampler_free(&d);
             scene_free(&m);
         }
 }
 
-/* Patches of tiles weigh by the spread of their texels too. A constant map of fewer texels than tiles reflects as much as it
- * shines; a bright texel, as large as a tile or larger, whose middle is below the horizon costs the one-shot form at most twice
- * the variance of the prepared one, as two levels of weights are less exact than one. Without that spread: 0.67 of the light, 11
- * times. Beside texels that are smaller than a tile the levels differ more, by 2.1 to 2.3 with that spread or without; at most
- * 4. */
+/* Patches of tiles weigh by the spread of their texels too. A constant map of fewer texels than tiles reflects as much
+ * as it shines; a bright texel, as large as a tile or larger, whose middle is below the horizon costs the one-shot form
+ * at most twice the variance of the prepared one, as two levels of weights are less exact than one. Without that
+ * spread: 0.67 of the light, 11 times. Beside texels that are smaller than a tile the levels differ more, by 2.1 to 2.3
+ * with that spread or without; at most 4. */
 static void test_blocks(void) {
     static const struct { uint32_t w, h; } sizes[] = {{1, 1}, {3, 1}, {2, 3}, {5, 2}, {16, 8}};
     mcst_group("product, blocks");
@@ -135,8 +138,8 @@ static void test_blocks(void) {
             variance[k] = e.error * e.error / (e.mean * e.mean) * (1 << 17);
             sampler_free(&d);
         }
-        CHECK(variance[0] <= (i <= 32 ? 2 : 4) * variance[1], "variance of one sample %g one-shot, %g prepared", variance[0],
-              variance[1]);
+        CHECK(variance[0] <= (i <= 32 ? 2 : 4) * variance[1], "variance of one sample %g one-shot, %g prepared",
+              variance[0], variance[1]);
         scene_free(&m);
     }
 }
@@ -214,16 +217,18 @@ static void check_model(int k) {
         const float u2 = mcs_pcg32_float(&rng);
         const mcs_texel t = mcs_product_sample(d.p, tiles_of(d.m), env_of(d.m), u1, u2);
         double v = 0;
-        if (t.pdf > 0) v = m.light[t.row * m.w + t.col] * model(k, s.r.wo, mcs_to_local(&s.r.frame, t.w)) / (double)t.pdf;
+        if (t.pdf > 0)
+            v = m.light[t.row * m.w + t.col] * model(k, s.r.wo, mcs_to_local(&s.r.frame, t.w)) / (double)t.pdf;
         sum += v;
         sum2 += v * v;
         if (i % 64 == 0)
-            CHECK(t.pdf > 0 && agrees(&d, t), "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2, density(&d, t.w),
-                  (double)t.pdf);
+            CHECK(t.pdf > 0 && agrees(&d, t), "u = %a, %a: pdf %g, returned %g", (double)u1, (double)u2,
+                  density(&d, t.w), (double)t.pdf);
     }
     const double error = sqrt(fmax(sum2 - sum * sum / count, 0) / count / (count - 1.0));
     /* midpoints 1/16 of a texel apart, 0.006, in lobes wider than 0.1: (0.006/0.1)^2 / 24 */
-    CHECK(fabs(sum / count - truth) <= 4 * error + 1.5e-4 * truth, "mean %g with error %g, not %g", sum / count, error, truth);
+    CHECK(fabs(sum / count - truth) <= 4 * error + 1.5e-4 * truth, "mean %g with error %g, not %g", sum / count, error,
+          truth);
     free(weight);
     sampler_free(&d);
     scene_free(&m);
@@ -261,7 +266,8 @@ static void check_bad_weights(const scene *m, const surface *s, int kind) {
         for (uint32_t c = 0; c < 64; c++) {
             const double p = density(&d, point(64, 32, c, r, 0.5, 0.5));
             const double want = weight[tile_at(m, c, r)];
-            CHECK(p >= 0 && p <= FLT_MAX && (p > 0) == (want > 0), "texel (%u, %u): density %g of weight %g", c, r, p, want);
+            CHECK(p >= 0 && p <= FLT_MAX && (p > 0) == (want > 0), "texel (%u, %u): density %g of weight %g", c, r, p,
+                  want);
         }
     sampler_free(&d);
 }
@@ -275,7 +281,8 @@ static void test_weights(void) {
     const surface s = surface_make(normals[4], local_wo(0.5, 0), lobes[0]);
     if (mcst_case("weights far from 1")) {
         scene m = scene_make("sun", 64, 32, v_sun, 16);
-        for (int k = 0; k < 3 * (int)(sizeof sizes / sizeof *sizes); k++) check_far_weights(&m, &s, sizes[k / 3], k % 3);
+        for (int k = 0; k < 3 * (int)(sizeof sizes / sizeof *sizes); k++)
+            check_far_weights(&m, &s, sizes[k / 3], k % 3);
         scene_free(&m);
     }
     if (mcst_case("bad weights")) {
@@ -287,7 +294,8 @@ static void test_weights(void) {
 
 /* What drops a part of the support must be seen: by the support test, and as bias. */
 static void test_mutants(void) {
-    static const char *const names[] = {"tile weight by the mean direction alone", "a low tile dropped", "a bright tile dropped"};
+    static const char *const names[] = {"tile weight by the mean direction alone", "a low tile dropped",
+                                        "a bright tile dropped"};
     const double f = scale();
     const int count = (int)(f >= 10 ? 1e7 : f < 1 ? 2e6 * f : 2e6);
     mcst_group("product, mutants");
@@ -316,8 +324,8 @@ static void test_mutants(void) {
         if (k) {
             CHECK(unsupported(&d, 4, &c, &r) == 0, "the whole one fails");
             e = estimate_of(&d, count, 90);
-            CHECK(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth, "the whole one: mean %g with error %g, not %g", e.mean,
-                  e.error, truth);
+            CHECK(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth, "the whole one: mean %g with error %g, not %g",
+                  e.mean, e.error, truth);
             sampler_free(&d);
             weight[drop] = 0;
             d = sampler_weights(&m, &s, weight);
@@ -325,11 +333,13 @@ static void test_mutants(void) {
         const int bad = unsupported(&d, 4, &c, &r);
         CHECK(bad > 0, "not seen by the support");
         e = estimate_of(&d, count, 91);
-        /* At least 0.2 % of the integral is missed and more of the rim; the error is about a third of the mean over sqrt(n),
-         * 0.023 % here: 8 of it. The fewer samples of a small MCS_TEST_SCALE cannot tell. */
+        /* At least 0.2 % of the integral is missed and more of the rim; the error is about a third of the mean over
+         * sqrt(n), 0.023 % here: 8 of it. The fewer samples of a small MCS_TEST_SCALE cannot tell. */
         if (count >= 2000000)
-            CHECK(!(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth), "mean %g with error %g, truth %g", e.mean, e.error, truth);
-        mcst_note("    %-48s %4d texels, mean off by %.1f standard errors\n", names[k], bad, (e.mean - truth) / e.error);
+            CHECK(!(fabs(e.mean - truth) <= 4 * e.error + 1e-6 * truth), "mean %g with error %g, truth %g", e.mean,
+                  e.error, truth);
+        mcst_note("    %-48s %4d texels, mean off by %.1f standard errors\n", names[k], bad,
+                  (e.mean - truth) / e.error);
         sampler_free(&d);
         scene_free(&m);
     }
@@ -390,8 +400,8 @@ static void check_spread(const scene *m, const surface *s, int form, double *gai
     const double slope = slope_of(&e);
     const double alone = sqrt((e.sum2 / e.seeds / most / truth / truth - 1) / most);
     const double error = sqrt(e.square[e.steps - 1] / e.seeds);
-    mcst_note("    %-32s error %.2e at 64, %.2e at %u, 1/%.1f of independent: N^%.2f%s\n", mcst.name, sqrt(e.square[0] / e.seeds),
-              error, most, alone / error, slope, slope <= -0.9 ? "" : ", -0.9 not met");
+    mcst_note("    %-32s error %.2e at 64, %.2e at %u, 1/%.1f of independent: N^%.2f%s\n", mcst.name,
+              sqrt(e.square[0] / e.seeds), error, most, alone / error, slope, slope <= -0.9 ? "" : ", -0.9 not met");
     CHECK(error <= alone, "error %.2e at %u, of independent points %.2e", error, most, alone);
     *gain += log(alone / error);
     *rate += slope;
@@ -421,8 +431,9 @@ static void test_spread(void) {
         cases++;
         scene_free(&m);
     }
-    /* The logarithm of an rms of 64 errors has a standard deviation of 1/sqrt(2*64), and the mean of eight at most that, however
-     * much they have in common: independent points would pass at three of them once in 700 runs. Their rate is -0.5. */
+    /* The logarithm of an rms of 64 errors has a standard deviation of 1/sqrt(2*64), and the mean of eight at most
+     * that, however much they have in common: independent points would pass at three of them once in 700 runs. Their
+     * rate is -0.5. */
     if (cases == 8 && mcst_case("all together")) {
         CHECK(gain / cases >= 3 / sqrt(2.0 * seeds), "1/%.2f of independent", exp(gain / cases));
         CHECK(rate / cases < -0.5, "N^%.2f", rate / cases);

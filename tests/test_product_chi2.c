@@ -1,5 +1,5 @@
-/* Products of environment, reflection and cosine: their density, texel by texel, against light, fit of the tile and lobe; samples
- * against the integral of the density. MCS_TEST_SCALE scales the number of samples. */
+/* Products of environment, reflection and cosine: their density, texel by texel, against light, fit of the tile and
+ * lobe; samples against the integral of the density. MCS_TEST_SCALE scales the number of samples. */
 #include "stats.h"
 #include "product_sampler.h"
 
@@ -7,10 +7,10 @@
 
 static double *expected, *observed;
 
-/* Reflection as tiles have it towards a place of one, and the ten-thousandth of a white surface's that each value has got;
- * negative: no light. `sharp`: what that may be wrong by, relative, from a direction rounded by 8 eps: where D of GGX is steepest,
- * where the others are. Their falloff is the 256th power of a sum and a quotient, by eight squares (767 eps), of an x with some
- * 32. */
+/* Reflection as tiles have it towards a place of one, and the ten-thousandth of a white surface's that each value has
+ * got; negative: no light. `sharp`: what that may be wrong by, relative, from a direction rounded by 8 eps: where D of
+ * GGX is steepest, where the others are. Their falloff is the 256th power of a sum and a quotient, by eight squares
+ * (767 eps), of an x with some 32. */
 static double reflect_at(const sampler *d, box b, double t1, double t2, span *s, uint32_t *r, double *sharp) {
     *sharp = (2 / fmin(d->s->ax, d->s->ay) + 4) * 8 * eps;
     t1 = fmax(0, fmin(t1, 1 - 0x1p-32));
@@ -29,12 +29,14 @@ static double reflect_at(const sampler *d, box b, double t1, double t2, span *s,
 }
 /* The place that a node stands for: its own, but the outer ones for those a hundredth off the border. */
 static double place_of_node(int k) { return k == 0 ? 0.01 : k == FINE ? 0.99 : (double)k / FINE; }
-/* A node, less the hundredth of the mean that it has got, and the reflection that it stands for; what either may be wrong by. */
+/* A node, less the hundredth of the mean that it has got, and the reflection that it stands for; what either may be
+ * wrong by. */
 typedef struct {
     double v, blur, wanted, off;
 } known_node;
 /* 0: there is no light, or the node may lie in another texel. */
-static int know_node(const sampler *d, box b, double row_slack, const fit *f, double mean, int k1, int k2, known_node *n) {
+static int know_node(const sampler *d, box b, double row_slack, const fit *f, double mean, int k1, int k2,
+                     known_node *n) {
     static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     const double t1 = place_of_node(k1);
     const double t2 = place_of_node(k2);
@@ -59,8 +61,8 @@ static int know_node(const sampler *d, box b, double row_slack, const fit *f, do
     n->blur = fit_node(f, k1, k2)->blur;
     return 1;
 }
-/* The nodes of a grid go with the reflection towards the places they stand for, by one factor in all tiles, which is narrowed down
- * to `least` to `most`. */
+/* The nodes of a grid go with the reflection towards the places they stand for, by one factor in all tiles, which is
+ * narrowed down to `least` to `most`. */
 static void check_nodes(const sampler *d, uint32_t tile, const fit *f, double mean, double *least, double *most) {
     const box b = tile_box(d->m, tile);
     const double row_slack = slack_of_tile(d->m, b);
@@ -86,8 +88,8 @@ static void check_nodes(const sampler *d, uint32_t tile, const fit *f, double me
     *least = fmax(*least, factor * (1 - wrong));
     *most = fmin(*most, factor * (1 + wrong));
 }
-/* A node counts in the mean by the cells around it, a quarter of each; with nothing anywhere else it has all of that. To each is
- * added: 0.03 of the mean to corners, 0.01 on a grid. */
+/* A node counts in the mean by the cells around it, a quarter of each; with nothing anywhere else it has all of that.
+ * To each is added: 0.03 of the mean to corners, 0.01 on a grid. */
 static void check_range_of_nodes(uint32_t tile, const fit *f, double mean) {
     const double least = f->parts > 1 ? 0.01 : 0.03;
     for (int k1 = 0; k1 <= f->parts; k1++)
@@ -97,8 +99,8 @@ static void check_range_of_nodes(uint32_t tile, const fit *f, double mean) {
             const double most = 4.0 * f->parts * f->parts / cells;
             CHECK(v->v >= least / (1 + least) * mean * (1 - 1e-4) - v->blur &&
                       v->v <= (most + least) / (1 + least) * mean * (1 + 1e-4) + v->blur,
-                  "tile %u: node (%d, %d) of %d parts has %g within %g, their mean is %g", tile, k1, k2, f->parts, v->v, v->blur,
-                  mean);
+                  "tile %u: node (%d, %d) of %d parts has %g within %g, their mean is %g", tile, k1, k2, f->parts, v->v,
+                  v->blur, mean);
         }
 }
 /* The density at (x, y) of a texel, 0 to 1 each way, is that of the lobe and light times the fit of the tile. */
@@ -122,14 +124,15 @@ static void check_place(const sampler *d, uint32_t c, uint32_t r, double x, doub
         const places off = places_off(m, s, r, row_slack);
         const doubt o = fit_doubt(f, t1, t2, off);
         want = light * fit_at(f, t1, t2);
-        tol = want * 2 * (slack_of_row(m, r) + slack_of(m, light, r) + row_slack + 8 * eps) + light * (varies(&o, off) + o.blur);
+        tol = want * 2 * (slack_of_row(m, r) + slack_of(m, light, r) + row_slack + 8 * eps) +
+              light * (varies(&o, off) + o.blur);
     }
     CHECK(rest >= -blur && rest <= FLT_MAX && fabs(rest - want) <= tol + blur,
-          "texel (%u, %u), %g of it across and %g down: density %.8g, not %.8g within %.2g; %d parts", c, r, x, y, rest, want,
-          tol + blur, f->parts);
+          "texel (%u, %u), %g of it across and %g down: density %.8g, not %.8g within %.2g; %d parts", c, r, x, y, rest,
+          want, tol + blur, f->parts);
 }
-/* At the middle of a texel, and at a random place of every other one. Adds what the lobe has there to `seen`; returns what the
- * texel has of the density. */
+/* At the middle of a texel, and at a random place of every other one. Adds what the lobe has there to `seen`; returns
+ * what the texel has of the density. */
 static double check_texel(const sampler *d, uint32_t c, uint32_t r, const fit *f, double row_slack, double *seen) {
     const scene *m = d->m;
     const double light = m->light[(size_t)r * m->w + c];
@@ -137,13 +140,14 @@ static double check_texel(const sampler *d, uint32_t c, uint32_t r, const fit *f
     double lobe_mass = 0;
     if (light > 0) s = span_of(m, c, r);
     check_place(d, c, r, 0.5, 0.5, f, &s, row_slack);
-    if ((r + c) % 2) check_place(d, c, r, (double)hash01(r * m->w + c, 20), (double)hash01(r * m->w + c, 21), f, &s, row_slack);
+    if ((r + c) % 2)
+        check_place(d, c, r, (double)hash01(r * m->w + c, 20), (double)hash01(r * m->w + c, 21), f, &s, row_slack);
     if (d->share > 0) lobe_mass = texel_mass(m, d->s, c, r).visible;
     *seen += lobe_mass;
     return (light > 0 ? fmax(light * fit_mean(f, &s), 0) : 0) * m->area[r] + d->share * lobe_mass;
 }
-/* Density times solid angle over the whole map is 1 less what the lobe loses; within a tile it goes with the light times its fit.
- * The number of tiles of many parts. */
+/* Density times solid angle over the whole map is 1 less what the lobe loses; within a tile it goes with the light
+ * times its fit. The number of tiles of many parts. */
 static int check_density(const sampler *d) {
     static const span whole = {0, 1, 0, 1, 0};
     const scene *m = d->m;
@@ -167,11 +171,13 @@ static int check_density(const sampler *d) {
                 sum += expected[r * m->w + c];
             }
     }
-    expected[n] = d->share * fmax(1 - seen, 0); /* a lobe high over the horizon loses less than the quadrature is wrong by */
+    expected[n] =
+        d->share * fmax(1 - seen, 0); /* a lobe high over the horizon loses less than the quadrature is wrong by */
     CHECK(fabs(sum + expected[n] - 1) <= 1e-5, "the density integrates to %g, the lobe loses %g", sum, expected[n]);
     CHECK(fine <= d->most_fine, "%d tiles of many parts", fine);
-    CHECK(least_factor <= most_factor, "tiles of many parts: at least %.9g of the reflection in one, at most %.9g in another",
-          least_factor, most_factor);
+    CHECK(least_factor <= most_factor,
+          "tiles of many parts: at least %.9g of the reflection in one, at most %.9g in another", least_factor,
+          most_factor);
     return fine;
 }
 
@@ -201,16 +207,16 @@ static void check_counts(const sampler *d, int count, mcs_pcg32 *rng, double tes
             if (pdf[k] > 0) {
                 double col, row;
                 texel_of(d->m->w, d->m->h, w, &col, &row);
-                observed[(uint32_t)(row < d->m->h ? row : d->m->h - 1) * d->m->w + (uint32_t)(col < d->m->w ? col : d->m->w - 1)] +=
-                    1;
+                observed[(uint32_t)(row < d->m->h ? row : d->m->h - 1) * d->m->w +
+                         (uint32_t)(col < d->m->w ? col : d->m->w - 1)] += 1;
             } else {
                 observed[n] += 1;
                 CHECK(d->share > 0, "u = %a, %a: lost", (double)u1[k], (double)u2[k]);
             }
             if (k % 32 == 0 && pdf[k] > 0) {
                 const mcs_texel t = draw(d, u1[k], u2[k]);
-                CHECK(agrees(d, t), "u = %a, %a: pdf %g, returned %g, within %g", (double)u1[k], (double)u2[k], density(d, t.w),
-                      (double)t.pdf, apart(d, t));
+                CHECK(agrees(d, t), "u = %a, %a: pdf %g, returned %g, within %g", (double)u1[k], (double)u2[k],
+                      density(d, t.w), (double)t.pdf, apart(d, t));
             }
         }
     }
@@ -232,9 +238,10 @@ static double rises(const scene *m, const surface *s) {
     return top;
 }
 
-/* Directions of the normal that a case looks at. All at a scale of 1. The density of every texel and its quadrature cost the same
- * however few samples there are, so below 1 a case takes that part of its normals, rounded up. The cases begin with different ones:
- * maps and lobes together still meet all of them and both forms. A normal that is looked at is so in full. */
+/* Directions of the normal that a case looks at. All at a scale of 1. The density of every texel and its quadrature
+ * cost the same however few samples there are, so below 1 a case takes that part of its normals, rounded up. The cases
+ * begin with different ones: maps and lobes together still meet all of them and both forms. A normal that is looked at
+ * is so in full. */
 static int normals_tried(void) { return scale() < 1 ? (int)ceil(NORMALS * scale()) : NORMALS; }
 
 /* How often a share for the lobe and tiles of many parts were met. */

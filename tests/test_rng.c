@@ -6,7 +6,7 @@
 #include "stats.h"
 
 enum { FILL_MAX = 67, GUARD = 16 };
-static const double level = 1e-5;           /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
+static const double level = 1e-5; /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
 static const float guard_value = -12345.5f; /* no generator of [0,1) can write it */
 
 /* ---- PCG32 ---- */
@@ -20,14 +20,15 @@ static uint32_t demo_bounded(mcs_pcg32 *r, uint32_t bound) {
     return v % bound;
 }
 
-/* The five rounds of the pcg32 demo (pcg-c, test-high/expected/check-pcg32.out): six words, stepped back over and drawn again,
- * 65 coins, 33 dice, a shuffle of 52 cards. Coins as bits, the first in bit 0; heads are 1. Dice from 1. */
+/* The five rounds of the pcg32 demo (pcg-c, test-high/expected/check-pcg32.out): six words, stepped back over and drawn
+ * again, 65 coins, 33 dice, a shuffle of 52 cards. Coins as bits, the first in bit 0; heads are 1. Dice from 1. */
 static void test_pcg32_demo(void) {
-    static const uint32_t words[5][6] = {{0xa15c02b7u, 0x7b47f409u, 0xba1d3330u, 0x83d2f293u, 0xbfa4784bu, 0xcbed606eu},
-                                         {0x74ab93adu, 0x1c1da000u, 0x494ff896u, 0x34462f2fu, 0xd308a3e5u, 0x0fa83babu},
-                                         {0x39af5f9fu, 0x04196b18u, 0xc3c3eb28u, 0xc076c60cu, 0xc693e135u, 0xf8f63932u},
-                                         {0x55ce6851u, 0x97a7726du, 0x17e10815u, 0x58007d43u, 0x962fb148u, 0xb9bb55bdu},
-                                         {0xfcef7cd6u, 0x1b488b5au, 0xd0daf7eau, 0x1d9a70f7u, 0x241a37cfu, 0x9a3857b7u}};
+    static const uint32_t words[5][6] = {
+        {0xa15c02b7u, 0x7b47f409u, 0xba1d3330u, 0x83d2f293u, 0xbfa4784bu, 0xcbed606eu},
+        {0x74ab93adu, 0x1c1da000u, 0x494ff896u, 0x34462f2fu, 0xd308a3e5u, 0x0fa83babu},
+        {0x39af5f9fu, 0x04196b18u, 0xc3c3eb28u, 0xc076c60cu, 0xc693e135u, 0xf8f63932u},
+        {0x55ce6851u, 0x97a7726du, 0x17e10815u, 0x58007d43u, 0x962fb148u, 0xb9bb55bdu},
+        {0xfcef7cd6u, 0x1b488b5au, 0xd0daf7eau, 0x1d9a70f7u, 0x241a37cfu, 0x9a3857b7u}};
     static const char coins[] = "HHTTTHTHHHTHTTTHHHHHTTTHHHTHTHTHTTHTTTHHHHHHTTTTHHTTTTTHTTTTTTTHT";
     static const char rolls[] = "341122324324335231315141564662633";
     mcs_pcg32 r = mcs_pcg32_make(42, 54);
@@ -51,7 +52,8 @@ static void test_pcg32_demo(void) {
 }
 
 static void test_pcg32_advance(void) {
-    static const uint64_t far[] = {1, 0xffffffffu, 0x100000000u, 0x8000000000000000u, 0x123456789abcdef1u, 0xffffffffffffffffu};
+    static const uint64_t far[] = {
+        1, 0xffffffffu, 0x100000000u, 0x8000000000000000u, 0x123456789abcdef1u, 0xffffffffffffffffu};
     if (mcst_case("forward and backward equal stepping")) {
         mcs_pcg32 step = mcs_pcg32_make(mcst.seed, 3);
         const mcs_pcg32 start = step;
@@ -85,7 +87,8 @@ static void test_pcg32_advance(void) {
     }
 }
 
-/* Over all pairs of 256 streams and 64 places, equal words come by chance about 256*255/2*64/2^32 = 5e-4 times in all. */
+/* Over all pairs of 256 streams and 64 places, equal words come by chance about 256*255/2*64/2^32 = 5e-4 times in all.
+ */
 static void test_pcg32_streams(void) {
     enum { STREAMS = 256, WORDS = 64 };
     static uint32_t v[STREAMS][WORDS];
@@ -117,13 +120,19 @@ static void test_philox_known_answers(void) {
     static const struct {
         uint64_t key, lo, hi;
         uint32_t v[4];
-    } kat[3] = {
-        {0, 0, 0, {0x6627e8d5u, 0xe169c58du, 0xbc57ac4cu, 0x9b00dbd8u}},
-        {0xffffffffffffffffu, 0xffffffffffffffffu, 0xffffffffffffffffu, {0x408f276du, 0x41c83b0eu, 0xa20bc7c6u, 0x6d5451fdu}},
-        {0x299f31d0a4093822u, 0x85a308d3243f6a88u, 0x0370734413198a2eu, {0xd16cfe09u, 0x94fdccebu, 0x5001e420u, 0x24126ea1u}}};
+    } kat[3] = {{0, 0, 0, {0x6627e8d5u, 0xe169c58du, 0xbc57ac4cu, 0x9b00dbd8u}},
+                {0xffffffffffffffffu,
+                 0xffffffffffffffffu,
+                 0xffffffffffffffffu,
+                 {0x408f276du, 0x41c83b0eu, 0xa20bc7c6u, 0x6d5451fdu}},
+                {0x299f31d0a4093822u,
+                 0x85a308d3243f6a88u,
+                 0x0370734413198a2eu,
+                 {0xd16cfe09u, 0x94fdccebu, 0x5001e420u, 0x24126ea1u}}};
     for (int i = 0; i < 3; i++) {
         const mcs_philox4 b = mcs_philox(kat[i].key, kat[i].lo, kat[i].hi);
-        for (int j = 0; j < 4; j++) CHECK(b.v[j] == kat[i].v[j], "vector %d word %d: %08x, not %08x", i, j, b.v[j], kat[i].v[j]);
+        for (int j = 0; j < 4; j++)
+            CHECK(b.v[j] == kat[i].v[j], "vector %d word %d: %08x, not %08x", i, j, b.v[j], kat[i].v[j]);
     }
 }
 
@@ -133,9 +142,9 @@ static void mix_philox(uint64_t a, uint64_t b, uint64_t c, uint32_t out[4]) {
     const mcs_philox4 block = mcs_philox(a, b, c);
     memcpy(out, block.v, sizeof block.v);
 }
-/* One flipped input bit flips each of the 128 output bits with probability 1/2. Over T trials the count of flips of one output
- * bit by one input bit is binomial(T, 1/2); 192 input by 128 output bits are 24576 counts, and 6.5 standard deviations are
- * passed by one of them with probability 24576 * 8e-11 = 2e-6. Returns how many do. */
+/* One flipped input bit flips each of the 128 output bits with probability 1/2. Over T trials the count of flips of one
+ * output bit by one input bit is binomial(T, 1/2); 192 input by 128 output bits are 24576 counts, and 6.5 standard
+ * deviations are passed by one of them with probability 24576 * 8e-11 = 2e-6. Returns how many do. */
 static int avalanche(mixer *mix) {
     enum { TRIALS = 256 };
     static int flips[192][128];
@@ -155,7 +164,8 @@ static int avalanche(mixer *mix) {
             uint32_t b[4];
             mix(w[0], w[1], w[2], b);
             w[in >> 6] ^= (uint64_t)1 << (in & 63);
-            for (int out = 0; out < 128; out++) flips[in][out] += (int)((b[out >> 5] ^ base[out >> 5]) >> (out & 31) & 1u);
+            for (int out = 0; out < 128; out++)
+                flips[in][out] += (int)((b[out >> 5] ^ base[out >> 5]) >> (out & 31) & 1u);
         }
     }
     for (int in = 0; in < 192; in++)
@@ -167,8 +177,12 @@ static int avalanche(mixer *mix) {
 
 /* Ways to a generator for pixel and sample: that of the header, and those that were tried before it was there. */
 typedef mcs_pcg32 start(uint64_t seed, uint64_t pixel, uint64_t sample);
-static mcs_pcg32 start_stream(uint64_t seed, uint64_t pixel, uint64_t sample) { return mcs_pcg32_make(seed + sample, pixel); }
-static mcs_pcg32 start_seed(uint64_t seed, uint64_t pixel, uint64_t sample) { return mcs_pcg32_make(seed ^ pixel, sample); }
+static mcs_pcg32 start_stream(uint64_t seed, uint64_t pixel, uint64_t sample) {
+    return mcs_pcg32_make(seed + sample, pixel);
+}
+static mcs_pcg32 start_seed(uint64_t seed, uint64_t pixel, uint64_t sample) {
+    return mcs_pcg32_make(seed ^ pixel, sample);
+}
 
 /* The first four words of a generator, as 128 bits that depend on its arguments. */
 static start *mixed_by;
@@ -199,10 +213,10 @@ static void family(int i, uint64_t k, uint64_t a[3]) {
     memcpy(a, all[i], sizeof all[i]);
 }
 
-/* Over 2^20 neighbours: the first number of k beside that of k + 1, and the first beside the second of each, as pairs over 64 x 64
- * cells, counts that are too even as unlikely as those that are too uneven, and their correlation: for independent numbers
- * it is 0 with a standard deviation of 1/sqrt(n), n = 2^20 or 2^19. Returns the least p of the four, each doubled as it has two
- * sides. */
+/* Over 2^20 neighbours: the first number of k beside that of k + 1, and the first beside the second of each, as pairs
+ * over 64 x 64 cells, counts that are too even as unlikely as those that are too uneven, and their correlation: for
+ * independent numbers it is 0 with a standard deviation of 1/sqrt(n), n = 2^20 or 2^19. Returns the least p of the
+ * four, each doubled as it has two sides. */
 static double least_p(start *of, int which) {
     static double count[4096], expect[4096];
     static float u[2][NEIGHBOURS];
@@ -270,7 +284,8 @@ static void test_u01(void) {
         CHECK(bad == 0, "%d of 3 * 2^24 values differ from (bits >> 8) * 2^-24", bad);
         for (uint32_t k = 0; k < 256; k++) {
             CHECK(mcs_u01(k) == 0.0f, "low bits %x", k);
-            CHECK(mcs_u01(0xffffff00u | k) == 0x0.ffffffp0f, "top word %x: %a", 0xffffff00u | k, (double)mcs_u01(0xffffff00u | k));
+            CHECK(mcs_u01(0xffffff00u | k) == 0x0.ffffffp0f, "top word %x: %a", 0xffffff00u | k,
+                  (double)mcs_u01(0xffffff00u | k));
         }
         CHECK(mcs_u01(0xffffffffu) < 1.0f, "top word reaches 1");
     }
@@ -291,16 +306,17 @@ static void test_u01(void) {
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wpsabi" /* wide functions are inlined: no vector crosses a call */
 #endif
-#define WIDE(W)                                                                                                              \
-    static void wide##W(const uint32_t *bits) {                                                                              \
-        mcs##W##_u b;                                                                                                        \
-        mcs##W##_f u, open;                                                                                                  \
-        int i;                                                                                                               \
-        memcpy(&b, bits, sizeof b);                                                                                          \
-        u = mcs##W##_u01(b);                                                                                                 \
-        open = mcs##W##_u01_open(b);                                                                                         \
-        for (i = 0; i < W; i++)                                                                                              \
-            CHECK(u[i] == mcs_u01(bits[i]) && open[i] == mcs_u01_open(bits[i]), #W " wide, lane %d, word %08x", i, bits[i]); \
+#define WIDE(W)                                                                                                    \
+    static void wide##W(const uint32_t *bits) {                                                                    \
+        mcs##W##_u b;                                                                                              \
+        mcs##W##_f u, open;                                                                                        \
+        int i;                                                                                                     \
+        memcpy(&b, bits, sizeof b);                                                                                \
+        u = mcs##W##_u01(b);                                                                                       \
+        open = mcs##W##_u01_open(b);                                                                               \
+        for (i = 0; i < W; i++)                                                                                    \
+            CHECK(u[i] == mcs_u01(bits[i]) && open[i] == mcs_u01_open(bits[i]), #W " wide, lane %d, word %08x", i, \
+                  bits[i]);                                                                                        \
     }
 WIDE(4)
 WIDE(8)
@@ -310,7 +326,8 @@ static void test_u01_wide(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 6);
     for (int i = 0; i < 10000; i++) {
         uint32_t bits[16];
-        for (int k = 0; k < 16; k++) bits[k] = i == 0 ? 0xffffffffu - (uint32_t)k : i == 1 ? (uint32_t)k << 7 : mcs_pcg32_next(&r);
+        for (int k = 0; k < 16; k++)
+            bits[k] = i == 0 ? 0xffffffffu - (uint32_t)k : i == 1 ? (uint32_t)k << 7 : mcs_pcg32_next(&r);
         wide4(bits);
         wide8(bits);
         wide16(bits);
@@ -327,7 +344,9 @@ static void fill_pcg(void *state, uint64_t where, size_t n, float *out) {
     mcs_pcg32_fill_n((mcs_pcg32 *)state, n, out);
 }
 
-static void fill_philox(void *state, uint64_t where, size_t n, float *out) { mcs_philox_fill_n(*(uint64_t *)state, where, n, out); }
+static void fill_philox(void *state, uint64_t where, size_t n, float *out) {
+    mcs_philox_fill_n(*(uint64_t *)state, where, n, out);
+}
 
 /* Fills n values at a place of every alignment of a float within 64 bytes; the guards on both sides must stay. */
 static void check_fill(fill_fn *fill, void *state, uint64_t where, size_t n, size_t shift, const float *want) {
@@ -361,7 +380,8 @@ static void test_fills(void) {
         }
     }
     if (mcst_case("philox_fill_n equals the blocks, n = 0..67 and 4093")) {
-        static const uint64_t starts[] = {0, 1, 0xfffffffcu, 0xfffffffffffffffcu}; /* carries into the upper half, and wraps */
+        static const uint64_t starts[] = {0, 1, 0xfffffffcu,
+                                          0xfffffffffffffffcu}; /* carries into the upper half, and wraps */
         uint64_t key = 0x0123456789abcdefu;
         for (size_t s = 0; s < sizeof starts / sizeof *starts; s++)
             for (size_t n = 0; n <= FILL_MAX + 1; n++) {

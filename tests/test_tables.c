@@ -1,4 +1,5 @@
-/* Tables: piecewise constant, discrete, piecewise linear, alias. The truth is the weights themselves, summed in long double. */
+/* Tables: piecewise constant, discrete, piecewise linear, alias. The truth is the weights themselves, summed in long
+ * double. */
 #include "stats.h"
 #include "table_kinds.h"
 
@@ -19,7 +20,8 @@ static void check_pmf(const mcs_pwc *t, uint32_t n) {
     CHECK(mcs_discrete_pmf(t, n) == 0 && mcs_discrete_pmf(t, 0xffffffffu) == 0, "pmf past the end");
 }
 
-/* All 2^24 u. An interval [c, c + p) holds more than p 2^24 - 1 and fewer than p 2^24 + 1 of them; the float p is off by eps p. */
+/* All 2^24 u. An interval [c, c + p) holds more than p 2^24 - 1 and fewer than p 2^24 + 1 of them; the float p is off
+ * by eps p. */
 static void sweep_pwc(const mcs_pwc *t, uint32_t n) {
     int wrong_pdf = 0;
     int falls = 0;
@@ -47,7 +49,8 @@ static void sweep_pwc(const mcs_pwc *t, uint32_t n) {
     }
 }
 
-/* x is rounded three times at most (cell plus fraction, reciprocal, product) and moved one float to stay in its cell. */
+/* x is rounded three times at most (cell plus fraction, reciprocal, product) and moved one float to stay in its cell.
+ */
 static void check_pwc(const mcs_pwc *t, uint32_t n) {
     const double dx = 4 * eps;
     const double slack = slack_of();
@@ -66,20 +69,23 @@ static void check_pwc(const mcs_pwc *t, uint32_t n) {
               (double)mcs_pwc_pdf(t, c.x), (double)c.pdf);
         CHECK(fabs(c.pdf - p * n) <= 2 * eps * p * n, "u = %a: pdf %g, pmf * n %g", (double)u, (double)c.pdf, p * n);
         const ld at = (ld)c.x * n - c.i; /* exact: 24 + 20 bits */
-        CHECK(fabs((double)(at - 0.5L)) <= 0.5 + 2 * eps * n, "u = %a: x = %a is not in cell %u", (double)u, (double)c.x, c.i);
+        CHECK(fabs((double)(at - 0.5L)) <= 0.5 + 2 * eps * n, "u = %a: x = %a is not in cell %u", (double)u,
+              (double)c.x, c.i);
         double err = fabs((double)(cumulative[c.i] + mass[c.i] * at - u));
         CHECK(err <= slack + p * n * dx + eps, "u = %a: C(x) is off by %g", (double)u, err);
         err = fabs((double)back - u);
         CHECK(back >= 0 && back < 1 && err <= p * n * dx + 2 * eps, "u = %a: invert %a", (double)u, (double)back);
-        CHECK(d.i == c.i && d.pmf == mcs_discrete_pmf(t, d.i), "u = %a: discrete %u, %g", (double)u, d.i, (double)d.pmf);
+        CHECK(d.i == c.i && d.pmf == mcs_discrete_pmf(t, d.i), "u = %a: discrete %u, %g", (double)u, d.i,
+              (double)d.pmf);
         const ld below = cumulative[d.i] + (ld)d.u * mass[d.i];
-        CHECK(d.u >= 0 && d.u < 1 && fabs((double)(below - u)) <= 2 * slack + 2 * eps * (p + u), "u = %a: rest %a of entry %u",
-              (double)u, (double)d.u, d.i);
+        CHECK(d.u >= 0 && d.u < 1 && fabs((double)(below - u)) <= 2 * slack + 2 * eps * (p + u),
+              "u = %a: rest %a of entry %u", (double)u, (double)d.u, d.i);
         last = c.x;
     }
 }
 
-/* Counts of many draws against n equal groups of entries (64 at most), expectations by the weights, not by the table. */
+/* Counts of many draws against n equal groups of entries (64 at most), expectations by the weights, not by the table.
+ */
 static void chi_square(const kind *k, const void *t, uint32_t n) {
     static double observed[64], expected[64];
     const uint32_t groups = n < 64 ? n : 64;
@@ -99,7 +105,8 @@ static void chi_square(const kind *k, const void *t, uint32_t n) {
         const double p = chi2_test(observed, expected, groups, NULL, NULL);
         CHECK(p >= level, "chi-square p = %g", p);
     } else {
-        for (uint32_t g = 0; g < groups; g++) CHECK(expected[g] >= 5 || observed[g] <= 40, "group %u: %g draws", g, observed[g]);
+        for (uint32_t g = 0; g < groups; g++)
+            CHECK(expected[g] >= 5 || observed[g] <= 40, "group %u: %g draws", g, observed[g]);
     }
 }
 
@@ -120,7 +127,8 @@ static void test_pwc(void) {
 
 /* ---- piecewise linear ---- */
 
-/* With vertex values f, g of the cell and the mean value m of all cells: density lerp(f, g, at)/m, slope n (g - f)/m per length. */
+/* With vertex values f, g of the cell and the mean value m of all cells: density lerp(f, g, at)/m, slope n (g - f)/m
+ * per length. */
 static void check_pwl(const mcs_pwl *t, uint32_t n) {
     const double dx = 4 * eps;
     const double slack = slack_of();
@@ -142,14 +150,16 @@ static void check_pwl(const mcs_pwl *t, uint32_t n) {
         const double relative = slack / (double)mass[c.i] + 8 * eps;
         CHECK(mass[c.i] > 0, "u = %a: zero cell %u", (double)u, c.i);
         CHECK(c.x >= last, "u = %a: x falls to %a", (double)u, (double)c.x);
-        CHECK(fabs((double)(at - 0.5L)) <= 0.5 + 2 * eps * n, "u = %a: x = %a is not in cell %u", (double)u, (double)c.x, c.i);
-        CHECK(fabs((double)(again - want)) <= relative * near + slope * eps, "u = %a: pdf(%a) = %g, not %g", (double)u, (double)c.x,
-              (double)again, (double)want);
-        CHECK(fabs((double)(c.pdf - want)) <= relative * near + slope * dx, "u = %a: returned pdf %g at %a, not %g", (double)u,
-              (double)c.pdf, (double)c.x, (double)want);
+        CHECK(fabs((double)(at - 0.5L)) <= 0.5 + 2 * eps * n, "u = %a: x = %a is not in cell %u", (double)u,
+              (double)c.x, c.i);
+        CHECK(fabs((double)(again - want)) <= relative * near + slope * eps, "u = %a: pdf(%a) = %g, not %g", (double)u,
+              (double)c.x, (double)again, (double)want);
+        CHECK(fabs((double)(c.pdf - want)) <= relative * near + slope * dx, "u = %a: returned pdf %g at %a, not %g",
+              (double)u, (double)c.pdf, (double)c.x, (double)want);
         const double err = fabs((double)(cumulative[c.i] + (f * at + (g - f) * at * at / 2) / sum - u));
         CHECK(err <= slack + near * dx + eps, "u = %a: C(x) is off by %g", (double)u, err);
-        CHECK(back >= 0 && back < 1 && fabs((double)back - u) <= near * dx + 4 * eps, "u = %a: invert %a", (double)u, (double)back);
+        CHECK(back >= 0 && back < 1 && fabs((double)back - u) <= near * dx + 4 * eps, "u = %a: invert %a", (double)u,
+              (double)back);
         last = c.x;
     }
 }
@@ -174,7 +184,8 @@ static void sweep_pwl(const mcs_pwl *t, uint32_t n) {
     CHECK(falls == 0, "x falls %d times", falls);
     for (uint32_t i = 0; i < n; i++) {
         const double p = (double)mass[i];
-        CHECK(fabs(hits[i] - p * GRID) <= 1 + 2 * slack_of() * GRID, "cell %u: %u of 2^24 draws, mass %a", i, hits[i], p);
+        CHECK(fabs(hits[i] - p * GRID) <= 1 + 2 * slack_of() * GRID, "cell %u: %u of 2^24 draws, mass %a", i, hits[i],
+              p);
     }
 }
 
@@ -210,18 +221,21 @@ static void test_pwl(void) {
             for (int k = 0; k < US; k++) {
                 const mcs_cell c = mcs_pwl_sample((const mcs_pwl *)a.at, us[k]);
                 const mcs_sample1 l = mcs_linear_sample(triangle[s][0], triangle[s][1], us[k]);
-                CHECK(fabs((double)c.x - l.x) <= 4 * eps, "u = %a: %a, not %a", (double)us[k], (double)c.x, (double)l.x);
-                CHECK(fabs((double)c.pdf - l.pdf) <= 8 * eps * l.pdf + 2 * 4 * eps, "u = %a: pdf %g, not %g", (double)us[k],
-                      (double)c.pdf, (double)l.pdf);
+                CHECK(fabs((double)c.x - l.x) <= 4 * eps, "u = %a: %a, not %a", (double)us[k], (double)c.x,
+                      (double)l.x);
+                CHECK(fabs((double)c.pdf - l.pdf) <= 8 * eps * l.pdf + 2 * 4 * eps, "u = %a: pdf %g, not %g",
+                      (double)us[k], (double)c.pdf, (double)l.pdf);
             }
             arena_free(&a);
         }
     }
 }
 
-/* ---- alias: integers over n 2^31, bounded as above; their cumulative sums are doubles, rounded three times at either end ---- */
+/* ---- alias: integers over n 2^31, bounded as above; their cumulative sums are doubles, rounded three times at either
+ * end ---- */
 
-/* Of n columns an entry holds at most n + 1 intervals of u (its own and parts of others), each counted to within one of 2^24. */
+/* Of n columns an entry holds at most n + 1 intervals of u (its own and parts of others), each counted to within one of
+ * 2^24. */
 static void sweep_alias(const mcs_alias *t, uint32_t n) {
     int outside = 0;
     int dark = 0;
@@ -261,15 +275,17 @@ static void test_alias(void) {
             const double p = mcs_alias_pmf((const mcs_alias *)a.at, i);
             psum += p;
             CHECK((p > 0) == (mass[i] > 0), "entry %u: pmf %g, probability %g", i, p, (double)mass[i]);
-            CHECK(fabs((double)(p - mass[i])) <= (2 + lit * p) * quantum / n + 6 * 0x1p-53 + eps * p, "entry %u: pmf %g, not %g", i,
-                  p, (double)mass[i]);
+            CHECK(fabs((double)(p - mass[i])) <= (2 + lit * p) * quantum / n + 6 * 0x1p-53 + eps * p,
+                  "entry %u: pmf %g, not %g", i, p, (double)mass[i]);
         }
         CHECK(fabs(psum - 1) <= eps, "pmf sums to 1 + %g", psum - 1);
         CHECK(mcs_alias_pmf((const mcs_alias *)a.at, n) == 0, "pmf past the end");
         for (int k = 0; k < US; k++) {
             const mcs_pick c = mcs_alias_sample((const mcs_alias *)a.at, us[k]);
-            CHECK(c.i < n && weight[c.i] > 0 && c.u >= 0 && c.u < 1, "u = %a: entry %u, rest %a", (double)us[k], c.i, (double)c.u);
-            CHECK(c.pmf == mcs_alias_pmf((const mcs_alias *)a.at, c.i), "u = %a: returned pmf %g", (double)us[k], (double)c.pmf);
+            CHECK(c.i < n && weight[c.i] > 0 && c.u >= 0 && c.u < 1, "u = %a: entry %u, rest %a", (double)us[k], c.i,
+                  (double)c.u);
+            CHECK(c.pmf == mcs_alias_pmf((const mcs_alias *)a.at, c.i), "u = %a: returned pmf %g", (double)us[k],
+                  (double)c.pmf);
         }
         if (sets[s].every_u >> ALIAS & 1) sweep_alias((const mcs_alias *)a.at, n);
         else chi_square(&kinds[ALIAS], a.at, n);
@@ -277,7 +293,8 @@ static void test_alias(void) {
     }
 }
 
-/* The rest of u is uniform again, within each entry and over all: 64 cells by entry, for entries that 2^24 u resolve. */
+/* The rest of u is uniform again, within each entry and over all: 64 cells by entry, for entries that 2^24 u resolve.
+ */
 static void test_rest(const kind *k) {
     static double observed[7 * 64], expected[7 * 64];
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 21);
@@ -297,8 +314,9 @@ static void test_rest(const kind *k) {
     arena_free(&a);
 }
 
-/* The product of 64 random bits and n, schoolbook in base 2^16: above bit 64 the column, the 32 bits below it the place in it. Half
- * the pairs lie at a border of columns, where the last of b2 decides. The rest is one quotient, rounded to float: eps of it. */
+/* The product of 64 random bits and n, schoolbook in base 2^16: above bit 64 the column, the 32 bits below it the place
+ * in it. Half the pairs lie at a border of columns, where the last of b2 decides. The rest is one quotient, rounded to
+ * float: eps of it. */
 static void test_alias_bits(uint32_t n) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 157);
     arena a = arena_make(mcs_alias_bytes(n));
@@ -321,10 +339,10 @@ static void test_alias_bits(uint32_t n) {
         const double place = (double)(digits >> 32) / 2;
         const double kept = k->cut;
         const double rest = place < kept ? place / kept : (place - kept) / (0x1p31 - kept);
-        CHECK(c.i == (place < kept ? carry : k->alias), "n = %u, bits %016llx: entry %u, column %llu", n, (unsigned long long)b,
-              c.i, (unsigned long long)carry);
-        CHECK(fabs(c.u - rest) <= 1.0001 * eps * rest, "n = %u, bits %016llx: rest %a, not %a", n, (unsigned long long)b,
-              (double)c.u, rest);
+        CHECK(c.i == (place < kept ? carry : k->alias), "n = %u, bits %016llx: entry %u, column %llu", n,
+              (unsigned long long)b, c.i, (unsigned long long)carry);
+        CHECK(fabs(c.u - rest) <= 1.0001 * eps * rest, "n = %u, bits %016llx: rest %a, not %a", n,
+              (unsigned long long)b, (double)c.u, rest);
     }
     arena_free(&a);
 }
@@ -372,9 +390,9 @@ static void check_last_bits(const arena *a, const arena *b) {
     CHECK(mcs_pwc_sample_bits(t, 0xffffffffu, 0xffffffffu).x == 0x0.ffffffp0f, "the last bits: x");
 }
 
-/* 64 bits over 2^33 are a place among 2^31 shares: found by bisection, and the rest within the entry, in long double, whose 64
- * digits hold the difference. Half the bits lie at a border of entries. The rest is rounded twice, as double and as float. x of
- * pwc is (i + rest)/n, rounded to double and to float and moved by a float into its cell. */
+/* 64 bits over 2^33 are a place among 2^31 shares: found by bisection, and the rest within the entry, in long double,
+ * whose 64 digits hold the difference. Half the bits lie at a border of entries. The rest is rounded twice, as double
+ * and as float. x of pwc is (i + rest)/n, rounded to double and to float and moved by a float into its cell. */
 static void test_discrete_bits(uint32_t n) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 163);
     arena a = arena_make(mcs_pwc_bytes(n));
@@ -402,13 +420,14 @@ static void test_discrete_bits(uint32_t n) {
         }
         const ld rest = (ld)(v - ((uint64_t)cdf[lo] << 33)) / ((cdf[lo + 1] - cdf[lo]) * 0x1p33L);
         const ld x = (lo + rest) / n;
-        CHECK(d.i == lo && c.i == lo, "n = %u, bits %016llx: entries %u and %u, not %u", n, (unsigned long long)v, d.i, c.i, lo);
+        CHECK(d.i == lo && c.i == lo, "n = %u, bits %016llx: entries %u and %u, not %u", n, (unsigned long long)v, d.i,
+              c.i, lo);
         CHECK(d.pmf == mcs_discrete_pmf(t, lo) && c.pdf == mcs_pwc_pdf(t, c.x) && weight[lo] > 0,
               "n = %u, bits %016llx: pmf %g, pdf %g", n, (unsigned long long)v, (double)d.pmf, (double)c.pdf);
         CHECK(d.u >= 0 && d.u < 1 && fabs((double)(d.u - rest)) <= 1.0001 * eps * (double)rest,
               "n = %u, bits %016llx: rest %a, not %a", n, (unsigned long long)v, (double)d.u, (double)rest);
-        CHECK(c.x >= 0 && c.x < 1 && fabs((double)(c.x - x)) <= 2.0001 * eps * (double)x, "n = %u, bits %016llx: x %a, not %a", n,
-              (unsigned long long)v, (double)c.x, (double)x);
+        CHECK(c.x >= 0 && c.x < 1 && fabs((double)(c.x - x)) <= 2.0001 * eps * (double)x,
+              "n = %u, bits %016llx: x %a, not %a", n, (unsigned long long)v, (double)c.x, (double)x);
     }
     check_forms_of_bits(t, l, n, &r);
     check_last_bits(&a, &b);
@@ -417,9 +436,9 @@ static void test_discrete_bits(uint32_t n) {
     free(cdf);
 }
 
-/* The u to reuse has its digits at a million entries: of draws from one entry, 64 cells of it, and 64 cells of what is behind
- * the 14th digit, are alike; hardly any number comes twice: of 2^14 floats of [0,1) 5 pairs do, by chance, 40 of them never.
- * With the 24 bits of a float u an entry has 16 numbers. */
+/* The u to reuse has its digits at a million entries: of draws from one entry, 64 cells of it, and 64 cells of what is
+ * behind the 14th digit, are alike; hardly any number comes twice: of 2^14 floats of [0,1) 5 pairs do, by chance, 40 of
+ * them never. With the 24 bits of a float u an entry has 16 numbers. */
 static void test_reused_digits(void) {
     enum { N = 1000000, DRAWS = 1 << 14, ENTRIES = 20 };
     static float rest[DRAWS];
@@ -437,7 +456,8 @@ static void test_reused_digits(void) {
         uint32_t equal = 0;
         for (uint32_t k = 0; k < DRAWS; k++) {
             const uint64_t place = (uint64_t)mcs_pcg32_next(&r) << 32 | mcs_pcg32_next(&r);
-            const uint64_t v = ((uint64_t)cdf[i] << 33) + (uint64_t)((ld)place * 0x1p-64L * ((cdf[i + 1] - cdf[i]) * 0x1p33L));
+            const uint64_t v =
+                ((uint64_t)cdf[i] << 33) + (uint64_t)((ld)place * 0x1p-64L * ((cdf[i + 1] - cdf[i]) * 0x1p33L));
             const mcs_pick d = mcs_discrete_sample_bits(t, (uint32_t)(v >> 32), (uint32_t)v);
             const double fine = (double)d.u * 0x1p14;
             CHECK(d.i == i, "entry %u drawn, not %u", d.i, i);
@@ -458,8 +478,9 @@ static void test_reused_digits(void) {
     free(cdf);
 }
 
-/* Tables of more entries than a float u can tell apart: the mean of 1/(n pmf) over draws is 1 when frequencies are the pmf. Half
- * the weights are 0.01, half 1.99: the variance of one draw is 0.5/0.01 + 0.5/1.99 - 1 = 49.3. Four standard errors. */
+/* Tables of more entries than a float u can tell apart: the mean of 1/(n pmf) over draws is 1 when frequencies are the
+ * pmf. Half the weights are 0.01, half 1.99: the variance of one draw is 0.5/0.01 + 0.5/1.99 - 1 = 49.3. Four standard
+ * errors. */
 static void test_long(const kind *k, uint32_t n) {
     enum { DRAWS = 1 << 20 };
     const size_t bytes = k->bytes(n);
@@ -476,7 +497,8 @@ static void test_long(const kind *k, uint32_t n) {
         const uint32_t b2 = i < DRAWS ? mcs_pcg32_next(&rng) : 0xffffffffu;
         const mcs_pick c = k == &kinds[ALIAS] ? mcs_alias_sample_bits((const mcs_alias *)t, b1, b2)
                                               : mcs_discrete_sample_bits((const mcs_pwc *)t, b1, b2);
-        const float pmf = k == &kinds[ALIAS] ? mcs_alias_pmf((const mcs_alias *)t, c.i) : mcs_discrete_pmf((const mcs_pwc *)t, c.i);
+        const float pmf =
+            k == &kinds[ALIAS] ? mcs_alias_pmf((const mcs_alias *)t, c.i) : mcs_discrete_pmf((const mcs_pwc *)t, c.i);
         if (i < DRAWS) total += 1 / ((double)n * (double)c.pmf);
         wrong += !(c.i < n && c.u >= 0 && c.u < 1 && c.pmf == pmf);
         if (k == &kinds[PWC]) {

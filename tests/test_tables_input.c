@@ -31,8 +31,8 @@ static void test_batch(void) {
                     const draw d = kinds[linear ? PWL : PWC].sample(linear ? l.at : c.at, u[shift + i]);
                     same &= (!px || px[i] == d.x) && (!pp || pp[i] == d.pdf);
                 }
-                const int kept =
-                    x[shift] == -7.0f && pdf[shift] == -7.0f && x[shift + count + 1] == -7.0f && pdf[shift + count + 1] == -7.0f;
+                const int kept = x[shift] == -7.0f && pdf[shift] == -7.0f && x[shift + count + 1] == -7.0f &&
+                                 pdf[shift + count + 1] == -7.0f;
                 CHECK(same, "n = %zu, shift %zu, pass %d: differs from scalar", count, shift, pass);
                 CHECK(kept, "n = %zu, shift %zu, pass %d: written outside", count, shift, pass);
             }
@@ -53,8 +53,9 @@ static float f_bad(float x, void *ctx) {
 static double exact_square(double x) { return x * x * x; }
 static double exact_bump(double x) { return sqrt(3.14159265358979323846 / 50) / 2 * erf(sqrt(50) * (x - 0.4)); }
 
-/* Gauss's rule with 4 points is off by 6e-10 h^9 max|f^(8)| a cell, at most 1e-26 here. What remains is rounding: of x, one part in
- * 2^24 of it, which moves f by x f'/f as much, and inside f: 3 eps, and for the bump 3 eps of its exponent and one of expf. */
+/* Gauss's rule with 4 points is off by 6e-10 h^9 max|f^(8)| a cell, at most 1e-26 here. What remains is rounding: of x,
+ * one part in 2^24 of it, which moves f by x f'/f as much, and inside f: 3 eps, and for the bump 3 eps of its exponent
+ * and one of expf. */
 static void test_build_fn(void) {
     enum { N = 1000 };
     static const struct {
@@ -74,7 +75,8 @@ static void test_build_fn(void) {
             const double x = (i + 0.5) / N;
             const double d = fabs(x - 0.4);
             const double roundings = j ? 6 + 100 * d * x + 150 * d * d : 6;
-            CHECK(fabs(got - p) <= roundings * eps * p + (2 + N * p) * quantum, "function %d, cell %u: %g, not %g", j, i, got, p);
+            CHECK(fabs(got - p) <= roundings * eps * p + (2 + N * p) * quantum, "function %d, cell %u: %g, not %g", j,
+                  i, got, p);
         }
         arena_free(&a);
     }
@@ -87,8 +89,8 @@ static void test_build_fn(void) {
         for (uint32_t i = 0; i < 16; i++) {
             const double w = i < 8 ? 0 : i < 12 ? (double)FLT_MAX : (double)2e38f;
             const double p = w / (4 * ((double)FLT_MAX + (double)2e38f));
-            CHECK(fabs(mcs_discrete_pmf(t, i) - p) <= eps * p + (i < 8 ? 0 : 2 + 8 * p) * quantum, "cell %u: %g, not %g", i,
-                  (double)mcs_discrete_pmf(t, i), p);
+            CHECK(fabs(mcs_discrete_pmf(t, i) - p) <= eps * p + (i < 8 ? 0 : 2 + 8 * p) * quantum,
+                  "cell %u: %g, not %g", i, (double)mcs_discrete_pmf(t, i), p);
         }
         CHECK(mcs_pwc_build_fn(t, a.bytes, NULL, NULL, 16) == MCS_ERR_ARG, "no function");
         CHECK(mcs_pwc_build_fn(NULL, a.bytes, f_bad, NULL, 16) == MCS_ERR_ARG, "no memory");
@@ -98,9 +100,9 @@ static void test_build_fn(void) {
     }
 }
 
-/* Four points are exact up to degree 7. In float 8 x^7 is off by 7 eps from x and 6 from products, 1 more from the sum and one from
- * the mean: 15 eps = 9e-7 of a mean. A probability takes the share of the other cell, 1/4 or 3/4, of both errors; where that is
- * 3/4, 8 x^7 is below 1/16 and its own error 3 eps. */
+/* Four points are exact up to degree 7. In float 8 x^7 is off by 7 eps from x and 6 from products, 1 more from the sum
+ * and one from the mean: 15 eps = 9e-7 of a mean. A probability takes the share of the other cell, 1/4 or 3/4, of both
+ * errors; where that is 3/4, 8 x^7 is below 1/16 and its own error 3 eps. */
 static float f_seven(float x, void *ctx) {
     (void)ctx;
     return 1.0f + 8.0f * (x * x * x) * (x * x * x) * x;
@@ -149,9 +151,12 @@ static void test_errors(const kind *k) {
     arena_free(&a);
 }
 
-static double even_density(const kind *k, uint32_t n) { return k == &kinds[DISCRETE] || k == &kinds[ALIAS] ? 1.0 / n : 1.0; }
+static double even_density(const kind *k, uint32_t n) {
+    return k == &kinds[DISCRETE] || k == &kinds[ALIAS] ? 1.0 / n : 1.0;
+}
 
-/* Entries that are no weights count as 0, with `suns` infinite ones as the largest float; `b`: room for a table without them. */
+/* Entries that are no weights count as 0, with `suns` infinite ones as the largest float; `b`: room for a table without
+ * them. */
 static void check_cleaned(const kind *k, uint32_t n, int suns, const arena *a, const arena *b) {
     static const float nothing[5] = {NAN, -1, -INFINITY, -FLT_MAX, -FLT_MIN};
     static float clean[41];
@@ -172,23 +177,27 @@ static void check_cleaned(const kind *k, uint32_t n, int suns, const arena *a, c
     int rc = k->build(a->at, a->bytes, weight, n);
     CHECK(rc == MCS_OK && k->bad(a->at) == bad, "build returns %d, %llu bad, not %u", rc, k->bad(a->at), bad);
     rc = k->build(b->at, b->bytes, clean, n);
-    CHECK(rc == MCS_OK && k->bad(b->at) == 0 && k->total(a->at) == k->total(b->at) && k->total(a->at) <= n * (double)FLT_MAX,
+    CHECK(rc == MCS_OK && k->bad(b->at) == 0 && k->total(a->at) == k->total(b->at) &&
+              k->total(a->at) <= n * (double)FLT_MAX,
           "build returns %d, %llu bad, total %g", rc, k->bad(b->at), k->total(a->at));
     for (int j = 0; j < US; j += 7) {
         const draw c = k->sample(a->at, us[j]);
         const draw d = k->sample(b->at, us[j]);
-        CHECK(c.i == d.i && c.x == d.x && c.pdf == d.pdf && c.rest == d.rest, "u = %a: not as with clean entries", (double)us[j]);
+        CHECK(c.i == d.i && c.x == d.x && c.pdf == d.pdf && c.rest == d.rest, "u = %a: not as with clean entries",
+              (double)us[j]);
     }
 }
 static void check_all_infinite(const kind *k, uint32_t n, const arena *a) {
     for (uint32_t i = 0; i < n + k->extra; i++) weight[i] = INFINITY;
     const int rc = k->build(a->at, a->bytes, weight, n);
-    CHECK(rc == MCS_OK && !k->uniform(a->at) && k->bad(a->at) == n + k->extra && fabs(k->total(a->at) / (n * (double)FLT_MAX) - 1) <= 1e-12,
+    CHECK(rc == MCS_OK && !k->uniform(a->at) && k->bad(a->at) == n + k->extra &&
+              fabs(k->total(a->at) / (n * (double)FLT_MAX) - 1) <= 1e-12,
           "all infinite: build returns %d, %llu bad, total %g", rc, k->bad(a->at), k->total(a->at));
     for (uint32_t i = 0; i < 1 << 12; i++) {
         const draw d = k->sample(a->at, (float)i * 0x1p-12f);
         const double want = even_density(k, n);
-        CHECK(fabs(d.pdf - want) <= (2 * eps + 2 * n * quantum) * want, "all infinite: u = %u/2^12: density %g", i, (double)d.pdf);
+        CHECK(fabs(d.pdf - want) <= (2 * eps + 2 * n * quantum) * want, "all infinite: u = %u/2^12: density %g", i,
+              (double)d.pdf);
     }
 }
 static void check_all_zero(const kind *k, uint32_t n, int j, const arena *a) {
@@ -196,14 +205,14 @@ static void check_all_zero(const kind *k, uint32_t n, int j, const arena *a) {
     for (uint32_t i = 0; i < n + k->extra; i++) weight[i] = fill[j];
     const int rc = k->build(a->at, a->bytes, weight, n);
     CHECK(rc == MCS_OK && k->uniform(a->at) && arena_intact(a), "all %g: build returns %d", (double)fill[j], rc);
-    CHECK(k->bad(a->at) == (j == 2 ? n + k->extra : 0) && k->total(a->at) == 0, "all %g: %llu bad, total %g", (double)fill[j],
-          k->bad(a->at), k->total(a->at));
+    CHECK(k->bad(a->at) == (j == 2 ? n + k->extra : 0) && k->total(a->at) == 0, "all %g: %llu bad, total %g",
+          (double)fill[j], k->bad(a->at), k->total(a->at));
     for (uint32_t i = 0; i < n; i++) hits[i] = 0;
     for (uint32_t i = 0; i < 1 << 16; i++) {
         const draw d = k->sample(a->at, (float)i * 0x1p-16f);
         const double want = even_density(k, n);
-        CHECK(fabs(d.pdf - want) <= 2 * eps * want + n * quantum && d.i < n, "u = %u/2^16: entry %u, density %g", i, d.i,
-              (double)d.pdf);
+        CHECK(fabs(d.pdf - want) <= 2 * eps * want + n * quantum && d.i < n, "u = %u/2^16: entry %u, density %g", i,
+              d.i, (double)d.pdf);
         if (d.i < n) hits[d.i]++;
     }
     for (uint32_t i = 0; i < n; i++) CHECK(fabs(hits[i] - 65536.0 / n) <= 2, "entry %u: %u draws of 65536", i, hits[i]);
@@ -228,7 +237,8 @@ static void test_bad_u(const kind *k) {
     for (size_t i = 0; i < sizeof u / sizeof *u; i++) {
         const draw d = k->sample(a.at, u[i]);
         CHECK(d.pdf == 0 && d.i < 7 && d.x >= 0 && d.x <= 1 && d.rest >= 0 && d.rest < 1,
-              "u = %g: entry %u, x = %g, density %g, rest %g", (double)u[i], d.i, (double)d.x, (double)d.pdf, (double)d.rest);
+              "u = %g: entry %u, x = %g, density %g, rest %g", (double)u[i], d.i, (double)d.x, (double)d.pdf,
+              (double)d.rest);
         if (k == &kinds[PWC] && u[i] != 1.0f) {
             const float p = mcs_pwc_pdf((const mcs_pwc *)a.at, u[i]);
             const float v = mcs_pwc_invert((const mcs_pwc *)a.at, u[i]);
@@ -254,19 +264,22 @@ static void test_relocation(const kind *k) {
     for (int j = 0; j < US; j++) {
         const draw c = before[j];
         const draw d = k->sample(b.at, us[j]);
-        CHECK(c.i == d.i && c.x == d.x && c.pdf == d.pdf && c.rest == d.rest, "u = %a: the copy differs", (double)us[j]);
+        CHECK(c.i == d.i && c.x == d.x && c.pdf == d.pdf && c.rest == d.rest, "u = %a: the copy differs",
+              (double)us[j]);
     }
     arena_free(&a);
     arena_free(&b);
 }
 
-/* The same bytes whatever the memory held, for every number of entries up to 70 and some others, dark lists among them. */
+/* The same bytes whatever the memory held, for every number of entries up to 70 and some others, dark lists among them.
+ */
 static void test_same_bytes(const kind *k) {
     const uint32_t many[] = {127, 128, 129, 1000, 4095, 4096, 4097, 65537};
     for (uint32_t c = 0; c < 70 + sizeof many / sizeof *many; c++) {
         const uint32_t n = c < 70 ? c + 1 : many[c - 70];
         for (int style = 0; style < 3; style++) {
-            for (uint32_t i = 0; i < n + k->extra; i++) weight[i] = style == 0 ? hash01(i) : style == 1 && i % 3 == 0 ? 1e30f : 0;
+            for (uint32_t i = 0; i < n + k->extra; i++)
+                weight[i] = style == 0 ? hash01(i) : style == 1 && i % 3 == 0 ? 1e30f : 0;
             if (style == 1) weight[n / 2] = NAN;
             arena a[ARENA_PASTS];
             for (int past = 0; past < ARENA_PASTS; past++) {
@@ -274,8 +287,8 @@ static void test_same_bytes(const kind *k) {
                 arena_past(&a[past], past);
                 const int rc = k->build(a[past].at, a[past].bytes, weight, n);
                 CHECK(rc >= 0 && arena_intact(&a[past]), "n = %u: build returns %d", n, rc);
-                CHECK(arena_differ(&a[0], &a[past]) == a[0].bytes, "n = %u, list %d: byte %zu of %zu is another one", n, style,
-                      arena_differ(&a[0], &a[past]), a[0].bytes);
+                CHECK(arena_differ(&a[0], &a[past]) == a[0].bytes, "n = %u, list %d: byte %zu of %zu is another one", n,
+                      style, arena_differ(&a[0], &a[past]), a[0].bytes);
             }
             for (int past = 0; past < ARENA_PASTS; past++) arena_free(&a[past]);
         }
@@ -285,7 +298,8 @@ static int from_curve(void *t, size_t bytes, const float *w, uint32_t n) {
     float scale = 2 + w[0];
     return mcs_pwc_build_fn((mcs_pwc *)t, bytes, f_square, &scale, n);
 }
-static const kind curve = {"pwc from a function", 0, pwc_bytes, from_curve, pwc_sample, pwc_total, pwc_bad, pwc_uniform};
+static const kind curve = {
+    "pwc from a function", 0, pwc_bytes, from_curve, pwc_sample, pwc_total, pwc_bad, pwc_uniform};
 int main(int argc, char **argv) {
     mcst_start(argc, argv);
     make_us();

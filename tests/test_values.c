@@ -1,12 +1,14 @@
-/* Values that no sampler test looks at closely: D, G1 and G2 of GGX, the cone of a sine, what a wide alpha magnifies, what the
- * length of a half-vector must not do, the detours' sine and cosine, the steps of R2, mixtures with a bad share, the row of a
- * direction beside a border, cells that only a guard keeps. All against long double. EPS = 2^-24 is half an ulp of 1. */
+/* Values that no sampler test looks at closely: D, G1 and G2 of GGX, the cone of a sine, what a wide alpha magnifies,
+ * what the length of a half-vector must not do, the detours' sine and cosine, the steps of R2, mixtures with a bad
+ * share, the row of a direction beside a border, cells that only a guard keeps. All against long double. EPS = 2^-24 is
+ * half an ulp of 1. */
 #include "arena.h"
 #include "registry.h"
 
 #define EPS 0x1p-24
 
-static void random_direction(uint64_t *state, float lowest, float w[3]) { /* cosines from 1 to `lowest`, evenly in the logarithm */
+static void random_direction(uint64_t *state, float lowest,
+                             float w[3]) { /* cosines from 1 to `lowest`, evenly in the logarithm */
     float u, v;
     mcst_uniform(state, 1, &u, &v);
     w[2] = (float)pow((double)lowest, (double)u);
@@ -29,9 +31,10 @@ static ld relative(float got, ld want) { return fabsl((ld)got - want) / want; }
 
 static ld ggx_t(ld ax, ld ay, o_vec3 w) { return sqrtl(ax * ax * w.x * w.x + ay * ay * w.y * w.y + w.z * w.z); }
 
-/* Roundings, in EPS. t: a product and its square 3, two sums 2, half of it for the root and 1 more: 3.5. G1: 2 z/(z + t): a sum and
- * a quotient more, 5.5. G2: products z t 1, a sum, two products above it, a quotient: 8.5. D: 1/alpha and the product with it 2,
- * squared 5, two sums 7; |h|^2 4, a quotient 1: 12 of q, 25 of its square; 1/pi, two 1/alpha, two products and one more 6: 31. */
+/* Roundings, in EPS. t: a product and its square 3, two sums 2, half of it for the root and 1 more: 3.5. G1: 2 z/(z +
+ * t): a sum and a quotient more, 5.5. G2: products z t 1, a sum, two products above it, a quotient: 8.5. D: 1/alpha and
+ * the product with it 2, squared 5, two sums 7; |h|^2 4, a quotient 1: 12 of q, 25 of its square; 1/pi, two 1/alpha,
+ * two products and one more 6: 31. */
 static void ggx_values(float ax, float ay, uint64_t seed) {
     const mcs_ggx m = mcs_ggx_make(ax, ay);
     const ld a = (ld)ax;
@@ -53,23 +56,24 @@ static void ggx_values(float ax, float ay, uint64_t seed) {
             const float got1 = mcs_ggx_g1(&m, vec3(o));
             const float got2 = mcs_ggx_g2(&m, vec3(o), vec3(i));
             if (d < (ld)FLT_MAX && d > (ld)FLT_MIN)
-                CHECK(relative(got_d, d) <= 32 * EPS, "D at %g %g %g: %g, not %Lg", (double)o[0], (double)o[1], (double)o[2],
-                      (double)got_d, d);
-            CHECK(relative(got1, g1) <= 6 * EPS, "G1 at %g %g %g: %g, not %Lg", (double)o[0], (double)o[1], (double)o[2],
-                  (double)got1, g1);
-            CHECK(relative(got2, g2) <= 9 * EPS, "G2 at %g %g %g, %g %g %g: %g, not %Lg", (double)o[0], (double)o[1], (double)o[2],
-                  (double)i[0], (double)i[1], (double)i[2], (double)got2, g2);
+                CHECK(relative(got_d, d) <= 32 * EPS, "D at %g %g %g: %g, not %Lg", (double)o[0], (double)o[1],
+                      (double)o[2], (double)got_d, d);
+            CHECK(relative(got1, g1) <= 6 * EPS, "G1 at %g %g %g: %g, not %Lg", (double)o[0], (double)o[1],
+                  (double)o[2], (double)got1, g1);
+            CHECK(relative(got2, g2) <= 9 * EPS, "G2 at %g %g %g, %g %g %g: %g, not %Lg", (double)o[0], (double)o[1],
+                  (double)o[2], (double)i[0], (double)i[1], (double)i[2], (double)got2, g2);
         }
         i[2] = -i[2];
         CHECK(mcs_ggx_d(&m, vec3(i)) == 0 && mcs_ggx_g1(&m, vec3(i)) == 0 && mcs_ggx_g2(&m, vec3(o), vec3(i)) == 0 &&
                   mcs_ggx_g2(&m, vec3(i), vec3(o)) == 0,
               "below the surface, %g %g %g: D %g, G1 %g, G2 %g", (double)i[0], (double)i[1], (double)i[2],
-              (double)mcs_ggx_d(&m, vec3(i)), (double)mcs_ggx_g1(&m, vec3(i)), (double)mcs_ggx_g2(&m, vec3(o), vec3(i)));
+              (double)mcs_ggx_d(&m, vec3(i)), (double)mcs_ggx_g1(&m, vec3(i)),
+              (double)mcs_ggx_g2(&m, vec3(o), vec3(i)));
     }
 }
 
-/* Half-vectors within a slope of 10 of the normal, where a wide alpha magnifies the rounding of what it stretches: the density of
- * u, within E of the header, which is 1e-6 at least. */
+/* Half-vectors within a slope of 10 of the normal, where a wide alpha magnifies the rounding of what it stretches: the
+ * density of u, within E of the header, which is 1e-6 at least. */
 static void wide_alphas(const mcst_row *row, float ax, float ay) {
     const int bounded = strstr(row->name, "bounded") != NULL;
     uint64_t seed = mcst_seed_for(row->name, "wide", ax > ay);
@@ -97,24 +101,26 @@ static void wide_alphas(const mcst_row *row, float ax, float ay) {
         const ld want = row->truth.pdf_u(p, (ld)u[0], (ld)u[1]);
         if (!(out[3] > 0 && want > 0)) continue; /* lost */
         tried++;
-        CHECK(relative(out[3], want) <= 1e-6L, "wo %g %g %g, u %a %a: %.9g, not %.9Lg", (double)p[3], (double)p[4], (double)p[5],
-              (double)u[0], (double)u[1], (double)out[3], want);
+        CHECK(relative(out[3], want) <= 1e-6L, "wo %g %g %g, u %a %a: %.9g, not %.9Lg", (double)p[3], (double)p[4],
+              (double)p[5], (double)u[0], (double)u[1], (double)out[3], want);
     }
     CHECK(tried >= 5000, "%d half-vectors", tried);
 }
 
-/* Alphas count as the nearer end of [1e-7, 1e4]. D of the normal is 1/(pi ax ay): 1/pi, two reciprocals and two products, of alphas
- * that are floats (1e-7 is not: 1 more): 6. */
+/* Alphas count as the nearer end of [1e-7, 1e4]. D of the normal is 1/(pi ax ay): 1/pi, two reciprocals and two
+ * products, of alphas that are floats (1e-7 is not: 1 more): 6. */
 static void ends_of_alpha(void) {
-    static const float alpha[][2] = {{1e-7f, 1e-7f}, {1e-9f, 1e-7f}, {0x1p-149f, 1e-7f}, {3e-7f, 3e-7f}, {5e-6f, 5e-6f},
-                                     {1e4f, 1e4f},   {1e5f, 1e4f},   {FLT_MAX, 1e4f},    {5e3f, 5e3f},   {INFINITY, 1e4f}};
+    static const float alpha[][2] = {{1e-7f, 1e-7f}, {1e-9f, 1e-7f},  {0x1p-149f, 1e-7f}, {3e-7f, 3e-7f},
+                                     {5e-6f, 5e-6f}, {1e4f, 1e4f},    {1e5f, 1e4f},       {FLT_MAX, 1e4f},
+                                     {5e3f, 5e3f},   {INFINITY, 1e4f}};
     const mcs_vec3 up = {0, 0, 1};
     for (size_t i = 0; i < MCST_COUNT(alpha); i++) {
         const mcs_ggx x = mcs_ggx_make(alpha[i][0], 0.5f);
         const mcs_ggx y = mcs_ggx_make(0.5f, alpha[i][0]);
         const ld want = 1 / (O_PI * 0.5L * (ld)alpha[i][1]);
         CHECK(relative(mcs_ggx_d(&x, up), want) <= 8 * EPS && relative(mcs_ggx_d(&y, up), want) <= 8 * EPS,
-              "alpha %g: %g and %g, not %Lg", (double)alpha[i][0], (double)mcs_ggx_d(&x, up), (double)mcs_ggx_d(&y, up), want);
+              "alpha %g: %g and %g, not %Lg", (double)alpha[i][0], (double)mcs_ggx_d(&x, up), (double)mcs_ggx_d(&y, up),
+              want);
     }
     CHECK(mcs_is_mirror(1e-8f, 9e-8f) && !mcs_is_mirror(1e-8f, 1e-7f) && !mcs_is_mirror(0.1f, 1e-8f) &&
               !mcs_is_mirror(1e-7f, 1e-7f),
@@ -123,8 +129,9 @@ static void ends_of_alpha(void) {
 
 /* ---- half-vectors at right angles to wo ---- */
 
-/* wo.h below 1/8: its terms cancel, its own rounding would be 8 of them and more. With it to half an ulp the density has (1 - u1)
- * and its product with the norm (6: see D above), |p|^2 3, squared and with g 8, the quotient by 4 wo.h 1: 16 EPS. */
+/* wo.h below 1/8: its terms cancel, its own rounding would be 8 of them and more. With it to half an ulp the density
+ * has (1 - u1) and its product with the norm (6: see D above), |p|^2 3, squared and with g 8, the quotient by 4 wo.h 1:
+ * 16 EPS. */
 static void cancelling_cosines(const mcst_row *row, float a, float b) {
     uint64_t seed = mcst_seed_for(row->name, "cancel", a > b);
     int tried = 0;
@@ -145,18 +152,18 @@ static void cancelling_cosines(const mcst_row *row, float a, float b) {
         row->fn[0].sample(p, &u[0], &u[1], out);
         if (!(out[3] > 0)) continue;
         tried++;
-        CHECK(relative(out[3], want) <= 16 * EPS, "wo %g %g %g, u %a %a: %.9g, not %.9Lg", (double)p[3], (double)p[4], (double)p[5],
-              (double)u[0], (double)u[1], (double)out[3], want);
+        CHECK(relative(out[3], want) <= 16 * EPS, "wo %g %g %g, u %a %a: %.9g, not %.9Lg", (double)p[3], (double)p[4],
+              (double)p[5], (double)u[0], (double)u[1], (double)out[3], want);
     }
     CHECK(tried >= 1000, "%d half-vectors", tried);
 }
 
 /* ---- Ashikhmin and Shirley ---- */
 
-/* The half-vector is up to 4 ulp off unit length, and 2 (h.wo) h - wo would carry twice that into wi, across it as well as along.
- * Where |h|^2 is off by 2 EPS or more, its correction is right to the rounding of |h|^2 and of 2 - |h|^2, EPS each, which does not
- * depend on how far off |h|^2 is: the regression of the error of wi on what the length alone would do is far below 1/2; it is 1
- * without correction. */
+/* The half-vector is up to 4 ulp off unit length, and 2 (h.wo) h - wo would carry twice that into wi, across it as well
+ * as along. Where |h|^2 is off by 2 EPS or more, its correction is right to the rounding of |h|^2 and of 2 - |h|^2, EPS
+ * each, which does not depend on how far off |h|^2 is: the regression of the error of wi on what the length alone would
+ * do is far below 1/2; it is 1 without correction. */
 static void reflection_at_rounded_half(void) {
     uint64_t seed = mcst_seed_for("ashikhmin", "length", 0);
     double xx = 0;
@@ -168,7 +175,8 @@ static void reflection_at_rounded_half(void) {
         mcst_uniform(&seed, 2, &u[0], &u[2]);
         u[0] = 1 - u[0] * u[0];
         if (!(u[0] < 1)) continue;
-        const mcs_ashikhmin m = mcs_ashikhmin_make((float)pow(10, 5 * (double)u[1]), (float)pow(10, 5 * (double)u[3] - 2));
+        const mcs_ashikhmin m =
+            mcs_ashikhmin_make((float)pow(10, 5 * (double)u[1]), (float)pow(10, 5 * (double)u[3] - 2));
         mcs_vec3 h = mcs_ashikhmin_h_sample(&m, u[0], u[2]).w;
         const ld off = o_dot(o_v3(h.x, h.y, h.z), o_v3(h.x, h.y, h.z)) - 1;
         if (fabsl(off) < 2 * EPS) continue;
@@ -191,8 +199,8 @@ static void reflection_at_rounded_half(void) {
 
 /* ---- one number ---- */
 
-/* k = 1 - sqrt(1 - s) as s/(1 + sqrt(1 - s)): 1 - s EPS, of which its root has half and 1 more; that is half of the sum at most,
- * whose rounding is 1 more, the quotient 1: 2.75. */
+/* k = 1 - sqrt(1 - s) as s/(1 + sqrt(1 - s)): 1 - s EPS, of which its root has half and 1 more; that is half of the sum
+ * at most, whose rounding is 1 more, the quotient 1: 2.75. */
 static void cones(void) {
     uint64_t seed = mcst_seed_for("cone", "sine", 0);
     for (int i = 0; i < 100000; i++) {
@@ -203,12 +211,14 @@ static void cones(void) {
         const ld want = (ld)s / (1 + sqrtl(1 - (ld)s));
         if (s > 0) CHECK(relative(k, want) <= 3 * EPS, "sin^2 = %g: %g, not %Lg", (double)s, (double)k, want);
     }
-    CHECK(mcs_cone_from_sin2(0) == 0 && mcs_cone_from_sin2(-1) == 0 && mcs_cone_from_sin2(1) == 1 && mcs_cone_from_sin2(2) == 1,
+    CHECK(mcs_cone_from_sin2(0) == 0 && mcs_cone_from_sin2(-1) == 0 && mcs_cone_from_sin2(1) == 1 &&
+              mcs_cone_from_sin2(2) == 1,
           "at the ends, and beyond: %g %g %g %g", (double)mcs_cone_from_sin2(0), (double)mcs_cone_from_sin2(-1),
           (double)mcs_cone_from_sin2(1), (double)mcs_cone_from_sin2(2));
 }
 
-/* To 1e-12, as its comment says: two series to x^13 and x^14 on an eighth of a turn leave x^15/15! = 2e-14, arguments 4e-16. */
+/* To 1e-12, as its comment says: two series to x^13 and x^14 on an eighth of a turn leave x^15/15! = 2e-14, arguments
+ * 4e-16. */
 static void detour_angles(void) {
     for (int i = 0; i <= 100000; i++) {
         const double t = i / 100000.0;
@@ -216,12 +226,13 @@ static void detour_angles(void) {
         mcsi_sincos_d(t, &s, &c);
         ld sine, cosine;
         o_sincos2pi((ld)t, &sine, &cosine);
-        CHECK(fabsl((ld)s - sine) <= 1e-12L && fabsl((ld)c - cosine) <= 1e-12L, "t = %g: off by %Lg and %Lg", t, (ld)s - sine,
-              (ld)c - cosine);
+        CHECK(fabsl((ld)s - sine) <= 1e-12L && fabsl((ld)c - cosine) <= 1e-12L, "t = %g: off by %Lg and %Lg", t,
+              (ld)s - sine, (ld)c - cosine);
     }
 }
 
-/* Steps 1/g and 1/g^2, g^3 = g + 1: each is a multiple of 2^-32, off by half of one, and a coordinate is cut to 2^-24. */
+/* Steps 1/g and 1/g^2, g^3 = g + 1: each is a multiple of 2^-32, off by half of one, and a coordinate is cut to 2^-24.
+ */
 static void r2_steps(void) {
     ld g = 1.3L;
     for (uint32_t i = 0; i < 30; i++) g -= (g * g * g - g - 1) / (3 * g * g - 1);
@@ -231,12 +242,13 @@ static void r2_steps(void) {
         const ld x = (ld)p.x - (ld)first.x - (ld)i / g;
         const ld y = (ld)p.y - (ld)first.y - (ld)i / (g * g);
         const ld bound = (ld)i * 0x1p-33L + 0x1p-24L;
-        CHECK(fabsl(x - rintl(x)) <= bound && fabsl(y - rintl(y)) <= bound, "point %u: off by %Lg and %Lg", i, x - rintl(x),
-              y - rintl(y));
+        CHECK(fabsl(x - rintl(x)) <= bound && fabsl(y - rintl(y)) <= bound, "point %u: off by %Lg and %Lg", i,
+              x - rintl(x), y - rintl(y));
     }
 }
 
-/* Densities of points and directions without a lobe, within what the header says: in E, 1e-6 as they are constant or cosines. */
+/* Densities of points and directions without a lobe, within what the header says: in E, 1e-6 as they are constant or
+ * cosines. */
 static void constants(const char *name, double bound) {
     const mcst_row *row = mcst_find(name);
     uint64_t seed = mcst_seed_for(name, "constants", 0);
@@ -252,25 +264,30 @@ static void constants(const char *name, double bound) {
         float pdf;
         row->fn[0].pdf(p, out, &pdf);
         want = row->truth.pdf(p, out);
-        const ld off = row->dim == 3 ? fabsl(o_len(mcst_o3(out)) - 1) : 0; /* densities of directions are of unit ones */
-        if (want > 0) CHECK(relative(pdf, want) <= bound * 1e-6L + off, "%s: pdf of x %.9g, not %.9Lg", name, (double)pdf, want);
+        const ld off =
+            row->dim == 3 ? fabsl(o_len(mcst_o3(out)) - 1) : 0; /* densities of directions are of unit ones */
+        if (want > 0)
+            CHECK(relative(pdf, want) <= bound * 1e-6L + off, "%s: pdf of x %.9g, not %.9Lg", name, (double)pdf, want);
     }
 }
 
-/* Outside the support densities are 0 and inverses are the nearer end. Rims take in the rounding of what lies on them, 5e-7. */
+/* Outside the support densities are 0 and inverses are the nearer end. Rims take in the rounding of what lies on them,
+ * 5e-7. */
 static void beyond_the_ends(void) {
     const float top = 0.99999994f;
     CHECK(mcs_linear_pdf(1, 3, -0.1f) == 0 && mcs_linear_pdf(1, 3, 1.1f) == 0 && mcs_linear_invert(1, 3, -2) == 0 &&
               mcs_linear_invert(3, 1, 4) == top && mcs_linear_invert(1, 0, 1.5f) == top,
           "linear: %g %g %g", (double)mcs_linear_invert(1, 3, -2), (double)mcs_linear_invert(3, 1, 4),
           (double)mcs_linear_invert(1, 0, 1.5f));
-    CHECK(mcs_tent_pdf(2, -2.1f) == 0 && mcs_tent_pdf(2, 2.1f) == 0 && mcs_tent_invert(2, -3) == 0 && mcs_tent_invert(2, 3) == top,
+    CHECK(mcs_tent_pdf(2, -2.1f) == 0 && mcs_tent_pdf(2, 2.1f) == 0 && mcs_tent_invert(2, -3) == 0 &&
+              mcs_tent_invert(2, 3) == top,
           "tent: %g %g", (double)mcs_tent_invert(2, -3), (double)mcs_tent_invert(2, 3));
-    CHECK(mcs_exponential_pdf(2, -0x1p-149f) == 0 && mcs_exponential_pdf(2, -1) == 0 && mcs_exponential_invert(2, -1) == 0 &&
-              mcs_exponential_invert(2, 1e30f) == top,
+    CHECK(mcs_exponential_pdf(2, -0x1p-149f) == 0 && mcs_exponential_pdf(2, -1) == 0 &&
+              mcs_exponential_invert(2, -1) == 0 && mcs_exponential_invert(2, 1e30f) == top,
           "exponential: %g", (double)mcs_exponential_pdf(2, -1));
     CHECK(mcs_truncexp_pdf(2, 3, -1) == 0 && mcs_truncexp_pdf(2, 3, 3.1f) == 0 && mcs_truncexp_pdf(0, 3, 3.1f) == 0 &&
-              mcs_truncexp_invert(2, 3, -1) == 0 && mcs_truncexp_invert(2, 3, 4) == top && mcs_truncexp_invert(0, 3, 4) == top,
+              mcs_truncexp_invert(2, 3, -1) == 0 && mcs_truncexp_invert(2, 3, 4) == top &&
+              mcs_truncexp_invert(0, 3, 4) == top,
           "truncexp: %g, %g %g", (double)mcs_truncexp_pdf(2, 3, 3.1f), (double)mcs_truncexp_invert(2, 3, -1),
           (double)mcs_truncexp_invert(2, 3, 4));
     CHECK(mcs_power_pdf(2, -0.5f) == 0 && mcs_power_pdf(2, 1.5f) == 0 && mcs_power_invert(2, -0.5f) == 0 &&
@@ -298,7 +315,8 @@ static void opposed(void) {
     }
 }
 
-/* The place in a stratum is the middle of one of equal parts: turned round, bits and strata give the same from the other end. */
+/* The place in a stratum is the middle of one of equal parts: turned round, bits and strata give the same from the
+ * other end. */
 static void jitter(void) {
     for (uint32_t k = 0; k <= 20; k++)
         for (uint32_t i = 0; i < 1000; i++) {
@@ -359,16 +377,17 @@ static void zeros_behind(void) {
         }
         CHECK(mcs_pwc_build(t, a.bytes, f, 7) == MCS_OK, "build");
         for (int k = 0; k < 7; k++) sum += (double)mcs_discrete_pmf(t, (uint32_t)k);
-        CHECK(mcs_discrete_pmf(t, 4) == 0 && mcs_discrete_pmf(t, 5) == 0 && mcs_discrete_pmf(t, 6) == 0, "%g %g %g %g: %g",
-              (double)f[0], (double)f[1], (double)f[2], (double)f[3], (double)mcs_discrete_pmf(t, 6));
-        CHECK(fabs(sum - 1) <= 4 * EPS, "%g %g %g %g: all together %g", (double)f[0], (double)f[1], (double)f[2], (double)f[3],
-              sum);
+        CHECK(mcs_discrete_pmf(t, 4) == 0 && mcs_discrete_pmf(t, 5) == 0 && mcs_discrete_pmf(t, 6) == 0,
+              "%g %g %g %g: %g", (double)f[0], (double)f[1], (double)f[2], (double)f[3],
+              (double)mcs_discrete_pmf(t, 6));
+        CHECK(fabs(sum - 1) <= 4 * EPS, "%g %g %g %g: all together %g", (double)f[0], (double)f[1], (double)f[2],
+              (double)f[3], sum);
     }
     arena_free(&a);
 }
 
-/* Beyond 2^53 shares do not fit a double: where sums no longer grow the last entries must still get theirs. Of 2^23 + 1 entries
- * n 2^31 - n rounds up. */
+/* Beyond 2^53 shares do not fit a double: where sums no longer grow the last entries must still get theirs. Of 2^23 + 1
+ * entries n 2^31 - n rounds up. */
 static void alias_of_many(void) {
     const uint32_t n = (1u << 23) + 1;
     float *w = (float *)malloc(n * sizeof *w);
@@ -393,7 +412,8 @@ static void searches(void) {
         const uint32_t n = 1 + (uint32_t)(mcst_mix(&seed) % N);
         uint32_t cdf[N + 1];
         cdf[0] = 0;
-        for (uint32_t i = 1; i <= n; i++) cdf[i] = cdf[i - 1] + (uint32_t)(mcst_mix(&seed) % 4 ? mcst_mix(&seed) % 1000 : 0);
+        for (uint32_t i = 1; i <= n; i++)
+            cdf[i] = cdf[i - 1] + (uint32_t)(mcst_mix(&seed) % 4 ? mcst_mix(&seed) % 1000 : 0);
         if (cdf[n] == 0) continue;
         uint32_t U;
         do U = mcst_mix(&seed) % 2 ? cdf[mcst_mix(&seed) % (n + 1)] : (uint32_t)(mcst_mix(&seed) % cdf[n]);
@@ -418,13 +438,16 @@ static void ends_of_tables(void) {
     CHECK(mcs_pwc_build(c, a.bytes, f, 5) == MCS_OK && mcs_pwl_build(l, b.bytes, f, 5) == MCS_OK, "build");
     CHECK(relative(mcs_pwc_pdf(c, 0), 1) <= EPS && relative(mcs_pwc_pdf(c, 1), 4 / 3.0L) <= EPS, "pwc: %g and %g",
           (double)mcs_pwc_pdf(c, 0), (double)mcs_pwc_pdf(c, 1));
-    CHECK(relative(mcs_pwl_pdf(l, 0), 3 / 3.4L) <= EPS && relative(mcs_pwl_pdf(l, 1), 7 / 3.4L) <= EPS, "pwl: %g and %g",
-          (double)mcs_pwl_pdf(l, 0), (double)mcs_pwl_pdf(l, 1));
-    CHECK(mcs_pwc_pdf(c, -0.1f) == 0 && mcs_pwc_pdf(c, 1.1f) == 0 && mcs_pwl_pdf(l, -0.1f) == 0 && mcs_pwl_pdf(l, 1.1f) == 0,
+    CHECK(relative(mcs_pwl_pdf(l, 0), 3 / 3.4L) <= EPS && relative(mcs_pwl_pdf(l, 1), 7 / 3.4L) <= EPS,
+          "pwl: %g and %g", (double)mcs_pwl_pdf(l, 0), (double)mcs_pwl_pdf(l, 1));
+    CHECK(mcs_pwc_pdf(c, -0.1f) == 0 && mcs_pwc_pdf(c, 1.1f) == 0 && mcs_pwl_pdf(l, -0.1f) == 0 &&
+              mcs_pwl_pdf(l, 1.1f) == 0,
           "outside");
-    CHECK(mcs_pwc_invert(c, -1) == 0 && mcs_pwc_invert(c, 0) == 0 && mcs_pwc_invert(c, 1) == top && mcs_pwc_invert(c, 2) == top,
+    CHECK(mcs_pwc_invert(c, -1) == 0 && mcs_pwc_invert(c, 0) == 0 && mcs_pwc_invert(c, 1) == top &&
+              mcs_pwc_invert(c, 2) == top,
           "pwc: %g to %g", (double)mcs_pwc_invert(c, 0), (double)mcs_pwc_invert(c, 1));
-    CHECK(mcs_pwl_invert(l, -1) == 0 && mcs_pwl_invert(l, 0) == 0 && mcs_pwl_invert(l, 1) == top && mcs_pwl_invert(l, 2) == top,
+    CHECK(mcs_pwl_invert(l, -1) == 0 && mcs_pwl_invert(l, 0) == 0 && mcs_pwl_invert(l, 1) == top &&
+              mcs_pwl_invert(l, 2) == top,
           "pwl: %g to %g", (double)mcs_pwl_invert(l, 0), (double)mcs_pwl_invert(l, 1));
     CHECK(mcs_discrete_pmf(c, 5) == 0 && mcs_discrete_pmf(c, UINT32_MAX) == 0, "entries beyond the last: %g",
           (double)mcs_discrete_pmf(c, 5));
@@ -440,9 +463,9 @@ static ld border(uint32_t k, uint32_t h) {
     return 2 * s * s;
 }
 
-/* Directions beside the borders of rows: 1 - cos(theta) of a float direction is known to 4 EPS (two products and a sum 2, 1 + |z|
- * 1, a quotient 1) and the error of its length, the guess from the angle only to 2^-23 turns: a row off that is not set right
- * shows. */
+/* Directions beside the borders of rows: 1 - cos(theta) of a float direction is known to 4 EPS (two products and a sum
+ * 2, 1 + |z| 1, a quotient 1) and the error of its length, the guess from the angle only to 2^-23 turns: a row off that
+ * is not set right shows. */
 static void rows_beside_borders(uint32_t h) {
     float *light = (float *)malloc(2 * (size_t)h * sizeof *light);
     arena a = arena_make(mcs_env_bytes(2, h));
@@ -472,11 +495,12 @@ static void rows_beside_borders(uint32_t h) {
         if (t < border(m, h)) m--;
         beside++;
         const uint32_t row = mcs_env_texel(e, vec3(w)).row;
-        CHECK(row == (w[2] < 0 ? h - 1 - m : m), "(%a, %a, %a): row %u, not %u", (double)w[0], (double)w[1], (double)w[2], row,
-              w[2] < 0 ? h - 1 - m : m);
+        CHECK(row == (w[2] < 0 ? h - 1 - m : m), "(%a, %a, %a): row %u, not %u", (double)w[0], (double)w[1],
+              (double)w[2], row, w[2] < 0 ? h - 1 - m : m);
     }
     CHECK(beside >= 10000, "%d directions", beside);
-    /* What holds whatever the angle's rounding is: the angle only has to be right to 2^-23 turns, 1 - cos says which row it is. */
+    /* What holds whatever the angle's rounding is: the angle only has to be right to 2^-23 turns, 1 - cos says which
+     * row it is. */
     for (int i = 0; i < 200000; i++) {
         const uint32_t last = (h - 1) / 2;
         const uint32_t m = (uint32_t)(mcst_mix(&seed) % (last + 1));
@@ -484,8 +508,8 @@ static void rows_beside_borders(uint32_t h) {
         const int off = (int)(mcst_mix(&seed) % 3) - 1;
         float u, v;
         mcst_uniform(&seed, 1, &u, &v);
-        const float t =
-            (float)(border(m, h) + (fminl(border(m + 1, h), 1) - border(m, h)) * (ld)(i & 2 ? u * 0x1p-6f : 1 - u * 0x1p-6f));
+        const float t = (float)(border(m, h) + (fminl(border(m + 1, h), 1) - border(m, h)) *
+                                                   (ld)(i & 2 ? u * 0x1p-6f : 1 - u * 0x1p-6f));
         if (!((ld)t > border(m, h) && ((ld)t < border(m + 1, h) || m == last))) continue; /* beyond a border */
         u = (float)(acos(1 - (double)t) / (2 * ST_PI) + off * 0x1p-23);
         u = u > 0 ? u : 0;
@@ -517,8 +541,8 @@ static void lone_texels(void) {
         arena a;
         mcs_env *e = map_of(&a, light, W, H);
         const mcs_texel t = mcs_env_sample(e, 0.3f, 0.7f);
-        CHECK(t.col == c && t.row == 1 && t.pdf > 0 && mcs_env_pdf(e, t.w) == t.pdf, "column %u: drawn %u, %u, density %g", c,
-              t.col, t.row, (double)t.pdf);
+        CHECK(t.col == c && t.row == 1 && t.pdf > 0 && mcs_env_pdf(e, t.w) == t.pdf,
+              "column %u: drawn %u, %u, density %g", c, t.col, t.row, (double)t.pdf);
         arena_free(&a);
     }
 }
@@ -576,14 +600,15 @@ static void texels_of_even_maps(void) {
         mcs_env_sample_n(e, N, u1, u2, NULL, NULL, NULL, NULL, form & 1 ? col : NULL, form & 2 ? row : NULL);
         for (int i = 0; i < N; i++) {
             const mcs_texel t = mcs_env_sample(e, u1[i], u2[i]);
-            CHECK((!(form & 1) || col[i] == t.col) && (!(form & 2) || row[i] == t.row), "outputs %d: %u, %u, not %u, %u", form,
-                  col[i], row[i], t.col, t.row);
+            CHECK((!(form & 1) || col[i] == t.col) && (!(form & 2) || row[i] == t.row),
+                  "outputs %d: %u, %u, not %u, %u", form, col[i], row[i], t.col, t.row);
         }
     }
     arena_free(&a);
 }
 
-/* Borders of rows: the series ends at t^17 with t below pi/4, what is left out is below 1e-18; 16 roundings of 2^-53. */
+/* Borders of rows: the series ends at t^17 with t below pi/4, what is left out is below 1e-18; 16 roundings of 2^-53.
+ */
 static void borders_of_rows(void) {
     for (int i = 0; i <= 100000; i++) {
         const double x = i / 100000.0;
@@ -596,10 +621,12 @@ static void borders_of_rows(void) {
 
 /* ---- product ---- */
 
-/* The lobe's share as the header has it: (1 - matte) m/(1 + m), at most 0.95, where m + 0.03 is a fourteenth of the mean solid
- * angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), three times as much without GGX's tails. Some ten roundings of m. */
+/* The lobe's share as the header has it: (1 - matte) m/(1 + m), at most 0.95, where m + 0.03 is a fourteenth of the
+ * mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), three times as much without GGX's tails. Some ten
+ * roundings of m. */
 static void share_of_the_lobe(void) {
-    static const float alphas[][2] = {{1, 1}, {0.08f, 0.08f}, {0.03f, 0.03f}, {0.02f, 0.01f}, {0.01f, 0.01f}, {1e-3f, 1e-3f}};
+    static const float alphas[][2] = {{1, 1},         {0.08f, 0.08f}, {0.03f, 0.03f},
+                                      {0.02f, 0.01f}, {0.01f, 0.01f}, {1e-3f, 1e-3f}};
     static const float mattes[] = {0, 0.25f, 1};
     float light[32 * 16];
     const mcs_image image = mcs_image_make(light, 32, 16, 1);
@@ -636,8 +663,8 @@ static void share_of_the_lobe(void) {
     arena_free(&memory);
 }
 
-/* However little a tile weighs beside another, in its row or in another one, it can be drawn, and where it weighs nothing it
- * cannot: not by u = 0 either. */
+/* However little a tile weighs beside another, in its row or in another one, it can be drawn, and where it weighs
+ * nothing it cannot: not by u = 0 either. */
 static void tiny_tiles(void) {
     enum { ROWS = 16, TILES = 2 * ROWS * ROWS };
     static float weight[TILES];
@@ -656,20 +683,21 @@ static void tiny_tiles(void) {
     weight[9 * ROWS + 3] = 1e-12f;
     CHECK(mcs_product_build_weights(p, memory.bytes, t, e, weight) == MCS_OK, "product");
     for (uint32_t k = 0; k < TILES; k++)
-        CHECK((mcs_product_pdf(p, t, e, mcs_tiles_direction(t, e, k)) > 0) == (weight[k] > 0), "tile %u of weight %g: density %g",
-              k, (double)weight[k], (double)mcs_product_pdf(p, t, e, mcs_tiles_direction(t, e, k)));
+        CHECK((mcs_product_pdf(p, t, e, mcs_tiles_direction(t, e, k)) > 0) == (weight[k] > 0),
+              "tile %u of weight %g: density %g", k, (double)weight[k],
+              (double)mcs_product_pdf(p, t, e, mcs_tiles_direction(t, e, k)));
     for (uint32_t k = 0; k < 4; k++) {
         const mcs_texel x = mcs_product_sample(p, t, e, k & 1 ? 0.5f : 0, k & 2 ? 0.5f : 0);
-        CHECK(x.pdf > 0 && relative(mcs_product_pdf(p, t, e, x.w), (ld)x.pdf) <= 1e-5L, "draw %u: density %g, of its direction %g",
-              k, (double)x.pdf, (double)mcs_product_pdf(p, t, e, x.w));
+        CHECK(x.pdf > 0 && relative(mcs_product_pdf(p, t, e, x.w), (ld)x.pdf) <= 1e-5L,
+              "draw %u: density %g, of its direction %g", k, (double)x.pdf, (double)mcs_product_pdf(p, t, e, x.w));
     }
     arena_free(&map);
     arena_free(&tiles);
     arena_free(&memory);
 }
 
-/* A fine grid: 8 x 8 values column by column, bilinear between, then what its rows of nodes weigh by trapezoids over the columns.
- * Relative to its mean, from the sums: some 20 roundings of floats, most of them of the sums. */
+/* A fine grid: 8 x 8 values column by column, bilinear between, then what its rows of nodes weigh by trapezoids over
+ * the columns. Relative to its mean, from the sums: some 20 roundings of floats, most of them of the sums. */
 static void fine_grids(void) {
     enum { M = MCSI_NODES };
     uint64_t seed = mcst_seed_for("product", "fine", 0);
@@ -698,8 +726,8 @@ static void fine_grids(void) {
                         (ld)mean;
         const double got = (double)mcsi_grid_density(v, u[0], u[1]);
         /* values of up to 1000 times the least, differences of which are rounded; places to 7 * 2^-24 */
-        CHECK(fabsl((ld)got - want) <= 20 * EPS * want + 40 * EPS * 1000 / (ld)mean, "at %g, %g: %g, not %Lg", (double)u[0],
-              (double)u[1], got, want);
+        CHECK(fabsl((ld)got - want) <= 20 * EPS * want + 40 * EPS * 1000 / (ld)mean, "at %g, %g: %g, not %Lg",
+              (double)u[0], (double)u[1], got, want);
     }
 }
 
@@ -745,9 +773,9 @@ static void surface_free(lit_surface *s) {
     arena_free(&s->memory);
 }
 
-/* Even light and a surface that both stay the same when y changes sign: so does the density, by columns from both ends of the map.
- * Weights of tiles are integers over 2^24 of a row, of which there are 32; a place among the light is known to 2^-21 of the map,
- * 2^-16 of a tile, whose density changes by a few times itself at most: 1e-4. */
+/* Even light and a surface that both stay the same when y changes sign: so does the density, by columns from both ends
+ * of the map. Weights of tiles are integers over 2^24 of a row, of which there are 32; a place among the light is known
+ * to 2^-21 of the map, 2^-16 of a tile, whose density changes by a few times itself at most: 1e-4. */
 static void mirrored(float alpha) {
     enum { W = 64, H = 32 };
     uint64_t seed = mcst_seed_for("product", "mirror", alpha > 0.1f);
@@ -764,8 +792,10 @@ static void mirrored(float alpha) {
         const double q = (double)mcs_product_pdf(s.p, s.t, s.e, b.w);
         const double f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, a.w);
         const double g = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, b.w);
-        CHECK(fabs(p - q) <= 1e-4 * p, "(%g, %g, %g): %g, mirrored %g", (double)a.w.x, (double)a.w.y, (double)a.w.z, p, q);
-        CHECK(fabs(f - g) <= 1e-4 * f, "(%g, %g, %g): one-shot %g, mirrored %g", (double)a.w.x, (double)a.w.y, (double)a.w.z, f, g);
+        CHECK(fabs(p - q) <= 1e-4 * p, "(%g, %g, %g): %g, mirrored %g", (double)a.w.x, (double)a.w.y, (double)a.w.z, p,
+              q);
+        CHECK(fabs(f - g) <= 1e-4 * f, "(%g, %g, %g): one-shot %g, mirrored %g", (double)a.w.x, (double)a.w.y,
+              (double)a.w.z, f, g);
     }
     surface_free(&s);
 }
@@ -785,16 +815,16 @@ static void black_rows(void) {
         const int black = mcs_env_texel(s.e, w).row % 2 == 0;
         const double p = (double)mcs_product_pdf(s.p, s.t, s.e, w);
         const double f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, w);
-        CHECK(black ? p == 0 && f == 0 : p >= 0 && f >= 0, "(%g, %g, %g): %g, one-shot %g", (double)w.x, (double)w.y, (double)w.z,
-              p, f);
+        CHECK(black ? p == 0 && f == 0 : p >= 0 && f >= 0, "(%g, %g, %g): %g, one-shot %g", (double)w.x, (double)w.y,
+              (double)w.z, p, f);
         lit += p > 0;
     }
     CHECK(lit > 500, "%d of 3000 directions", lit);
     surface_free(&s);
 }
 
-/* Draws of the one-shot form over scattered light: none is lost while there is light above the horizon, and the density of a draw
- * is that of its direction, to the rounding of its place as above. */
+/* Draws of the one-shot form over scattered light: none is lost while there is light above the horizon, and the density
+ * of a draw is that of its direction, to the rounding of its place as above. */
 static void one_shot_draws(void) {
     enum { W = 64, H = 32 };
     uint64_t seed = mcst_seed_for("product", "one-shot", 0);

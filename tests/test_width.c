@@ -1,17 +1,20 @@
-/* Design check 7: the 4, 8 and 16 wide forms and the array forms give what the scalar form gives, bit for bit, for every row; and
- * the registry is complete: every public sampler of the header has a row or a test of its own.
+/* Design check 7: the 4, 8 and 16 wide forms and the array forms give what the scalar form gives, bit for bit, for
+ * every row; and the registry is complete: every public sampler of the header has a row or a test of its own.
  *
- * Same bits need a build without contraction (the header's terms). Where the compiler contracts a*b + c, values differ by roundings
- * and by what a sharp lobe makes of them: there only gross errors (0.1 %) are looked for. */
+ * Same bits need a build without contraction (the header's terms). Where the compiler contracts a*b + c, values differ
+ * by roundings and by what a sharp lobe makes of them: there only gross errors (0.1 %) are looked for. */
 #define MCST_WIDE /* -DMCST_ARRAYS: array forms alone, in a third of the time */
 #include "index.h"
 #include "registry.h"
 
-static int lanes_contract, arrays_contract; /* the wide forms; the array forms, which choose their instructions at run time */
+static int lanes_contract,
+    arrays_contract; /* the wide forms; the array forms, which choose their instructions at run time */
 
 static void find_contraction(void) {
     lanes_contract = mcst_contracts(), arrays_contract = mcst_arrays_contract();
-    printf("a*b + c is contracted in: %s\n", lanes_contract ? "everything" : arrays_contract ? "the array forms" : "nothing");
+    printf("a*b + c is contracted in: %s\n", lanes_contract    ? "everything"
+                                             : arrays_contract ? "the array forms"
+                                                               : "nothing");
 }
 
 enum { N = 67, LANES = 16 };
@@ -82,35 +85,39 @@ static void check_lanes(const mcst_row *row, int form, int lanes, uint64_t *stat
             if (lanes_contract && (i == 6 || i == 7))
                 continue; /* the azimuth of a point at the pole is nothing but its roundings */
             CHECK(same(out[i * lanes + l], want[l][i], lanes_contract),
-                  "%d wide, lane %d, result %d: %.9g, scalar %.9g (p %g %g, wo %g %g %g, u %a %a, x %.9g %.9g %.9g)", lanes, l, i,
-                  (double)out[i * lanes + l], (double)want[l][i], (double)p[l], (double)p[lanes + l], (double)p[3 * lanes + l],
-                  (double)p[4 * lanes + l], (double)p[5 * lanes + l], (double)u1[l], (double)u2[l], (double)x[l],
-                  (double)x[lanes + l], (double)x[2 * lanes + l]);
+                  "%d wide, lane %d, result %d: %.9g, scalar %.9g (p %g %g, wo %g %g %g, u %a %a, x %.9g %.9g %.9g)",
+                  lanes, l, i, (double)out[i * lanes + l], (double)want[l][i], (double)p[l], (double)p[lanes + l],
+                  (double)p[3 * lanes + l], (double)p[4 * lanes + l], (double)p[5 * lanes + l], (double)u1[l],
+                  (double)u2[l], (double)x[l], (double)x[lanes + l], (double)x[2 * lanes + l]);
         }
 }
 
-/* --- array forms ------------------------------------------------------------------------------------------------------------ */
+/* --- array forms
+ * ------------------------------------------------------------------------------------------------------------ */
 
 static const float guard = -123456.0f;
 enum { ROOM = N + 8 };
 
 /* Which of x, y, z, pdf, weight the array form writes. */
-static int writes(const mcst_row *row, int k) { return k < row->dim || k == 3 || (k == 4 && row->shape == MCST_IS_BRDF); }
+static int writes(const mcst_row *row, int k) {
+    return k < row->dim || k == 3 || (k == 4 && row->shape == MCST_IS_BRDF);
+}
 
-/* What an array form wrote at `to`, beginning with entry `first` of a row of guards: `want`, n of them, and nothing else. */
+/* What an array form wrote at `to`, beginning with entry `first` of a row of guards: `want`, n of them, and nothing
+ * else. */
 static void check_written(const char *what, const float *to, size_t first, const float *want, size_t n) {
     size_t i;
     for (i = 0; i < ROOM; i++) {
         if (i >= first && i < first + n)
-            CHECK(same(to[i], want[i - first], arrays_contract), "%s[%zu] of %zu: %.9g, scalar %.9g", what, i - first, n,
-                  (double)to[i], (double)want[i - first]);
+            CHECK(same(to[i], want[i - first], arrays_contract), "%s[%zu] of %zu: %.9g, scalar %.9g", what, i - first,
+                  n, (double)to[i], (double)want[i - first]);
         else CHECK(to[i] == guard, "%s: wrote at %zu of %zu", what, i - first, n);
     }
 }
 
 /* Of every n, now and then without some outputs, from places of every alignment. Fills want: x, y, z, pdf, weight. */
-static void check_sample_n(const mcst_row *row, const float *p, uint64_t *state, const float *u1, const float *u2, int shift,
-                           float want[5][N]) {
+static void check_sample_n(const mcst_row *row, const float *p, uint64_t *state, const float *u1, const float *u2,
+                           int shift, float want[5][N]) {
     float buffer[5][ROOM];
     const float *v1 = u1 + shift, *v2 = u2 + (shift * 2) % 4;
     size_t n, i;
@@ -189,7 +196,8 @@ static void check_arrays(const mcst_row *row, const float *p, uint64_t *state) {
     if (row->pdf_n) check_values_n(row, p, want);
 }
 
-/* --- is the registry complete? ------------------------------------------------------------------------------------------------ */
+/* --- is the registry complete?
+ * ------------------------------------------------------------------------------------------------ */
 
 static int is_known(const char *name) {
     size_t i;
@@ -205,8 +213,8 @@ static void check_registry(void) {
     char name[MCST_NAME];
     size_t i;
     int k;
-    CHECK(mcst_read_names() && mcst_name_count > 100, "%d functions in %s; run the test where it is, or compile with -DMCS_HEADER",
-          mcst_name_count, MCS_HEADER);
+    CHECK(mcst_read_names() && mcst_name_count > 100,
+          "%d functions in %s; run the test where it is, or compile with -DMCS_HEADER", mcst_name_count, MCS_HEADER);
     for (k = 0; k < mcst_name_count; k++) {
         const size_t length = strlen(mcst_name[k]), tail = strlen("_sample");
         if (length < 4 + tail || strcmp(mcst_name[k] + length - tail, "_sample") != 0) continue;
@@ -215,7 +223,8 @@ static void check_registry(void) {
     }
     for (i = 0; i < MCST_NROWS; i++) {
         snprintf(name, sizeof name, "mcs_%s_sample", mcst_rows[i].function);
-        CHECK(mcst_name_at(name, mcst_name, mcst_name_count) >= 0, "row %s: %s is not in %s", mcst_rows[i].name, name, MCS_HEADER);
+        CHECK(mcst_name_at(name, mcst_name, mcst_name_count) >= 0, "row %s: %s is not in %s", mcst_rows[i].name, name,
+              MCS_HEADER);
     }
 }
 
@@ -238,7 +247,8 @@ int main(int argc, char **argv) {
         for (j = 0; j < 4; j++) {
             float p[MCST_P];
             mcst_grid_get(row, (j * 37) % mcst_grid_count(row), p);
-            if (mcst_case("arrays %g %g, wo %g %g %g", (double)p[0], (double)p[1], (double)p[3], (double)p[4], (double)p[5]))
+            if (mcst_case("arrays %g %g, wo %g %g %g", (double)p[0], (double)p[1], (double)p[3], (double)p[4],
+                          (double)p[5]))
                 check_arrays(row, p, &state);
         }
     }

@@ -1,4 +1,5 @@
-/* The truth of every row of the registry, in oracle.h, in one uniform shape: part of registry.h, or of tests/shared/rows.c.
+/* The truth of every row of the registry, in oracle.h, in one uniform shape: part of registry.h, or of
+ * tests/shared/rows.c.
  *
  *     map(p, u1, u2, x)   the exact point         pdf(p, x), pdf_u(p, u1, u2)   its density
  *     invert(p, x, u)     eval(p, x)   weight(p, x) */
@@ -25,7 +26,9 @@
         (void)u2;                                                                                                  \
         return o_##fn##_pdf_u(OA_##args u1);                                                                       \
     }                                                                                                              \
-    MCST_HOST_FN void mcsto_##row##_invert(const float *p, const float *x, ld *u) { u[0] = o_##fn##_invert(OA_##args(ld) x[0]); }
+    MCST_HOST_FN void mcsto_##row##_invert(const float *p, const float *x, ld *u) {                                \
+        u[0] = o_##fn##_invert(OA_##args(ld) x[0]);                                                                \
+    }
 
 /* `point` takes the floats of a point to the oracle's type; `put` stores a mapped point; `lead` may end in wo. */
 #define MCST_O_UV(row, fn, lead, type, point, put)                             \
@@ -61,9 +64,13 @@
 #define MCST_O_VLOBE(row, fn, args)                                    \
     MCST_O_UV(row, fn, MCST_LEAD_WO(args), o_vec3, mcst_o3, MCST_PUT3) \
     MCST_O_INVERT(row, fn, MCST_LEAD_WO(args), mcst_o3)
-#define MCST_O_BRDF(row, fn, args)                                                                                              \
-    MCST_O_UV(row, fn, MCST_LEAD_WO(args), o_vec3, mcst_o3, MCST_PUT3)                                                          \
-    MCST_HOST_FN ld mcsto_##row##_eval(const float *p, const float *x) { return o_##fn##_eval(MCST_LEAD_WO(args) mcst_o3(x)); } \
-    MCST_HOST_FN ld mcsto_##row##_weight(const float *p, const float *x) { return o_##fn##_weight(MCST_LEAD_WO(args) mcst_o3(x)); }
+#define MCST_O_BRDF(row, fn, args)                                         \
+    MCST_O_UV(row, fn, MCST_LEAD_WO(args), o_vec3, mcst_o3, MCST_PUT3)     \
+    MCST_HOST_FN ld mcsto_##row##_eval(const float *p, const float *x) {   \
+        return o_##fn##_eval(MCST_LEAD_WO(args) mcst_o3(x));               \
+    }                                                                      \
+    MCST_HOST_FN ld mcsto_##row##_weight(const float *p, const float *x) { \
+        return o_##fn##_weight(MCST_LEAD_WO(args) mcst_o3(x));             \
+    }
 #define MCST_O(shape, row, fn, arg, base, coord, grid) MCST_O_##shape(row, fn, arg)
 MCST_ROWS(MCST_O)

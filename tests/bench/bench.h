@@ -1,12 +1,12 @@
 /* What the benchmarks share: clock, repetitions, the description of machine and build, files, progress.
  *
- *     bench_start(argc, argv, "throughput");            --quick, --out DIRECTORY (default build/bench, made when missing)
- *     FILE *csv = bench_csv("throughput.csv", "sampler,form,...");
+ *     bench_start(argc, argv, "throughput");            --quick, --out DIRECTORY (default build/bench, made when
+ *     missing) FILE *csv = bench_csv("throughput.csv", "sampler,form,...");
  *     bench_progress("%d of %d", i, n);                 one line on stderr that overwrites itself; only on a terminal
  *     bench_spread s = bench_spread_of(times, rounds);  median, min, max
  *
- * Times are of interleaved repetitions: whatever is to be compared takes turns, so that other load and changes of clock speed meet
- * all of it. BENCH_FLAGS is the compiler's command line as a string, defined by the Makefile. */
+ * Times are of interleaved repetitions: whatever is to be compared takes turns, so that other load and changes of clock
+ * speed meet all of it. BENCH_FLAGS is the compiler's command line as a string, defined by the Makefile. */
 #ifndef BENCH_H
 #define BENCH_H
 #include <errno.h>
@@ -114,10 +114,11 @@ static inline void bench_start(int argc, char **argv, const char *name) {
     bench_cpu(cpu, sizeof cpu);
 #if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__))
     __builtin_cpu_init();
-    units = __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")
-                ? ", AVX-512"
-            : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? ", AVX2"
-                                                                              : ", SSE2";
+    units =
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")
+            ? ", AVX-512"
+        : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? ", AVX2"
+                                                                          : ", SSE2";
 #endif
     snprintf(bench.title, sizeof bench.title, "%s; %s; %s%s%s", BENCH_COMPILER, BENCH_FLAGS, cpu, units,
              bench.quick ? "; quick run" : "");
@@ -131,7 +132,8 @@ static inline const char *bench_path(const char *file) {
     return path;
 }
 
-/* A CSV file whose first line says, behind a '#', what ran where; its second line names the columns. Exits when it cannot be made.
+/* A CSV file whose first line says, behind a '#', what ran where; its second line names the columns. Exits when it
+ * cannot be made.
  */
 static inline FILE *bench_csv(const char *file, const char *columns) {
     FILE *f = fopen(bench_path(file), "w");

@@ -1,13 +1,14 @@
-/* clock ROUNDS COMMAND...: runs the shell commands in turn, ROUNDS times, and prints for each the median, least and greatest
- * processor time (user and system, children included) in milliseconds. Processor time, as it is what a compiler costs on an idle
- * machine. */
+/* clock ROUNDS COMMAND...: runs the shell commands in turn, ROUNDS times, and prints for each the median, least and
+ * greatest processor time (user and system, children included) in milliseconds. Processor time, as it is what a
+ * compiler costs on an idle machine. */
 #include "bench.h"
 #include <sys/resource.h>
 
 static double processor_ms(void) {
     struct rusage r;
     getrusage(RUSAGE_CHILDREN, &r);
-    return (double)(r.ru_utime.tv_sec + r.ru_stime.tv_sec) * 1e3 + (double)(r.ru_utime.tv_usec + r.ru_stime.tv_usec) * 1e-3;
+    return (double)(r.ru_utime.tv_sec + r.ru_stime.tv_sec) * 1e3 +
+           (double)(r.ru_utime.tv_usec + r.ru_stime.tv_usec) * 1e-3;
 }
 
 int main(int argc, char **argv) {

@@ -1,18 +1,18 @@
-/* Run time against error: direct illumination of a surface by an environment map, estimated by every strategy with every kind of
- * points; root-mean-square (rms) error over the number of samples and over seconds. Writes convergence.csv and a plot per material,
- * prints the time to reach 1 %, the slopes, the variances over that of product sampling, product sampling with 1, 4, 16 and 64
- * samples per shading point against MIS, which targets are met, and how far errors and references can be trusted. "product 4" is
- * product sampling in its prepared form with a set-up for every 4 samples, as if the shading point were another one then: the time
- * is that of the set-ups too.
+/* Run time against error: direct illumination of a surface by an environment map, estimated by every strategy with
+ * every kind of points; root-mean-square (rms) error over the number of samples and over seconds. Writes
+ * convergence.csv and a plot per material, prints the time to reach 1 %, the slopes, the variances over that of product
+ * sampling, product sampling with 1, 4, 16 and 64 samples per shading point against MIS, which targets are met, and how
+ * far errors and references can be trusted. "product 4" is product sampling in its prepared form with a set-up for
+ * every 4 samples, as if the shading point were another one then: the time is that of the set-ups too.
  *
  *     convergence [--quick] [map.hdr ...]
  *
- * Times and errors are measured apart: times over short estimates in turns (measure_seconds), errors over few long runs, whose
- * pieces are the shorter estimates (measure_errors). Errors with independent points are the measured variance per sample over n, so
- * their slope is -1/2 by construction. Standard errors of the rms errors are printed.
+ * Times and errors are measured apart: times over short estimates in turns (measure_seconds), errors over few long
+ * runs, whose pieces are the shorter estimates (measure_errors). Errors with independent points are the measured
+ * variance per sample over n, so their slope is -1/2 by construction. Standard errors of the rms errors are printed.
  *
- * The truth is a quadrature in double over the texels of the map, with its own formulas (reference_at). It shares with the measured
- * estimates only the map, and is compared with them at the end. */
+ * The truth is a quadrature in double over the texels of the map, with its own formulas (reference_at). It shares with
+ * the measured estimates only the map, and is compared with them at the end. */
 #define _POSIX_C_SOURCE 200809L
 #include "convergence_report.h"
 
@@ -77,14 +77,15 @@ int main(int argc, char **argv) {
     levels = bench.quick ? 5 : LEVELS;
     batches = bench.quick ? BATCHES / 2 : BATCHES;
     const uint32_t h = bench.quick ? 128 : 256;
-    int ok =
-        map_make(&maps[0], "sky", sky, 1, h) && map_make(&maps[1], "sun", sunlit, 0, h) && map_make(&maps[2], "flat", flat, 1, h);
+    int ok = map_make(&maps[0], "sky", sky, 1, h) && map_make(&maps[1], "sun", sunlit, 0, h) &&
+             map_make(&maps[2], "flat", flat, 1, h);
     for (int e = 3; ok && e < count; e++) ok = map_read(&maps[e], files[e]);
     result *all = calloc((size_t)(MATERIALS * count), sizeof *all);
     prepared = malloc(mcs_product_bytes(TILES));
     if (!ok || !all || !prepared) return 1;
-    FILE *csv = bench_csv("convergence.csv",
-                          "material,map,strategy,points,samples,repetitions,rms_relative_error,seconds,slope,reference_error");
+    FILE *csv =
+        bench_csv("convergence.csv",
+                  "material,map,strategy,points,samples,repetitions,rms_relative_error,seconds,slope,reference_error");
     for (int m = 0; m < MATERIALS && ok; m++) {
         measure_material(m, maps, count, all, csv);
         ok = plot_material(&materials[m], maps, count, &all[m * count]) == 0;

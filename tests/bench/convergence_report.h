@@ -11,9 +11,9 @@ static void write_rows(FILE *f, const scene *s, const result *r) {
         for (int kind = 0; kind < GENERATORS; kind++)
             for (int l = 0; l < levels; l++) {
                 const level *v = &r->of[how][kind][l];
-                fprintf(f, "\"%s\",\"%s\",%s,%s,%u,%d,%.4g,%.4g,%.3f,%.2g\n", s->m->name, s->e->name, strategy_name[how],
-                        generator_name[kind], v->n, v->repetitions, v->rms, v->seconds, slope(r, r->of[how][kind], 1),
-                        r->reference_error);
+                fprintf(f, "\"%s\",\"%s\",%s,%s,%u,%d,%.4g,%.4g,%.3f,%.2g\n", s->m->name, s->e->name,
+                        strategy_name[how], generator_name[kind], v->n, v->repetitions, v->rms, v->seconds,
+                        slope(r, r->of[how][kind], 1), r->reference_error);
             }
 }
 
@@ -44,12 +44,13 @@ static int plot_panel(const char *file, const material *m, const map *e, const r
     char text[128];
     snprintf(text, sizeof text, "%s, %.31s", m->name, e->name);
     svg_plot p;
-    svg_begin(&p, file, text, "microseconds per estimate, points included", "rms relative error", 1, 1, lo[0] / 1.2, hi[0] * 1.2,
-              fmax(lo[1] / 1.5, floor_at), fmin(hi[1] * 1.5, ceiling));
+    svg_begin(&p, file, text, "microseconds per estimate, points included", "rms relative error", 1, 1, lo[0] / 1.2,
+              hi[0] * 1.2, fmax(lo[1] / 1.5, floor_at), fmin(hi[1] * 1.5, ceiling));
     for (int c = 0; c <= STRATEGIES; c++) {
         const char *name = strategy_name[c < STRATEGIES ? c : plain];
         if (c == (int)left_out[0] || c == (int)left_out[1]) continue;
-        snprintf(text, sizeof text, "%s%s%s", name, c < STRATEGIES ? "" : " indep.", y[c][levels - 1] < floor_at ? " (exact)" : "");
+        snprintf(text, sizeof text, "%s%s%s", name, c < STRATEGIES ? "" : " indep.",
+                 y[c][levels - 1] < floor_at ? " (exact)" : "");
         svg_series(&p, text, levels, x[c], y[c], SVG_LINE);
     }
     svg_note(&p, "Sobol points, scrambled, where");
@@ -109,8 +110,8 @@ static void print_time(double seconds, char mark) {
 }
 
 static void print_prices(const map *maps, int count, const result *all) {
-    printf("\nMicroseconds to 1 %% rms relative error by strategy, with Sobol points; * the fastest\n%-18s %-10s", "material",
-           "map");
+    printf("\nMicroseconds to 1 %% rms relative error by strategy, with Sobol points; * the fastest\n%-18s %-10s",
+           "material", "map");
     for (int how = 0; how < STRATEGIES; how++) printf(" %-10s", strategy_name[how]);
     printf("\n");
     for (int m = 0; m < MATERIALS; m++) {
@@ -143,7 +144,8 @@ static void print_prices(const map *maps, int count, const result *all) {
             printf(" %.3g\n", p[INDEPENDENT].seconds / p[SOBOL].seconds);
         }
     }
-    printf("< the fewest samples tried, 16, are enough; ~ extrapolated; > extrapolated, but bright samples were so rare that\n"
+    printf("< the fewest samples tried, 16, are enough; ~ extrapolated; > extrapolated, but bright samples were so "
+           "rare that\n"
            "it is a lower bound; all others interpolated between sample counts that differ by 4\n");
 }
 
@@ -151,7 +153,8 @@ static void print_prices(const map *maps, int count, const result *all) {
 static void print_slopes(const map *maps, int count, const result *all) {
     int missed = 0;
     int tried = 0;
-    printf("\nSlope of log(rms error) over log(samples) with Sobol points where material and map are smooth; ! not below -0.9\n");
+    printf("\nSlope of log(rms error) over log(samples) with Sobol points where material and map are smooth; ! not "
+           "below -0.9\n");
     printf("%-18s %-10s", "material", "map");
     for (int how = 0; how < STRATEGIES; how++)
         if (!like_product_64(how)) printf(" %-11s", strategy_name[how]);
@@ -176,7 +179,8 @@ static void print_slopes(const map *maps, int count, const result *all) {
         }
     }
     printf("rms error falls faster than N^-0.9 on the smooth scenes: %s (%d of %d)\n"
-           "The sky is looked up without interpolation: once other error is gone, the steps between its texels bound the slope.\n",
+           "The sky is looked up without interpolation: once other error is gone, the steps between its texels bound "
+           "the slope.\n",
            missed ? "MISSED" : "yes", tried - missed, tried);
 }
 
@@ -189,29 +193,34 @@ static double variance_of(const result *r, int how) {
 static void print_variances(const map *maps, int count, const result *all) {
     static const strategy rival[] = {COSINE, BRDF, ENVIRONMENT, MIS_BALANCE, MIS_POWER, ONE_SHOT};
     enum { RIVALS = sizeof rival / sizeof *rival };
-    printf("\nVariance per sample over that of product sampling (prepared), with independent points\n%-18s %-10s", "material",
-           "map");
+    printf("\nVariance per sample over that of product sampling (prepared), with independent points\n%-18s %-10s",
+           "material", "map");
     for (int k = 0; k < RIVALS; k++) printf(" %-11s", strategy_name[rival[k]]);
     printf("\n");
     for (int m = 0; m < MATERIALS; m++) {
         for (int e = 0; e < count; e++) {
             const result *r = &all[m * count + e];
             printf("%-18s %-10s", materials[m].name, maps[e].name);
-            for (int k = 0; k < RIVALS; k++) printf(" %-11.3g", variance_of(r, (int)rival[k]) / variance_of(r, PRODUCT_64));
+            for (int k = 0; k < RIVALS; k++)
+                printf(" %-11.3g", variance_of(r, (int)rival[k]) / variance_of(r, PRODUCT_64));
             printf("\n");
         }
     }
 }
 
-static double seconds_per_sample(const result *r, int how) { return r->of[how][INDEPENDENT][BLOCK_LEVEL].seconds / BLOCK; }
+static double seconds_per_sample(const result *r, int how) {
+    return r->of[how][INDEPENDENT][BLOCK_LEVEL].seconds / BLOCK;
+}
 
 /* A shading point as a renderer meets it: one set-up, then the few samples that the point is given. */
 static void print_points(const map *maps, int count, const result *all) {
     static const strategy shown[] = {PRODUCT_1, PRODUCT_4, PRODUCT_16, PRODUCT_64, ONE_SHOT};
     enum { SHOWN = sizeof shown / sizeof *shown };
-    printf("\nProduct sampling by samples per shading point, independent: microseconds a point, set-up counted; rms relative error "
+    printf("\nProduct sampling by samples per shading point, independent: microseconds a point, set-up counted; rms "
+           "relative error "
            "of\n");
-    printf("its estimate; mean squared error of MIS (the best of balance, power, one-sample) in the same time, over its own\n%-29s",
+    printf("its estimate; mean squared error of MIS (the best of balance, power, one-sample) in the same time, over "
+           "its own\n%-29s",
            "");
     for (int k = 0; k < SHOWN; k++) printf(" %-21s", k < SHOWN - 1 ? strategy_name[shown[k]] : "one-shot, 1 sample");
     printf("\n%-18s %-10s", "material", "map");
@@ -221,7 +230,8 @@ static void print_points(const map *maps, int count, const result *all) {
         for (int e = 0; e < count; e++) {
             const result *r = &all[m * count + e];
             double mis = HUGE_VAL;
-            for (int k = MIS_BALANCE; k <= ONE_SAMPLE; k++) mis = fmin(mis, variance_of(r, k) * seconds_per_sample(r, k));
+            for (int k = MIS_BALANCE; k <= ONE_SAMPLE; k++)
+                mis = fmin(mis, variance_of(r, k) * seconds_per_sample(r, k));
             printf("%-18s %-10s", materials[m].name, maps[e].name);
             for (int k = 0; k < SHOWN; k++) {
                 const int how = (int)shown[k];
@@ -236,8 +246,8 @@ static void print_points(const map *maps, int count, const result *all) {
 }
 
 static int unmet;
-static void verdict(const char *what, const char *material_name, const char *map_name, double measured, const char *relation,
-                    double wanted) {
+static void verdict(const char *what, const char *material_name, const char *map_name, double measured,
+                    const char *relation, double wanted) {
     const int met = relation[0] == '<' ? measured <= wanted : measured >= wanted;
     char of[64];
     snprintf(of, sizeof of, "%s, %s", material_name, map_name);
@@ -247,7 +257,8 @@ static void verdict(const char *what, const char *material_name, const char *map
 
 /* What the project asks of product sampling: figures of merit that are reported, not gates. */
 static void print_targets(const map *maps, int count, const result *all) {
-    const double ask[2] = {60, 20}; /* of matte over the map alone, of GGX 0.5 over MIS, as geometric means over the maps read */
+    const double ask[2] = {
+        60, 20}; /* of matte over the map alone, of GGX 0.5 over MIS, as geometric means over the maps read */
     const int against[2] = {ENVIRONMENT, MIS_BALANCE};
     puts("\ntargets");
     for (int m = 0; m < MATERIALS; m++) {
@@ -259,7 +270,8 @@ static void print_targets(const map *maps, int count, const result *all) {
             verdict("product: variance over that of the better MIS", materials[m].name, maps[e].name,
                     variance_of(r, PRODUCT_64) / mis, "<=", 1.1);
             if (materials[m].smooth && maps[e].smooth && !isnan(s))
-                verdict("product: slope of the rms error, Sobol points", materials[m].name, maps[e].name, s, "<=", -0.9);
+                verdict("product: slope of the rms error, Sobol points", materials[m].name, maps[e].name, s,
+                        "<=", -0.9);
             if (e >= 3 && m < 2) product += log(variance_of(r, against[m]) / variance_of(r, PRODUCT_64)) / (count - 3);
         }
         if (count > 3 && m < 2)
@@ -272,7 +284,8 @@ static void print_targets(const map *maps, int count, const result *all) {
 /* How far the rms figures would differ in another run. */
 static void print_doubts(int count, const result *all) {
     static double doubt[MATERIALS * MAX_MAPS * STRATEGIES];
-    printf("\nStandard error of the rms errors above, relative, from run to run: median / largest of scenes and strategies\n%-18s",
+    printf("\nStandard error of the rms errors above, relative, from run to run: median / largest of scenes and "
+           "strategies\n%-18s",
            "samples");
     for (int l = 0; l < levels; l++) printf(" %-11u", 16u << 2 * l);
     printf("\n");
@@ -289,14 +302,15 @@ static void print_doubts(int count, const result *all) {
         }
         printf("\n");
     }
-    printf("Times are the quickest of %d batches; above %d samples they are multiples of that for %d.\n", batches, BLOCK, BLOCK);
+    printf("Times are the quickest of %d batches; above %d samples they are multiples of that for %d.\n", batches,
+           BLOCK, BLOCK);
 }
 
-/* The quadrature against the means of MIS and of both forms of product sampling with Sobol points and the most samples: integrals
- * over the lobe and the map's table that share no code with it. 8 runs a point: were their means normal, t would have 7 degrees of
- * freedom and exceed 9 by chance once in 2e4. They are not where few samples are very bright: all 8 runs may miss those. So a
- * difference must also exceed 5 standard errors that take no luck into account: the variance of a scrambled Sobol net in two
- * dimensions is at most twice that of independent points (Owen 1997). */
+/* The quadrature against the means of MIS and of both forms of product sampling with Sobol points and the most samples:
+ * integrals over the lobe and the map's table that share no code with it. 8 runs a point: were their means normal, t
+ * would have 7 degrees of freedom and exceed 9 by chance once in 2e4. They are not where few samples are very bright:
+ * all 8 runs may miss those. So a difference must also exceed 5 standard errors that take no luck into account: the
+ * variance of a scrambled Sobol net in two dimensions is at most twice that of independent points (Owen 1997). */
 static int print_references(int count, const result *all) {
     static const strategy checked[] = {MIS_POWER, PRODUCT_64, ONE_SHOT};
     double quadrature = 0;

@@ -1,4 +1,5 @@
-/* What is estimated in convergence.c, and how: maps of luminance, materials, kinds of points, strategies and shading points. */
+/* What is estimated in convergence.c, and how: maps of luminance, materials, kinds of points, strategies and shading
+ * points. */
 #ifndef MCST_CONVERGENCE_SCENE_H
 #define MCST_CONVERGENCE_SCENE_H
 #include "../../examples/hdr.h"
@@ -13,7 +14,15 @@
 #define GOAL 0.01 /* the relative error whose price the table tells */
 
 /* LEVELS numbers of samples: 16, 64, ...; a block of samples is one of them */
-enum { LEVELS = 7, BLOCK_LEVEL = 3, BLOCK = 16 << 2 * BLOCK_LEVEL, POINTS = 4, BATCHES = 8, MAX_MAPS = 16, PANEL_GAP = 10 };
+enum {
+    LEVELS = 7,
+    BLOCK_LEVEL = 3,
+    BLOCK = 16 << 2 * BLOCK_LEVEL,
+    POINTS = 4,
+    BATCHES = 8,
+    MAX_MAPS = 16,
+    PANEL_GAP = 10
+};
 
 /* ---- Maps of luminance ---- */
 
@@ -38,7 +47,8 @@ static void unit_from(double elevation, double azimuth, double w[3]) { /* degree
 
 static const double sun_place[2] = {35, 40}; /* elevation and azimuth, degrees */
 
-/* Clear sky without the disc of the sun: pale at the horizon, bright around the sun, a darker ground; continuous everywhere. */
+/* Clear sky without the disc of the sun: pale at the horizon, bright around the sun, a darker ground; continuous
+ * everywhere. */
 static double sky(const double w[3], double near_sun) {
     const double up = 1 - fabs(w[2]);
     const double haze = near_sun > 0 ? 2 * pow(near_sun, 12) + 8 * pow(near_sun, 80) : 0;
@@ -46,7 +56,9 @@ static double sky(const double w[3], double near_sun) {
     return w[2] > 0 ? air : 0.15 + (air - 0.15) * exp(12 * w[2]);
 }
 /* A disc 0.8 degrees in radius, which gives level ground 13 times the light of its sky. */
-static double sunlit(const double w[3], double near_sun) { return 0.05 * sky(w, 0) + (near_sun > cos(0.8 * PI / 180) ? 2000 : 0); }
+static double sunlit(const double w[3], double near_sun) {
+    return 0.05 * sky(w, 0) + (near_sun > cos(0.8 * PI / 180) ? 2000 : 0);
+}
 static double flat(const double w[3], double near_sun) {
     (void)w;
     (void)near_sun;
@@ -70,7 +82,8 @@ static int map_table(map *m) {
     return 1;
 }
 
-static int map_make(map *m, const char *name, double (*light)(const double w[3], double near_sun), int smooth, uint32_t h) {
+static int map_make(map *m, const char *name, double (*light)(const double w[3], double near_sun), int smooth,
+                    uint32_t h) {
     enum { SUB = 4 }; /* looks per texel and axis, for the edge of the sun */
     snprintf(m->name, sizeof m->name, "%s", name);
     m->w = 2 * h;
@@ -164,7 +177,9 @@ static void brdf_sample_n(const scene *s, block *b, size_t n) {
     switch (s->m->kind) {
     case GGX: mcs_ggx_vndf_sample_n(&s->lobe.ggx, s->wo, n, b->u1, b->u2, b->x, b->y, b->z, b->pdf, b->weight); return;
     case WARD: mcs_ward_sample_n(&s->lobe.ward, s->wo, n, b->u1, b->u2, b->x, b->y, b->z, b->pdf, b->weight); return;
-    case ASHIKHMIN: mcs_ashikhmin_sample_n(&s->lobe.ashikhmin, s->wo, n, b->u1, b->u2, b->x, b->y, b->z, b->pdf, b->weight); return;
+    case ASHIKHMIN:
+        mcs_ashikhmin_sample_n(&s->lobe.ashikhmin, s->wo, n, b->u1, b->u2, b->x, b->y, b->z, b->pdf, b->weight);
+        return;
     case PHONG: mcs_phong_sample_n(&s->lobe.phong, s->wo, n, b->u1, b->u2, b->x, b->y, b->z, b->pdf, b->weight); return;
     default:
         mcs_cosine_sample_n(n, b->u1, b->u2, b->x, b->y, b->z, b->pdf);
@@ -309,11 +324,13 @@ static void by_map(const scene *s, block *b, size_t n, strategy how) {
     map_sample(s, b, 0, n);
     brdf_eval_n(s, b, 0, n, how != ENVIRONMENT);
     for (size_t i = 0; i < n; i++)
-        b->value[i] = b->z[i] > 0 ? b->f[i] * b->z[i] * b->light[i] / b->env_pdf[i] * heuristic(how, b->env_pdf[i], b->pdf[i]) : 0;
+        b->value[i] = b->z[i] > 0
+                          ? b->f[i] * b->z[i] * b->light[i] / b->env_pdf[i] * heuristic(how, b->env_pdf[i], b->pdf[i])
+                          : 0;
 }
 
-/* One-sample model (Veach and Guibas 1995): u1 also chooses the technique, and what is left of it is stretched over [0,1) again, so
- * that the points stay well spread. BRDF samples are moved to the front of the block. */
+/* One-sample model (Veach and Guibas 1995): u1 also chooses the technique, and what is left of it is stretched over
+ * [0,1) again, so that the points stay well spread. BRDF samples are moved to the front of the block. */
 static void by_one(const scene *s, block *b, size_t n) {
     size_t front = 0;
     size_t back = n;
@@ -335,7 +352,9 @@ static void by_one(const scene *s, block *b, size_t n) {
     map_sample(s, b, front, n);
     brdf_eval_n(s, b, front, n, 1);
     for (size_t i = 0; i < n; i++) {
-        const float value = i < front ? b->pdf[i] > 0 ? b->weight[i] * b->pdf[i] : 0 : b->z[i] > 0 ? b->f[i] * b->z[i] : 0;
+        const float value = i < front     ? b->pdf[i] > 0 ? b->weight[i] * b->pdf[i] : 0
+                            : b->z[i] > 0 ? b->f[i] * b->z[i]
+                                          : 0;
         b->value[from[i]] = value > 0 ? value * b->light[i] / mcs_mix_pdf(0.5f, b->pdf[i], b->env_pdf[i]) : 0;
     }
 }
@@ -348,7 +367,8 @@ static mcs_product *prepared; /* at the shading point whose turn it is */
 /* A set-up for every `run` samples; none: the one-shot form. */
 static void by_product(const scene *s, block *b, size_t n, size_t run) {
     for (size_t i = 0; i < n; i++) {
-        if (run && i % run == 0) mcs_product_build(prepared, mcs_product_bytes(TILES), s->e->tiles, s->e->table, &s->like);
+        if (run && i % run == 0)
+            mcs_product_build(prepared, mcs_product_bytes(TILES), s->e->tiles, s->e->table, &s->like);
         const mcs_texel t = run ? mcs_product_sample(prepared, s->e->tiles, s->e->table, b->u1[i], b->u2[i])
                                 : mcs_oneshot_sample(s->e->tiles, s->e->table, &s->like, b->u1[i], b->u2[i]);
         const mcs_vec3 w = mcs_to_local(&s->frame, t.w);
@@ -363,9 +383,10 @@ static void by_product(const scene *s, block *b, size_t n, size_t run) {
         b->value[i] = b->z[i] > 0 && b->env_pdf[i] > 0 ? b->f[i] * b->z[i] * b->light[i] / b->env_pdf[i] : 0;
 }
 
-/* A run of n samples as n / piece estimates in their order, of `piece` samples each, a power of two. With two-sample MIS half of a
- * piece is from the BRDF and half from the map, each half with points of its own. */
-static void estimate(const scene *s, strategy how, generator kind, uint32_t seed, uint32_t n, uint32_t piece, double *value) {
+/* A run of n samples as n / piece estimates in their order, of `piece` samples each, a power of two. With two-sample
+ * MIS half of a piece is from the BRDF and half from the map, each half with points of its own. */
+static void estimate(const scene *s, strategy how, generator kind, uint32_t seed, uint32_t n, uint32_t piece,
+                     double *value) {
     const int two = how == MIS_BALANCE || how == MIS_POWER;
     const uint32_t each = two ? n / 2 : n;
     const uint32_t part = two ? piece / 2 : piece;
@@ -394,11 +415,13 @@ static void estimate(const scene *s, strategy how, generator kind, uint32_t seed
 
 /* ---- Shading points ---- */
 
-/* Elevation and azimuth of the normal and of the direction that a mirror would show. At the first a glossy highlight falls beside
- * the sun, at the others it is 18, 49 and 27 degrees away; the sun shines on all of them. */
-static const double shading_point[POINTS][4] = {{90, 0, 36.5, 41}, {50, 20, 45, 60}, {20, 80, 60, 100}, {0, 10, 15, 60}};
+/* Elevation and azimuth of the normal and of the direction that a mirror would show. At the first a glossy highlight
+ * falls beside the sun, at the others it is 18, 49 and 27 degrees away; the sun shines on all of them. */
+static const double shading_point[POINTS][4] = {
+    {90, 0, 36.5, 41}, {50, 20, 45, 60}, {20, 80, 60, 100}, {0, 10, 15, 60}};
 
-/* Width of slopes: exponents are those of the half-vector, Phong's that of the reflected direction, which turns twice as far. */
+/* Width of slopes: exponents are those of the half-vector, Phong's that of the reflected direction, which turns twice
+ * as far. */
 static float alpha_of(material_kind kind, float a) {
     return kind == PHONG ? sqrtf(0.5f / (a + 2)) : kind == ASHIKHMIN ? sqrtf(2 / (a + 2)) : a;
 }

@@ -1,6 +1,7 @@
-/* One array loop per sampler of the registry over the functions of one width; material and parameters are prepared outside of the
- * loop. No include guard: included once per BENCH_W = 1, 4, 8 or 16, for bench1_<row> and so on, of the type bench_form, and the
- * array bench1_forms in the order of the registry. n is a multiple of BENCH_W; a weight is left to the compiler to leave out. */
+/* One array loop per sampler of the registry over the functions of one width; material and parameters are prepared
+ * outside of the loop. No include guard: included once per BENCH_W = 1, 4, 8 or 16, for bench1_<row> and so on, of the
+ * type bench_form, and the array bench1_forms in the order of the registry. n is a multiple of BENCH_W; a weight is
+ * left to the compiler to leave out. */
 #define FORM_CAT_(a, b, c) a##b##c
 #define FORM_CAT(a, b, c) FORM_CAT_(a, b, c)
 #if BENCH_W == 1
@@ -42,8 +43,9 @@
 #define FORM_XYZ(v) M_(store)(x + i, v.x), M_(store)(y + i, v.y), M_(store)(z + i, v.z)
 #define FORM_LINE(row, fn, args) \
     FORM(row, (void)0, sample1, M_(fn##_sample)(FORM_ARGS_##args M_(load)(u1 + i)), M_(store)(x + i, s.x))
-#define FORM_PLANE(row, fn, args) \
-    FORM(row, (void)0, sample2, M_(fn##_sample)(FORM_ARGS_##args FORM_U), (M_(store)(x + i, s.x), M_(store)(y + i, s.y)))
+#define FORM_PLANE(row, fn, args)                                         \
+    FORM(row, (void)0, sample2, M_(fn##_sample)(FORM_ARGS_##args FORM_U), \
+         (M_(store)(x + i, s.x), M_(store)(y + i, s.y)))
 #define FORM_DIR(row, fn, args) FORM(row, (void)0, dir, M_(fn##_sample)(FORM_ARGS_##args FORM_U), FORM_XYZ(s.w))
 #define FORM_LOBE(row, fn, mat) FORM(row, FORM_MAKE_##mat, dir, M_(fn##_sample)(&m, FORM_U), FORM_XYZ(s.w))
 #define FORM_VLOBE(row, fn, mat) FORM(row, FORM_MAKE_##mat, dir, M_(fn##_sample)(&m, wo, FORM_U), FORM_XYZ(s.w))

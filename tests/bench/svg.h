@@ -2,15 +2,15 @@
  *
  *     svg_plot p;
  *     svg_begin(&p, "file.svg", "title", "time, ns", "error, ulp", 1, 1, xmin, xmax, ymin, ymax);   the flags: log axis
- *     svg_series(&p, "name", n, x, y, SVG_LINE);      the first call gets the first marker, dash pattern and colour, and so on
+ *     svg_series(&p, "name", n, x, y, SVG_LINE);      the first call gets the first marker, dash and colour
  *     svg_keep_off(&p, n, x, y);                      no label is to lie on the marks of these points
  *     svg_label(&p, x, y, "text");                    beside a point, or not at all where there is no room
  *     svg_note(&p, "text");                           a line below the legend
  *     if (svg_end(&p)) fail;
  *
- * Series differ in marker shape and dash pattern, so that no colour is needed to tell them apart (colours: Okabe and Ito 2008,
- * which the colour-blind can tell apart too). Points that an axis cannot show (not finite, not positive on a log axis, outside of
- * the limits) are left out; lines are cut at the frame. */
+ * Series differ in marker shape and dash pattern, so that no colour is needed to tell them apart (colours: Okabe and
+ * Ito 2008, which the colour-blind can tell apart too). Points that an axis cannot show (not finite, not positive on a
+ * log axis, outside of the limits) are left out; lines are cut at the frame. */
 #ifndef BENCH_SVG_H
 #define BENCH_SVG_H
 #include <math.h>
@@ -61,11 +61,12 @@ static inline void svg_tick(svg_plot *p, int axis, double v, int labelled) {
     const double at = svg_at(p, axis, v);
     const int e = (int)floor(log10(fabs(v) > 0 ? fabs(v) : 1) + 1e-9);
     if (!(v >= p->min[axis] * (1 - 1e-9) && v <= p->max[axis] * (1 + 1e-9)) && v != 0) return;
-    fprintf(p->out, "<path d=\"M%.1f %.1f%c%.1f\" stroke=\"%s\"/>\n", axis ? (double)SVG_L : at, axis ? at : (double)SVG_B,
-            axis ? 'H' : 'V', (double)(axis ? SVG_R : SVG_T), labelled ? "#c8c8c8" : "#ececec");
+    fprintf(p->out, "<path d=\"M%.1f %.1f%c%.1f\" stroke=\"%s\"/>\n", axis ? (double)SVG_L : at,
+            axis ? at : (double)SVG_B, axis ? 'H' : 'V', (double)(axis ? SVG_R : SVG_T),
+            labelled ? "#c8c8c8" : "#ececec");
     if (!labelled) return;
-    fprintf(p->out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", axis ? SVG_L - 8.0 : at, axis ? at + 5 : SVG_B + 22.0,
-            axis ? "end" : "middle");
+    fprintf(p->out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", axis ? SVG_L - 8.0 : at,
+            axis ? at + 5 : SVG_B + 22.0, axis ? "end" : "middle");
     if (p->log[axis] && (e < -3 || e > 4)) {
         if (v > 1.5 * pow(10, e)) fprintf(p->out, "%.0f&#183;", v / pow(10, e));
         fprintf(p->out, "10<tspan dy=\"-6\" font-size=\"11\">%d</tspan></text>\n", e);
@@ -84,7 +85,9 @@ static inline void svg_axis(svg_plot *p, int axis) {
         const int step = decades > 20 ? 5 : decades > 10 ? 2 : 1;
         for (int e = first; e <= last; e++) {
             for (int m = 1; m < 10; m++) {
-                const int labelled = m == 1 ? e % step == 0 : decades < 1.3 ? m < 6 || m == 8 : decades < 3 && (m == 2 || m == 5);
+                const int labelled = m == 1          ? e % step == 0
+                                     : decades < 1.3 ? m < 6 || m == 8
+                                                     : decades < 3 && (m == 2 || m == 5);
                 if (m == 1 || decades < 8) svg_tick(p, axis, (double)m * pow(10, e), labelled);
             }
         }
@@ -97,8 +100,8 @@ static inline void svg_axis(svg_plot *p, int axis) {
     }
 }
 
-static inline void svg_begin(svg_plot *p, const char *file, const char *title, const char *xlabel, const char *ylabel, int xlog,
-                             int ylog, double xmin, double xmax, double ymin, double ymax) {
+static inline void svg_begin(svg_plot *p, const char *file, const char *title, const char *xlabel, const char *ylabel,
+                             int xlog, int ylog, double xmin, double xmax, double ymin, double ymax) {
     p->out = fopen(file, "w");
     p->series = p->row = p->boxes = 0;
     p->log[0] = xlog;
@@ -108,24 +111,27 @@ static inline void svg_begin(svg_plot *p, const char *file, const char *title, c
     p->min[1] = ymin;
     p->max[1] = ymax;
     if (!p->out) return;
-    fprintf(p->out, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\"", SVG_W, SVG_H,
-            SVG_W, SVG_H);
+    fprintf(p->out, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\"", SVG_W,
+            SVG_H, SVG_W, SVG_H);
     fprintf(p->out, " font-family=\"Helvetica, Arial, sans-serif\" font-size=\"15\" fill=\"none\">\n<title>");
     svg_text(p, title);
     fprintf(p->out, "</title>\n<rect width=\"%d\" height=\"%d\" fill=\"white\"/>\n", SVG_W, SVG_H);
-    fprintf(p->out, "<clipPath id=\"frame\"><rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/></clipPath>\n", SVG_L, SVG_T,
-            SVG_R - SVG_L, SVG_B - SVG_T);
+    fprintf(p->out, "<clipPath id=\"frame\"><rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/></clipPath>\n", SVG_L,
+            SVG_T, SVG_R - SVG_L, SVG_B - SVG_T);
     fprintf(p->out, "<g fill=\"black\">\n");
     svg_axis(p, 0);
     svg_axis(p, 1);
     fprintf(p->out, "<text x=\"%d\" y=\"%d\" font-size=\"18\" font-weight=\"bold\">", SVG_L, SVG_T - 20);
     svg_text(p, title);
-    fprintf(p->out, "</text>\n<text x=\"%d\" y=\"%d\" text-anchor=\"middle\" font-size=\"16\">", (SVG_L + SVG_R) / 2, SVG_B + 52);
+    fprintf(p->out, "</text>\n<text x=\"%d\" y=\"%d\" text-anchor=\"middle\" font-size=\"16\">", (SVG_L + SVG_R) / 2,
+            SVG_B + 52);
     svg_text(p, xlabel);
-    fprintf(p->out, "</text>\n<text transform=\"translate(22 %d) rotate(-90)\" text-anchor=\"middle\" font-size=\"16\">",
+    fprintf(p->out,
+            "</text>\n<text transform=\"translate(22 %d) rotate(-90)\" text-anchor=\"middle\" font-size=\"16\">",
             (SVG_T + SVG_B) / 2);
     svg_text(p, ylabel);
-    fprintf(p->out, "</text>\n</g>\n<path d=\"M%d %dH%dV%dH%dZ\" stroke=\"black\"/>\n", SVG_L, SVG_T, SVG_R, SVG_B, SVG_L);
+    fprintf(p->out, "</text>\n</g>\n<path d=\"M%d %dH%dV%dH%dZ\" stroke=\"black\"/>\n", SVG_L, SVG_T, SVG_R, SVG_B,
+            SVG_L);
 }
 
 static inline void svg_mark(svg_plot *p, int series, double x, double y) {
@@ -144,8 +150,8 @@ static inline void svg_style(svg_plot *p, int series) {
     static const char *const colour[SVG_SHAPES] = {"#000000", "#0072b2", "#d55e00", "#009e73",
                                                    "#cc79a7", "#56b4e9", "#8a6d00", "#7f3c8d"};
     const char *c = colour[series % SVG_SHAPES];
-    const int open =
-        series % SVG_SHAPES > 4 || series / SVG_SHAPES % 2; /* crosses have no inside; from the ninth on, hollow marks */
+    const int open = series % SVG_SHAPES > 4 ||
+                     series / SVG_SHAPES % 2; /* crosses have no inside; from the ninth on, hollow marks */
     fprintf(p->out, "<g stroke=\"%s\" fill=\"%s\" stroke-width=\"1.8\">\n", c, open ? "white" : c);
 }
 
@@ -211,7 +217,9 @@ static inline void svg_label(svg_plot *p, double x, double y, const char *s) {
         if (left < SVG_L || left + width > SVG_R || base > SVG_B || base < SVG_T + 12) continue;
         int k;
         for (k = 0; k < p->boxes; k++)
-            if (left < p->box[k][1] && left + width > p->box[k][0] && base - 10 < p->box[k][3] && base + 3 > p->box[k][2]) break;
+            if (left < p->box[k][1] && left + width > p->box[k][0] && base - 10 < p->box[k][3] &&
+                base + 3 > p->box[k][2])
+                break;
         if (k < p->boxes) continue;
         svg_keep_box(p, left, left + width, base - 10, base + 3);
         fprintf(p->out,

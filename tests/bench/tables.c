@@ -1,13 +1,15 @@
-/* Building and sampling tables: piecewise constant, piecewise linear and alias on a line, environment maps on the sphere (RGB
- * images of a synthetic sky, with and without a sun), against the textbook's float function and cumulative distribution with binary
- * search (Pharr, Jakob, Humphreys 2023, A.4, A.5; images weighted by the sine at the row's centre, 12.5). Seconds of a build are
- * beside those of a plain memcpy of what it is built from; samples give a direction with its density, every u is new; densities are
- * asked for directions uniform over the sphere. The window is the quarter of the map around its middle row.
+/* Building and sampling tables: piecewise constant, piecewise linear and alias on a line, environment maps on the
+ * sphere (RGB images of a synthetic sky, with and without a sun), against the textbook's float function and cumulative
+ * distribution with binary search (Pharr, Jakob, Humphreys 2023, A.4, A.5; images weighted by the sine at the row's
+ * centre, 12.5). Seconds of a build are beside those of a plain memcpy of what it is built from; samples give a
+ * direction with its density, every u is new; densities are asked for directions uniform over the sphere. The window is
+ * the quarter of the map around its middle row.
  *
- * Product sampling: 16 x 32 tiles; 16 surfaces take turns, each for 64 samples (prepared) or one (one-shot), so that neither the
- * tables nor the branches of one surface stay warm. Its "build" is the set-up at a point.
+ * Product sampling: 16 x 32 tiles; 16 surfaces take turns, each for 64 samples (prepared) or one (one-shot), so that
+ * neither the tables nor the branches of one surface stay warm. Its "build" is the set-up at a point.
  *
- * Writes tables.csv and tables.svg (ns per sample against the number of texels), prints the table and which targets are met. */
+ * Writes tables.csv and tables.svg (ns per sample against the number of texels), prints the table and which targets are
+ * met. */
 #include "bench.h"
 #include "mcsample.h"
 #include "svg.h"
@@ -191,7 +193,8 @@ static void build_env_compensated(void) {
     (void)mcs_env_build(now.env, mcs_env_bytes(now.w, now.h), &image);
 }
 static void build_window(void) {
-    (void)mcs_env_window_build(now.window, mcs_env_window_bytes(now.h / 2), now.env, now.h / 4, now.h / 2, now.w / 8, now.w / 2);
+    (void)mcs_env_window_build(now.window, mcs_env_window_bytes(now.h / 2), now.env, now.h / 4, now.h / 2, now.w / 8,
+                               now.w / 2);
 }
 static void build_tiles(void) { (void)mcs_tiles_build(now.tiles, mcs_tiles_bytes(now.env, TILES), now.env, TILES); }
 static void build_product(int kind) {
@@ -255,7 +258,8 @@ DRAW(ggx_once, {
     keep3(i, t.w, t.pdf);
 })
 static void density_text(size_t at) {
-    for (size_t i = at; i < at + DRAWS; i++) out[3][i - at] = text_env_pdf(directions[0][i], directions[1][i], directions[2][i]);
+    for (size_t i = at; i < at + DRAWS; i++)
+        out[3][i - at] = text_env_pdf(directions[0][i], directions[1][i], directions[2][i]);
 }
 static void density_env(size_t at) {
     for (size_t i = at; i < at + DRAWS; i++) {
@@ -272,12 +276,13 @@ static void draw_env_n(size_t at) {
     mcs_env_sample_n(now.env, DRAWS, pool[0] + at, pool[1] + at, out[0], out[1], out[2], out[3], NULL, NULL);
 }
 static void draw_window_n(size_t at) {
-    mcs_env_window_sample_n(now.window, now.env, DRAWS, pool[0] + at, pool[1] + at, out[0], out[1], out[2], out[3], NULL, NULL);
+    mcs_env_window_sample_n(now.window, now.env, DRAWS, pool[0] + at, pool[1] + at, out[0], out[1], out[2], out[3],
+                            NULL, NULL);
 }
 static void draw_product_n(int kind, size_t at) {
     for (size_t i = 0; i < DRAWS; i += RUN)
-        mcs_product_sample_n(now.product[kind][i / RUN % SURFACES], now.tiles, now.env, RUN, pool[0] + at + i, pool[1] + at + i,
-                             out[0] + i, out[1] + i, out[2] + i, out[3] + i, NULL, NULL);
+        mcs_product_sample_n(now.product[kind][i / RUN % SURFACES], now.tiles, now.env, RUN, pool[0] + at + i,
+                             pool[1] + at + i, out[0] + i, out[1] + i, out[2] + i, out[3] + i, NULL, NULL);
 }
 static void draw_matte_n(size_t at) { draw_product_n(MATTE, at); }
 static void draw_ggx_n(size_t at) { draw_product_n(GGX, at); }
@@ -298,8 +303,8 @@ static double time_draws(draw_job *f) { /* ns per sample */
     return took;
 }
 
-/* The first job is the copy, the second the textbook. Builds repeat until they take a millisecond; the tables stand when the
- * samples are drawn: where several jobs build in the same memory, those of the last. */
+/* The first job is the copy, the second the textbook. Builds repeat until they take a millisecond; the tables stand
+ * when the samples are drawn: where several jobs build in the same memory, those of the last. */
 static void measure(const job *jobs, int n, const char *source, double cells) {
     static double built[JOBS_MAX][ROUNDS_MAX], drawn[JOBS_MAX][ROUNDS_MAX], density[JOBS_MAX][ROUNDS_MAX];
     int repeat[JOBS_MAX] = {0};
@@ -361,8 +366,8 @@ static uint32_t scramble(uint32_t x) {
     return x ^ (x >> 16);
 }
 
-/* A blue gradient with a bright horizon, clouds (random steps of a 64th of the height, 1 to 4), dark ground, and a sun: a disc of
- * radius 0.265 degrees and 1e5 times the sky, spread over a texel where it is smaller than that. */
+/* A blue gradient with a bright horizon, clouds (random steps of a 64th of the height, 1 to 4), dark ground, and a sun:
+ * a disc of radius 0.265 degrees and 1e5 times the sky, spread over a texel where it is smaller than that. */
 static void make_sky(int sun) {
     const double pi = 3.14159265358979323846;
     const double texel = pi / now.h;
@@ -385,7 +390,8 @@ static void make_sky(int sun) {
         const double glow = z > 0 ? 0.3 + 0.7 * exp(-4 * z) : 0.05;
         float *p = now.image + 3 * (size_t)y * now.w;
         for (uint32_t x = 0; x < now.w; x++, p += 3) {
-            const uint32_t cloud = scramble((uint32_t)((uint64_t)x * 128 / now.w) * 64 + (uint32_t)((uint64_t)y * 64 / now.h)) & 3;
+            const uint32_t cloud =
+                scramble((uint32_t)((uint64_t)x * 128 / now.w) * 64 + (uint32_t)((uint64_t)y * 64 / now.h)) & 3;
             const double l = z > 0 ? glow * (1 + cloud) : glow;
             p[0] = (float)(0.7 * l);
             p[1] = (float)(0.85 * l);
@@ -422,7 +428,8 @@ static void measure_line(uint32_t n) {
     now.pwl = malloc(mcs_pwl_bytes(n));
     now.alias = malloc(mcs_alias_bytes(n));
     if (now.image && now.copy && now.line.func && now.line.cdf && now.pwc && now.pwl && now.alias) {
-        for (uint32_t i = 0; i <= n; i++) now.image[i] = (float)(1 + (scramble(i) >> 24)) * (1 + sinf(20 * (float)i / (float)n));
+        for (uint32_t i = 0; i <= n; i++)
+            now.image[i] = (float)(1 + (scramble(i) >> 24)) * (1 + sinf(20 * (float)i / (float)n));
         memset(now.copy, 1, ((size_t)n + 1) * sizeof(float));
         measure(jobs, sizeof jobs / sizeof jobs[0], "line", n);
     } else no_memory();
@@ -440,7 +447,8 @@ static void make_surfaces(void) {
     for (int kind = 0; kind < KINDS; kind++) {
         for (int k = 0; k < SURFACES; k++) {
             mcs_reflection *const r = &now.surface[kind][k];
-            r->frame = mcs_frame_make(mcs_hemisphere_sample(mcs_sobol((uint32_t)k, 0, 1), mcs_sobol((uint32_t)k, 1, 1)).w);
+            r->frame =
+                mcs_frame_make(mcs_hemisphere_sample(mcs_sobol((uint32_t)k, 0, 1), mcs_sobol((uint32_t)k, 1, 1)).w);
             r->wo = mcs_cone_sample(0.5f, mcs_sobol((uint32_t)k, 2, 1), mcs_sobol((uint32_t)k, 3, 1)).w;
             r->alpha_x = r->alpha_y = 0.3f;
             r->matte = kind == MATTE;
@@ -513,8 +521,8 @@ static void measure_env(uint32_t w, int sun) {
         build_env();
         if (product && !products_make()) no_memory();
         else jobs[ENV_JOBS].bytes = product ? (double)mcs_tiles_bytes(now.env, TILES) : 0;
-        measure(jobs, product && now.tiles ? (int)(sizeof jobs / sizeof jobs[0]) : ENV_JOBS, sun ? "sky with sun" : "sky",
-                (double)w * h);
+        measure(jobs, product && now.tiles ? (int)(sizeof jobs / sizeof jobs[0]) : ENV_JOBS,
+                sun ? "sky with sun" : "sky", (double)w * h);
     } else no_memory();
     products_free();
     free(now.image);
@@ -540,9 +548,10 @@ static void write_row(FILE *f, const table_row *r) {
     fprintf(f, "\n");
 }
 static void write_csv(void) {
-    FILE *f = bench_csv("tables.csv",
-                        "table,form,source,width,height,build_s,build_times_memcpy,bytes_per_cell,ns_sample_median,ns_sample_min,"
-                        "ns_sample_max,ns_pdf_median,ns_pdf_min,ns_pdf_max,times_faster_than_text");
+    FILE *f = bench_csv(
+        "tables.csv",
+        "table,form,source,width,height,build_s,build_times_memcpy,bytes_per_cell,ns_sample_median,ns_sample_min,"
+        "ns_sample_max,ns_pdf_median,ns_pdf_min,ns_pdf_max,times_faster_than_text");
     for (int i = 0; i < row_count; i++) write_row(f, &table_rows[i]);
     bench_close(f, "tables.csv");
 }
@@ -558,15 +567,16 @@ static void plot_env(void) {
         wide = fmax(wide, (double)r->w * r->h);
     }
     svg_plot p;
-    svg_begin(&p, bench_path("tables.svg"), "Sampling an environment map", "texels", "time per direction with pdf, ns (median)", 1,
-              1, 2e4, wide * 1.6, lo / 1.5, hi * 1.5);
+    svg_begin(&p, bench_path("tables.svg"), "Sampling an environment map", "texels",
+              "time per direction with pdf, ns (median)", 1, 1, 2e4, wide * 1.6, lo / 1.5, hi * 1.5);
     for (int m = 0; m < 2; m++) {
         for (int k = 0; k < 3; k++) {
             int n = 0;
             double x[ROWS_MAX], y[ROWS_MAX];
             for (int i = 0; i < row_count; i++) {
                 const table_row *const r = &table_rows[i];
-                if (strcmp(r->table, "env") || strcmp(r->form, forms[k]) || (strcmp(r->source, "sky") != 0) != m) continue;
+                if (strcmp(r->table, "env") || strcmp(r->form, forms[k]) || (strcmp(r->source, "sky") != 0) != m)
+                    continue;
                 x[n] = (double)r->w * r->h;
                 y[n++] = r->sample.median;
             }
@@ -581,8 +591,8 @@ static void plot_env(void) {
     }
 }
 static void print_table(void) {
-    printf("\n%-7s %-11s %-13s %13s %10s %9s %9s %10s %9s %9s %9s %9s\n", "table", "form", "source", "size", "build ms", "x memcpy",
-           "B/cell", "ns/sample", "min", "max", "ns/pdf", "x text");
+    printf("\n%-7s %-11s %-13s %13s %10s %9s %9s %10s %9s %9s %9s %9s\n", "table", "form", "source", "size", "build ms",
+           "x memcpy", "B/cell", "ns/sample", "min", "max", "ns/pdf", "x text");
     for (int i = 0; i < row_count; i++) {
         const table_row *const r = &table_rows[i];
         char size[32];
@@ -623,7 +633,8 @@ static void verdict(const char *what, const table_row *of, double measured, cons
 static const table_row *row_of(const table_row *of, const char *table, const char *form) {
     for (int i = 0; i < row_count; i++) {
         const table_row *const r = &table_rows[i];
-        if (r->w == of->w && r->h == of->h && !strcmp(r->source, of->source) && !strcmp(r->table, table) && !strcmp(r->form, form))
+        if (r->w == of->w && r->h == of->h && !strcmp(r->source, of->source) && !strcmp(r->table, table) &&
+            !strcmp(r->form, form))
             return r;
     }
     return NULL;
@@ -650,7 +661,8 @@ static void product_targets(const table_row *scalar, const table_row *n, const c
     snprintf(what, sizeof what, "one-shot %s: times a sample of the map", kind);
     verdict(what, scalar, times_of(once, scalar), "<=", 3);
 }
-/* What the project asks for: figures of merit that are reported, not gates, as a shared machine has no business failing a build. */
+/* What the project asks for: figures of merit that are reported, not gates, as a shared machine has no business failing
+ * a build. */
 static void print_targets(void) {
     puts("\ntargets");
     for (int i = 0; i < row_count; i++) {

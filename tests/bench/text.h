@@ -1,14 +1,14 @@
-/* The baseline "text": the formulas as textbooks, papers and the lecture print them, in float, with libm; each gives a sample and
- * its density, and, where wo is given, the reflected direction with the density of that. Nothing here guards against cancellation,
- * overflow or u at the ends of its interval: that is what the comparison is about. Azimuths are arctangents with the quadrant
- * restored, sines and cosines are sinf(2 pi u) and cosf(2 pi u). 1 - u1 stands where the sources write u, so that both sides map
- * the same u to the same point.
+/* The baseline "text": the formulas as textbooks, papers and the lecture print them, in float, with libm; each gives a
+ * sample and its density, and, where wo is given, the reflected direction with the density of that. Nothing here guards
+ * against cancellation, overflow or u at the ends of its interval: that is what the comparison is about. Azimuths are
+ * arctangents with the quadrant restored, sines and cosines are sinf(2 pi u) and cosf(2 pi u). 1 - u1 stands where the
+ * sources write u, so that both sides map the same u to the same point.
  *
- * Sources: Phong lobe: Lafortune and Willems 1994. Ward: Ward 1992 with the arctangent that Walter 2005 restored. GGX and Beckmann:
- * Walter et al. 2007, equations 25 to 36; anisotropic: Burley 2012, appendix B. Visible normals: Heitz 2018, listing 1. Bounded:
- * Eto and Tokuyoshi 2023. Ashikhmin and Shirley 2000 (the exponent unsquared). Concentric map: Shirley and Chiu 1997. Normal: Giles
- * 2010, "Approximating the erfinv function". Frame: Duff et al. 2017. Generator: O'Neill 2014. The rest: Pharr, Jakob, Humphreys
- * 2023, appendix A. */
+ * Sources: Phong lobe: Lafortune and Willems 1994. Ward: Ward 1992 with the arctangent that Walter 2005 restored. GGX
+ * and Beckmann: Walter et al. 2007, equations 25 to 36; anisotropic: Burley 2012, appendix B. Visible normals: Heitz
+ * 2018, listing 1. Bounded: Eto and Tokuyoshi 2023. Ashikhmin and Shirley 2000 (the exponent unsquared). Concentric
+ * map: Shirley and Chiu 1997. Normal: Giles 2010, "Approximating the erfinv function". Frame: Duff et al. 2017.
+ * Generator: O'Neill 2014. The rest: Pharr, Jakob, Humphreys 2023, appendix A. */
 #ifndef BENCH_TEXT_H
 #define BENCH_TEXT_H
 #include <math.h>

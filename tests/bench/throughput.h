@@ -1,4 +1,5 @@
-/* What throughput.c and wide.c share: wide.c holds the 8 and 16 wide forms, compiled for units that the processor may lack. */
+/* What throughput.c and wide.c share: wide.c holds the 8 and 16 wide forms, compiled for units that the processor may
+ * lack. */
 #ifndef BENCH_THROUGHPUT_H
 #define BENCH_THROUGHPUT_H
 #include <stddef.h>

@@ -1,5 +1,6 @@
-/* The 8 wide (-mavx2 -mfma) or 16 wide (-mavx512f and so on) forms of every sampler; with BENCH_W 8 the vector-maths kernels of the
- * header too and, with BENCH_SLEEF, those of SLEEF (https://sleef.org) with the same purpose: 1 ulp, AVX2. */
+/* The 8 wide (-mavx2 -mfma) or 16 wide (-mavx512f and so on) forms of every sampler; with BENCH_W 8 the vector-maths
+ * kernels of the header too and, with BENCH_SLEEF, those of SLEEF (https://sleef.org) with the same purpose: 1 ulp,
+ * AVX2. */
 #define MCS_PACKETS BENCH_W
 #include "mcsample.h"
 #include "registry.h"
@@ -33,7 +34,8 @@ bench_kernel *const bench_kernels_mcs[BENCH_KERNELS] = {mcs_sincos, mcs_log, mcs
 #undef LOAD
 #define V __m256
 #define LOAD(p) _mm256_loadu_ps(p)
-LOOP(sleef_sincos, Sleef___m256_2 s = Sleef_sincosf8_u10avx2(x); _mm256_storeu_ps(out + i, s.x); _mm256_storeu_ps(out2 + i, s.y))
+LOOP(sleef_sincos, Sleef___m256_2 s = Sleef_sincosf8_u10avx2(x); _mm256_storeu_ps(out + i, s.x);
+     _mm256_storeu_ps(out2 + i, s.y))
 LOOP(sleef_log, _mm256_storeu_ps(out + i, Sleef_logf8_u10avx2(x)))
 LOOP(sleef_log1p, _mm256_storeu_ps(out + i, Sleef_log1pf8_u10avx2(x)))
 LOOP(sleef_exp, _mm256_storeu_ps(out + i, Sleef_expf8_u10avx2(x)))

@@ -1,4 +1,5 @@
-/* One case holds, one must fail although its comparison is with NaN: `make selftest` wants to see exactly one failure. */
+/* One case holds, one must fail although its comparison is with NaN: `make selftest` wants to see exactly one failure.
+ */
 #include "mcs_test.h"
 
 int main(int argc, char **argv) {

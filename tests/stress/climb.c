@@ -1,6 +1,6 @@
-/* An adversary: for every figure of accuracy that the header states for directions it looks for the input that breaks it, by random
- * starts and by climbing from the best of them, against the __float128 truth of exact.h. Directions are unit to half an ulp, what a
- * caller in double gives; nothing else is forgiven: no condition comes on top of a figure.
+/* An adversary: for every figure of accuracy that the header states for directions it looks for the input that breaks
+ * it, by random starts and by climbing from the best of them, against the __float128 truth of exact.h. Directions are
+ * unit to half an ulp, what a caller in double gives; nothing else is forgiven: no condition comes on top of a figure.
  *
  * The figures are those of claims.h; test_oracle.c looks up that the header states them.
  * At full size the seed is the day, and printed; --seed picks another, MCS_TEST_SCALE scales the number of climbs. */
@@ -11,7 +11,8 @@
 #define EPS 0x1p-24   /* half an ulp of 1 */
 enum { CLIMBS = 60 }; /* for each figure, at full size */
 
-/* --- points ----------------------------------------------------------------------------------------------------------------- */
+/* --- points
+ * ----------------------------------------------------------------------------------------------------------------- */
 
 /* One input. What a figure does not depend on is never changed. */
 typedef struct {
@@ -122,7 +123,8 @@ static void move_point(const mcst_row *row, int figure, point *t) {
     } while (one_in(3));
 }
 
-/* --- scores ----------------------------------------------------------------------------------------------------------------- */
+/* --- scores
+ * ----------------------------------------------------------------------------------------------------------------- */
 
 /* The greatest density: of a grid of u, then uphill from there. Only its logarithm counts. */
 static double peak_of(const mcst_row *row, const float *p) {
@@ -155,8 +157,9 @@ static double peak_of(const mcst_row *row, const float *p) {
     return (double)peak;
 }
 
-/* The error of got in 1e-6 (1 + |ln(density/peak)|) of want; what is below 2^-126 of the peak does not count. The peak is looked
- * for only where the score would be above `least` without it. Densities above FLT_MAX saturate; subnormal ones are only small. */
+/* The error of got in 1e-6 (1 + |ln(density/peak)|) of want; what is below 2^-126 of the peak does not count. The peak
+ * is looked for only where the score would be above `least` without it. Densities above FLT_MAX saturate; subnormal
+ * ones are only small. */
 static double in_units(const mcst_row *row, const float *p, float got, qd want, qd density, double least) {
     const double error = fabs((double)(((qd)got - want) / want));
     if (!(want < (qd)FLT_MAX && want > (qd)FLT_MIN)) return 0;

@@ -1,18 +1,19 @@
-/* Deep statistics: a thousand million samples of the array form of every row against the integral of its shipped density, and
- * the smallest error of a density that such a test sees.
+/* Deep statistics: a thousand million samples of the array form of every row against the integral of its shipped
+ * density, and the smallest error of a density that such a test sees.
  *
- * One case per row: chi-square over the bins of bins.h, Kolmogorov-Smirnov over the marginals of the bins and over the random
- * numbers that the inverse gives back. Then the same samples against densities that are off by 0.1, 0.3 and 1 %: the width of the
- * lobe (its alphas, exponents, rate, deviation), a tilt from the centre outwards, a tilt around the azimuth. At full scale 0.3 %
- * must be told from the right density here, and by at least 99 in 100 of such runs. --filter 'ggx/' runs one row; MCS_TEST_SCALE
- * scales the samples. */
+ * One case per row: chi-square over the bins of bins.h, Kolmogorov-Smirnov over the marginals of the bins and over the
+ * random numbers that the inverse gives back. Then the same samples against densities that are off by 0.1, 0.3 and 1 %:
+ * the width of the lobe (its alphas, exponents, rate, deviation), a tilt from the centre outwards, a tilt around the
+ * azimuth. At full scale 0.3 % must be told from the right density here, and by at least 99 in 100 of such runs.
+ * --filter 'ggx/' runs one row; MCS_TEST_SCALE scales the samples. */
 #include "bins.h"
 
 enum { CELLS_U = 65536, SHIFTS = 3, BACK_EVERY = 4 };
 static const double samples_at_full_scale = 1e9, samples_of_make_test = 1e7;
 static const double shifts[SHIFTS] = {0.001, 0.003, 0.01};
 
-/* --- counting ----------------------------------------------------------------------------------------------------------------- */
+/* --- counting
+ * ----------------------------------------------------------------------------------------------------------------- */
 
 static double observed[MCST_CELLS + 1], expected[MCST_CELLS + 1], back[2][CELLS_U], taken_back;
 
@@ -26,8 +27,8 @@ static void progress(const char *name, double share) {
     fprintf(stderr, "    %s: %.0f %%\n", name, 100 * share);
 }
 
-/* Fills observed and, from one block in BACK_EVERY (the inverse is dearer than the sample), back; returns how many samples were
- * drawn, 0 when one was not finite or came back outside [0,1). */
+/* Fills observed and, from one block in BACK_EVERY (the inverse is dearer than the sample), back; returns how many
+ * samples were drawn, 0 when one was not finite or came back outside [0,1). */
 static double draw(const mcst_row *row, const float *p, const mcst_map *map, double n, uint64_t seed) {
     static float buffer[7][MCST_BLOCK];
     float *const out[5] = {buffer[2], buffer[3], buffer[4], buffer[5], buffer[6]};
@@ -61,10 +62,12 @@ static double draw(const mcst_row *row, const float *p, const mcst_map *map, dou
     return done;
 }
 
-/* --- chi-square --------------------------------------------------------------------------------------------------------------- */
+/* --- chi-square
+ * --------------------------------------------------------------------------------------------------------------- */
 
-/* Cells to groups. The random numbers are multiples of 2^-24, so a ring of constant s, an interval of one of them, gets a share
- * that is up to 2^-24 off its mass m. That adds n 2^-48 / m to chi-square: rings are joined until it is below 0.01. */
+/* Cells to groups. The random numbers are multiples of 2^-24, so a ring of constant s, an interval of one of them, gets
+ * a share that is up to 2^-24 off its mass m. That adds n 2^-48 / m to chi-square: rings are joined until it is below
+ * 0.01. */
 static int group_of[MCST_CELLS + 1];
 
 static int make_groups(const mcst_map *map, const double *mass, double n, int brdf) {
@@ -96,11 +99,13 @@ static void gather(const double *cells, int n, double *groups) {
     for (i = 0; i < n; i++) groups[group_of[i]] += cells[i];
 }
 
-/* P(X > x) for a chi-square distributed X with noncentrality lambda: Poisson(lambda / 2) mixes central ones of dof + 2 j. */
+/* P(X > x) for a chi-square distributed X with noncentrality lambda: Poisson(lambda / 2) mixes central ones of dof + 2
+ * j. */
 static double noncentral(double x, double dof, double lambda) {
     const double mean = 0.5 * lambda, reach = 12 * sqrt(mean) + 40;
     double sum = 0, j;
-    for (j = floor(fmax(0, mean - reach)); j <= mean + reach; j++) sum += st_poisson(j, mean) * gamma_q(0.5 * dof + j, 0.5 * x);
+    for (j = floor(fmax(0, mean - reach)); j <= mean + reach; j++)
+        sum += st_poisson(j, mean) * gamma_q(0.5 * dof + j, 0.5 * x);
     return sum;
 }
 
@@ -122,7 +127,8 @@ static double visible(double dof, double level) {
     return hi;
 }
 
-/* --- wrong densities ---------------------------------------------------------------------------------------------------------- */
+/* --- wrong densities
+ * ---------------------------------------------------------------------------------------------------------- */
 
 static const mcst_row *right;
 static unsigned varied;
@@ -140,8 +146,8 @@ enum kind { WIDTH_OFF, TILT_OUT, TILT_AROUND, KINDS };
 static const char *const kind_name[KINDS] = {"width", "outwards", "around"};
 
 /* The masses of the cells, and of what is lost, under a density that is eps off. The tilts are constant over a cell. */
-static void wrong_masses(enum kind kind, const mcst_row *row, const float *p, const mcst_map *map, double eps, const double *mass,
-                         double *wrong) {
+static void wrong_masses(enum kind kind, const mcst_row *row, const float *p, const mcst_map *map, double eps,
+                         const double *mass, double *wrong) {
     const int cells = map->s_bins * map->t_bins, all = cells + (row->shape == MCST_IS_BRDF);
     double sum = 0;
     int i;
@@ -160,13 +166,14 @@ static void wrong_masses(enum kind kind, const mcst_row *row, const float *p, co
     for (i = 0; i < all; i++) wrong[i] /= sum;
 }
 
-/* --- one row ------------------------------------------------------------------------------------------------------------------ */
+/* --- one row
+ * ------------------------------------------------------------------------------------------------------------------ */
 
 static double ks_back(const double *counts, double n) {
-    /* The distance at the edges of 65536 cells. Inside of a cell it grows by about the standard deviation of its count, 1/256 of
-     * 1/sqrt(n), which is left out. A number comes back within 64 2^-24 of itself (test_oracle.c: a few roundings, and 8 ulp in
-     * each coordinate), so the share below an edge may be off by that, and by one more number on the edge, without anything being
-     * wrong. */
+    /* The distance at the edges of 65536 cells. Inside of a cell it grows by about the standard deviation of its count,
+     * 1/256 of 1/sqrt(n), which is left out. A number comes back within 64 2^-24 of itself (test_oracle.c: a few
+     * roundings, and 8 ulp in each coordinate), so the share below an edge may be off by that, and by one more number
+     * on the edge, without anything being wrong. */
     static double flat[CELLS_U];
     double sum = 0, d = 0;
     int i;
@@ -187,10 +194,12 @@ static struct {
     int cells, brdf, groups, dof;
 } drawn;
 
-/* Fills expected; returns how many samples fell where the density is 0. Marginals: the p of Kolmogorov-Smirnov along s and t. */
+/* Fills expected; returns how many samples fell where the density is 0. Marginals: the p of Kolmogorov-Smirnov along s
+ * and t. */
 static double check_marginals(double level, double *p_s, double *p_t) {
     const mcst_map *map = &drawn.map;
-    double so[MCST_LINE_BINS + 1] = {0}, se[MCST_LINE_BINS + 1] = {0}, to[MCST_T + 1] = {0}, te[MCST_T + 1] = {0}, stray = 0;
+    double so[MCST_LINE_BINS + 1] = {0}, se[MCST_LINE_BINS + 1] = {0}, to[MCST_T + 1] = {0}, te[MCST_T + 1] = {0},
+                               stray = 0;
     int i;
     for (i = 0; i <= drawn.cells; i++) {
         const int t = i < drawn.cells ? i % map->t_bins : map->t_bins;
@@ -226,7 +235,8 @@ static void check_right(double level) {
     gather(observed, drawn.cells + drawn.brdf, drawn.o);
     gather(expected, drawn.cells + drawn.brdf, drawn.e);
     p_chi2 = chi2_test(drawn.o, drawn.e, (size_t)drawn.groups, NULL, &drawn.dof);
-    printf("  %-14s %.3g samples, %d degrees of freedom; p: chi-square %.3g, stray %.3g, KS s %.3g t %.3g u1 %.3g u2 %.3g\n",
+    printf("  %-14s %.3g samples, %d degrees of freedom; p: chi-square %.3g, stray %.3g, KS s %.3g t %.3g u1 %.3g u2 "
+           "%.3g\n",
            row->name, drawn.done, drawn.dof, p_chi2, p_stray, p_s, p_t, p_u1, p_u2);
     CHECK(p_chi2 >= level, "chi-square p = %g", p_chi2);
     CHECK(p_stray >= level, "%g samples where the density is 0, p = %g", stray, p_stray);
@@ -252,9 +262,11 @@ static void check_wrong(enum kind kind, double level, double lambda99) {
     }
     eps99 = shifts[SHIFTS - 1] * sqrt(lambda99 / lambda);
     if (full) CHECK(eps99 <= 0.003, "%s: seen 99 times in 100 only from %g on", kind_name[kind], eps99);
-    printf("  %-14s %-9s p at 0.1 %%: %-9.3g 0.3 %%: %-9.3g 1 %%: %-9.3g seen 99 times in 100 from %.3f %% on, %.2f %% in make "
+    printf("  %-14s %-9s p at 0.1 %%: %-9.3g 0.3 %%: %-9.3g 1 %%: %-9.3g seen 99 times in 100 from %.3f %% on, %.2f %% "
+           "in make "
            "test\n",
-           "", kind_name[kind], value[0], value[1], value[2], 100 * eps99, 100 * eps99 * sqrt(drawn.done / samples_of_make_test));
+           "", kind_name[kind], value[0], value[1], value[2], 100 * eps99,
+           100 * eps99 * sqrt(drawn.done / samples_of_make_test));
 }
 
 static void check_row(const mcst_row *row, double n, double level) {

@@ -1,7 +1,7 @@
-/* The truth of the stress tests: every sampler and density in __float128 (gcc with libquadmath), as the papers print them (sources
- * in the header): angles, tangents and powers of cosines, with 113 bits in place of care. Parameters are clamped as the header
- * clamps them; directions are the literal floats and not made unit, half-vectors are wo + wi. extremes.c checks by numerical
- * Jacobians that the maps have the densities. */
+/* The truth of the stress tests: every sampler and density in __float128 (gcc with libquadmath), as the papers print
+ * them (sources in the header): angles, tangents and powers of cosines, with 113 bits in place of care. Parameters are
+ * clamped as the header clamps them; directions are the literal floats and not made unit, half-vectors are wo + wi.
+ * extremes.c checks by numerical Jacobians that the maps have the densities. */
 #ifndef MCS_EXACT_H
 #define MCS_EXACT_H
 #include <quadmath.h>
@@ -13,7 +13,8 @@ typedef struct {
 } q3;
 static qd pi; /* exact_start() sets it */
 
-/* --- the oracle ------------------------------------------------------------------------------------------------------------- */
+/* --- the oracle
+ * ------------------------------------------------------------------------------------------------------------- */
 
 static inline q3 vec(qd x, qd y, qd z) {
     q3 v;
@@ -82,7 +83,8 @@ static inline q3 stretched(qd ax, qd ay, q3 wo) {
 }
 static inline q3 mirror(q3 wo, q3 h) { return add(times(2 * dot(wo, h), h), times(-1, wo)); }
 
-static inline qd normal_quantile(qd u) { /* bisection to a start, then Newton: the cumulative is erfc(-z / sqrt 2) / 2 */
+static inline qd
+normal_quantile(qd u) { /* bisection to a start, then Newton: the cumulative is erfc(-z / sqrt 2) / 2 */
     qd lo = -14;
     qd hi = 14;
     if (u > 0.5) return -normal_quantile(1 - u);
@@ -100,7 +102,8 @@ static inline qd normal_quantile(qd u) { /* bisection to a start, then Newton: t
 #define ST_ID(shape, row, fn, arg, base, coord, grid) ID_##row,
 enum { MCST_ROWS(ST_ID) IDS };
 
-/* Lobes beyond the list count as microfacets of the formulas below, and fail where they are not; other rows have none. */
+/* Lobes beyond the list count as microfacets of the formulas below, and fail where they are not; other rows have none.
+ */
 static inline int exact_has(const mcst_row *row) {
     static const int ids[] = {ID_linear,    ID_tent, ID_exponential, ID_truncexp, ID_normal,     ID_logistic, ID_power,
                               ID_evenpower, ID_disk, ID_concentric,  ID_sphere,   ID_hemisphere, ID_cosine,   ID_cone};
@@ -232,7 +235,8 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
     case ID_normal: return expq(-z * z / 2) / (b * sqrtq(2 * pi));
     case ID_logistic: return expq(-fabsq(z)) / (b * square(1 + expq(-fabsq(z))));
     case ID_power: return x.x < 0 || x.x > 1 ? 0 : x.x > 0 ? (a + 1) * expq(a * logq(x.x)) : a > 0 ? 0 : 1;
-    case ID_evenpower: return fabsq(x.x) > 1 ? 0 : x.x != 0 ? (a + 1) / 2 * expq(a * logq(fabsq(x.x))) : a > 0 ? 0 : (qd)0.5;
+    case ID_evenpower:
+        return fabsq(x.x) > 1 ? 0 : x.x != 0 ? (a + 1) / 2 * expq(a * logq(fabsq(x.x))) : a > 0 ? 0 : (qd)0.5;
     case ID_disk:
     case ID_concentric: return x.x * x.x + x.y * x.y <= a * a * (1 + (qd)1e-30) ? 1 / (pi * a * a) : 0;
     case ID_sphere: return 1 / (4 * pi);
@@ -256,7 +260,8 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
             if (!(s->wo.z > 0 && x.z > 0)) return 0;
             if (s->visible == 1) return ggx_d(a, b, h) / (4 * s->wo.z * (1 + ggx_lambda(a, b, s->wo)));
             if (s->visible == 2)
-                return ggx_d(a, b, h) / (2 * (bound(a, b, s->wo) * s->wo.z + len(vec(a * s->wo.x, b * s->wo.y, s->wo.z))));
+                return ggx_d(a, b, h) /
+                       (2 * (bound(a, b, s->wo) * s->wo.z + len(vec(a * s->wo.x, b * s->wo.y, s->wo.z))));
             return half_vector_density(s, h) / (2 * len(h)); /* 4 wo.h, wo.h = |wo + wi| / 2 */
         }
         return half_vector_density(s, x);
@@ -280,7 +285,8 @@ static inline qd exact_value(const setting *s, q3 wi) {
     case ID_ward_gmd: return gauss * dot(h, h) / square(square(h.z));
     case ID_ward_duer: return gauss / (4 * zo * zi);
     case ID_ward_1992: return gauss / (4 * sqrtq(zo * zi));
-    case ID_beckmann: return beckmann_d(a, b, h) / (4 * zo * zi * (1 + beckmann_lambda(a, b, s->wo) + beckmann_lambda(a, b, wi)));
+    case ID_beckmann:
+        return beckmann_d(a, b, h) / (4 * zo * zi * (1 + beckmann_lambda(a, b, s->wo) + beckmann_lambda(a, b, wi)));
     case ID_ashikhmin: return ashikhmin_h(a, b, h) / (2 * len(h) * fmaxq(zo, zi)); /* 4 wo.h = 2 |H| */
     default: return ggx_d(a, b, h) / (4 * zo * zi * (1 + ggx_lambda(a, b, s->wo) + ggx_lambda(a, b, wi)));
     }

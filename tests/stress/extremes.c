@@ -1,25 +1,27 @@
-/* Extremes: every sampler and density over the product of the ends of its parameters, incidences and random numbers, against
- * __float128 (exact.h). That the maps of that truth have its densities is checked first, by numerical Jacobians.
+/* Extremes: every sampler and density over the product of the ends of its parameters, incidences and random numbers,
+ * against __float128 (exact.h). That the maps of that truth have its densities is checked first, by numerical
+ * Jacobians.
  *
- * Inputs are the literal floats; directions are not made unit, and half-vectors are wo + wi. Densities are judged relative to
- * E = 1e-6 (1 + |ln(pdf/peak)|), because a density e^-x has the rounding of x in it. Where that is exceeded, the bound is widened
- * by what the exact density itself does when the inputs move by half an ulp (ROUNDINGS below); such points are counted and both
- * figures are printed.
+ * Inputs are the literal floats; directions are not made unit, and half-vectors are wo + wi. Densities are judged
+ * relative to E = 1e-6 (1 + |ln(pdf/peak)|), because a density e^-x has the rounding of x in it. Where that is
+ * exceeded, the bound is widened by what the exact density itself does when the inputs move by half an ulp (ROUNDINGS
+ * below); such points are counted and both figures are printed.
  *
  * --filter picks a row or a case; MCS_TEST_SCALE scales the number of u. */
 #include "exact.h"
 #include "mass.h"
 
 #define EPS 0x1p-24 /* half an ulp of 1 */
-/* Where inputs cancel, so do their descendants: each component of a half-vector carries 3 half ulps (sine or cosine, root, product;
- * column `where` of the lobes), its product with wo one more. So the conditioning term is this many times the exact answer's change
- * when the inputs move by half an ulp. */
+/* Where inputs cancel, so do their descendants: each component of a half-vector carries 3 half ulps (sine or cosine,
+ * root, product; column `where` of the lobes), its product with wo one more. So the conditioning term is this many
+ * times the exact answer's change when the inputs move by half an ulp. */
 #define ROUNDINGS 4
-/* Errors are judged where both cosines are at least this. Below, products and squares of cosines leave the normal floats; results
- * must be finite and directions unit there, too, and the errors are printed as a line of their own. */
+/* Errors are judged where both cosines are at least this. Below, products and squares of cosines leave the normal
+ * floats; results must be finite and directions unit there, too, and the errors are printed as a line of their own. */
 #define LEAST_COSINE 9.9e-16f
 
-/* --- does the oracle agree with itself? ------------------------------------------------------------------------------------- */
+/* --- does the oracle agree with itself?
+ * ------------------------------------------------------------------------------------- */
 
 /* The density at map(u) times the area of the map there, by central differences: 1. */
 static qd density_times_area(const mcst_row *row, const setting *s, qd u1, qd u2) {
@@ -32,26 +34,34 @@ static qd density_times_area(const mcst_row *row, const setting *s, qd u1, qd u2
     return exact_pdf(row, s, x) * (row->inputs == 1 ? len(d[0]) : len(cross(d[0], d[2])));
 }
 
-/* --- the grid --------------------------------------------------------------------------------------------------------------- */
+/* --- the grid
+ * --------------------------------------------------------------------------------------------------------------- */
 
 /* Alphas beyond both limits of the header, anisotropy 1e4 and more; exponents likewise. */
-static const float alphas[][2] = {{1e-8f, 1e-8f}, {1e-7f, 1e-7f}, {1e-6f, 1e-6f}, {1e-5f, 1e-5f}, {1e-3f, 1e-3f}, {0.01f, 0.01f},
-                                  {0.1f, 0.1f},   {0.3f, 0.3f},   {1, 1},         {3, 3},         {100, 100},     {1e4f, 1e4f},
-                                  {1e5f, 1e5f},   {1e-7f, 1e-3f}, {1e-3f, 1e-7f}, {1e-6f, 0.01f}, {1e-4f, 1},     {1, 1e-4f},
-                                  {0.1f, 1e3f},   {100, 0.01f},   {1e4f, 1},      {0.01f, 1},     {1e-7f, 1e4f}};
-static const float exponents[][2] = {{0, 0},       {0x1p-149f, 1e-30f}, {0.5f, 0.5f}, {1, 1},         {10, 10},  {1e3f, 1e3f},
-                                     {1e5f, 1e5f}, {1e7f, 1e7f},        {1e9f, 1e9f}, {1e30f, 1e30f}, {0, 1e9f}, {1e9f, 0},
-                                     {1, 1e4f},    {1e4f, 1},           {1e5f, 1e9f}, {10, 1000}};
+static const float alphas[][2] = {{1e-8f, 1e-8f}, {1e-7f, 1e-7f}, {1e-6f, 1e-6f}, {1e-5f, 1e-5f}, {1e-3f, 1e-3f},
+                                  {0.01f, 0.01f}, {0.1f, 0.1f},   {0.3f, 0.3f},   {1, 1},         {3, 3},
+                                  {100, 100},     {1e4f, 1e4f},   {1e5f, 1e5f},   {1e-7f, 1e-3f}, {1e-3f, 1e-7f},
+                                  {1e-6f, 0.01f}, {1e-4f, 1},     {1, 1e-4f},     {0.1f, 1e3f},   {100, 0.01f},
+                                  {1e4f, 1},      {0.01f, 1},     {1e-7f, 1e4f}};
+static const float exponents[][2] = {
+    {0, 0},       {0x1p-149f, 1e-30f}, {0.5f, 0.5f}, {1, 1},    {10, 10},  {1e3f, 1e3f}, {1e5f, 1e5f}, {1e7f, 1e7f},
+    {1e9f, 1e9f}, {1e30f, 1e30f},      {0, 1e9f},    {1e9f, 0}, {1, 1e4f}, {1e4f, 1},    {1e5f, 1e9f}, {10, 1000}};
 /* Beyond the grid of the registry. */
-static const float line_more[][3] = {
-    {ID_linear, 0x1p-149f, 1},   {ID_linear, FLT_MAX, 1},     {ID_linear, FLT_MAX, FLT_MAX}, {ID_linear, 0x1p-149f, 0x1p-149f},
-    {ID_linear, 1, FLT_MAX},     {ID_tent, 3e17f, 0},         {ID_tent, 2e-18f, 0},          {ID_exponential, 80, 0},
-    {ID_truncexp, 1e18f, 1e18f}, {ID_truncexp, 0x1p-149f, 1}, {ID_truncexp, 80, 1},          {ID_truncexp, 79.9f, 1},
-    {ID_truncexp, 1e-8f, 1},     {ID_truncexp, 2e-8f, 1},     {ID_truncexp, 1e-18f, 1e-18f}, {ID_truncexp, 1e18f, 1e-18f},
-    {ID_normal, 1e30f, 1e18f},   {ID_normal, -1e18f, 1e18f},  {ID_logistic, 1e30f, 1e18f},   {ID_logistic, -1e18f, 1e18f},
-    {ID_power, 0x1p-149f, 0},    {ID_power, 1e-30f, 0},       {ID_evenpower, 0x1p-149f, 0},  {ID_evenpower, 1e-30f, 0},
-    {ID_cone, 1e-30f, 0},        {ID_cone, 0.99999994f, 0},   {ID_cone, 1.9999999f, 0},      {ID_disk, 3e17f, 0},
-    {ID_concentric, 3e17f, 0}};
+static const float line_more[][3] = {{ID_linear, 0x1p-149f, 1},     {ID_linear, FLT_MAX, 1},
+                                     {ID_linear, FLT_MAX, FLT_MAX}, {ID_linear, 0x1p-149f, 0x1p-149f},
+                                     {ID_linear, 1, FLT_MAX},       {ID_tent, 3e17f, 0},
+                                     {ID_tent, 2e-18f, 0},          {ID_exponential, 80, 0},
+                                     {ID_truncexp, 1e18f, 1e18f},   {ID_truncexp, 0x1p-149f, 1},
+                                     {ID_truncexp, 80, 1},          {ID_truncexp, 79.9f, 1},
+                                     {ID_truncexp, 1e-8f, 1},       {ID_truncexp, 2e-8f, 1},
+                                     {ID_truncexp, 1e-18f, 1e-18f}, {ID_truncexp, 1e18f, 1e-18f},
+                                     {ID_normal, 1e30f, 1e18f},     {ID_normal, -1e18f, 1e18f},
+                                     {ID_logistic, 1e30f, 1e18f},   {ID_logistic, -1e18f, 1e18f},
+                                     {ID_power, 0x1p-149f, 0},      {ID_power, 1e-30f, 0},
+                                     {ID_evenpower, 0x1p-149f, 0},  {ID_evenpower, 1e-30f, 0},
+                                     {ID_cone, 1e-30f, 0},          {ID_cone, 0.99999994f, 0},
+                                     {ID_cone, 1.9999999f, 0},      {ID_disk, 3e17f, 0},
+                                     {ID_concentric, 3e17f, 0}};
 static const float incidence[][2] = {{1, 0},
                                      {0.99999994f, 0},
                                      {0.99999994f, 2.2f},
@@ -92,10 +102,12 @@ static int make_u(const mcst_row *row, uint64_t seed, int strata, float (*u)[2])
     return n;
 }
 
-/* --- scores ----------------------------------------------------------------------------------------------------------------- */
+/* --- scores
+ * ----------------------------------------------------------------------------------------------------------------- */
 
 enum { PDF_U, PDF_X, FAR_, VALUE, WEIGHT, AGREE, WHERE, SINE, SCORES };
-/* Densities, values and weights in E; where: in half ulps of 1 (lines and disks: of the size); sine: relative, in 1e-6. */
+/* Densities, values and weights in E; where: in half ulps of 1 (lines and disks: of the size); sine: relative, in 1e-6.
+ */
 static const char *const score_name[SCORES] = {"pdf(u)", "pdf(x)", "far", "eval", "weight", "agree", "where", "sine"};
 typedef struct {
     int beyond; /* a cosine below LEAST_COSINE: errors are recorded, not judged */
@@ -128,8 +140,8 @@ static qd answer(const question *q, const setting *s) {
     return exact_pdf(q->row, s, x);
 }
 
-/* The change of the exact answer, relative to it, when every input moves by half an ulp: the sum over parameters, wo and, if it is
- * the question, x. */
+/* The change of the exact answer, relative to it, when every input moves by half an ulp: the sum over parameters, wo
+ * and, if it is the question, x. */
 static double conditioning(question q, qd want) {
     const setting s = setting_of(q.row, q.p);
     qd sum = 0;
@@ -152,8 +164,8 @@ static double conditioning(question q, qd want) {
     return ROUNDINGS * (double)(sum / want);
 }
 
-/* Is got within E of want? Densities beyond FLT_MAX saturate. A density is its peak times a float in [0,1]: where that float is
- * subnormal its digits are gone, and all that is asked is that the density is small, too. */
+/* Is got within E of want? Densities beyond FLT_MAX saturate. A density is its peak times a float in [0,1]: where that
+ * float is subnormal its digits are gone, and all that is asked is that the density is small, too. */
 static int judge(tally *t, question q, float got, qd want, double unit, double peak, const char *where) {
     const double top = want > (qd)FLT_MAX ? FLT_MAX : (double)want, floor_ = 0x1p-126 * peak + 0x1p-148;
     const double err = fabs((double)((qd)got - (want > (qd)FLT_MAX ? (qd)FLT_MAX : want))),
@@ -163,13 +175,16 @@ static int judge(tally *t, question q, float got, qd want, double unit, double p
         const double wider = conditioning(q, want);
         judged = err / (top * (unit + wider));
         t->ill[q.what] += judged <= 1;
-        CHECK(judged <= 1 || t->beyond, "%s %s: %.9g, exact %.9g, error %.3g (bound %.3g, with half an ulp of the inputs %.3g)",
-              where, score_name[q.what], (double)got, top, err / top, unit, unit + wider);
+        CHECK(judged <= 1 || t->beyond,
+              "%s %s: %.9g, exact %.9g, error %.3g (bound %.3g, with half an ulp of the inputs %.3g)", where,
+              score_name[q.what], (double)got, top, err / top, unit, unit + wider);
     }
     score(t, q.what, raw, judged, where);
     return judged <= 1;
 }
-static double unit_of(qd pdf, double peak) { return 1e-6 * (1 + (pdf > 0 && peak > 0 ? fabs((double)logq(pdf / (qd)peak)) : 0)); }
+static double unit_of(qd pdf, double peak) {
+    return 1e-6 * (1 + (pdf > 0 && peak > 0 ? fabs((double)logq(pdf / (qd)peak)) : 0));
+}
 
 /* How far the exact sample itself moves, in half ulps of 1, when parameters and wo move by half an ulp. */
 static double movement(const mcst_row *row, const float *p, qd u1, qd u2, q3 from) {
@@ -197,11 +212,12 @@ static void count_point(const mcst_row *row, const float *p, tally *t, const flo
     int i;
     for (i = 0; i < 5; i++) t->nans += isnan(s[i]) != 0, t->infinities += isinf(s[i]) != 0;
     /* 4 ulp; a mirrored direction is as long as wo */
-    if (row->dim == 3) t->not_unit += !(fabs(sqrt(l2) - 1) <= 4 * EPS + (row->shape == MCST_IS_BRDF ? fabs(sqrt(o2) - 1) : 0));
+    if (row->dim == 3)
+        t->not_unit += !(fabs(sqrt(l2) - 1) <= 4 * EPS + (row->shape == MCST_IS_BRDF ? fabs(sqrt(o2) - 1) : 0));
 }
 
-static void check_point(const mcst_row *row, const setting *s, const float *p, const float *u, double peak, double extent,
-                        tally *t) {
+static void check_point(const mcst_row *row, const setting *s, const float *p, const float *u, double peak,
+                        double extent, tally *t) {
     question q;
     q3 x, at;
     qd pdf_u, pdf_x;
@@ -217,31 +233,38 @@ static void check_point(const mcst_row *row, const setting *s, const float *p, c
     for (i = 0; i < 3; i++) w[i] = out[i];
     if (row->has_wo && (p[5] < LEAST_COSINE || (row->shape == MCST_IS_BRDF && w[2] < LEAST_COSINE))) g = t + 1;
     at = vec(w[0], w[1], w[2]);
-    snprintf(where, sizeof where, "p %g %g, wo %a %a %a, u %a %a", (double)p[0], (double)p[1], (double)p[3], (double)p[4],
-             (double)p[5], (double)u[0], (double)u[1]);
+    snprintf(where, sizeof where, "p %g %g, wo %a %a %a, u %a %a", (double)p[0], (double)p[1], (double)p[3],
+             (double)p[4], (double)p[5], (double)u[0], (double)u[1]);
     for (i = 0; i < 5; i++) CHECK(isfinite(out[i]), "%s: out[%d] = %g", where, i, (double)out[i]);
-    /* where: 4 ulp of 1, 6 of the normal distribution; of a reflection (h.wo) h - wo magnifies 3 half ulps of h by 4 and adds 3
-     * roundings. Lines and disks count from their size, where x is a difference from that of its terms. */
+    /* where: 4 ulp of 1, 6 of the normal distribution; of a reflection (h.wo) h - wo magnifies 3 half ulps of h by 4
+     * and adds 3 roundings. Lines and disks count from their size, where x is a difference from that of its terms. */
     size = row->dim == 3 ? 1 : fmax(fabs((double)x.x), fabs((double)x.y));
     if (row->coord == MCST_TENT) size = (double)p[0];
     if (row->coord == MCST_WHOLELINE) size = fmax(size, fabs((double)p[0]) + (double)p[1]);
     err = (double)len(add(at, times(-1, x))) / EPS;
     limit = row->shape == MCST_IS_BRDF ? 16 : row->traits & MCST_QUANTILE ? 12 : 8;
-    err = err * EPS <= 0x1p-125 * extent + 0x1p-148 ? 0 : err / size; /* what is subnormal in units of the range has lost digits */
+    err = err * EPS <= 0x1p-125 * extent + 0x1p-148
+              ? 0
+              : err / size; /* what is subnormal in units of the range has lost digits */
     if (err <= limit) score(g, WHERE, err, err / limit, where);
     else {
         const double wider = limit + movement(row, p, u[0], u[1], x) / size;
         score(g, WHERE, err, err / wider, where);
         g->ill[WHERE] += err <= wider;
-        CHECK(err <= wider || g->beyond, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g", where,
-              (double)w[0], (double)w[1], (double)w[2], (double)x.x, (double)x.y, (double)x.z, err, wider);
+        CHECK(err <= wider || g->beyond, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g",
+              where, (double)w[0], (double)w[1], (double)w[2], (double)x.x, (double)x.y, (double)x.z, err, wider);
     }
     if (row->dim == 3 && row->shape != MCST_IS_BRDF) {
-        /* sin(theta), and the point across the lobe in units of its width: both relative, where sin^2(theta) is a normal float
-         * (u of 2^-100, which no generator makes, would need more) */
+        /* sin(theta), and the point across the lobe in units of its width: both relative, where sin^2(theta) is a
+         * normal float (u of 2^-100, which no generator makes, would need more) */
         const int slopes = row->coord == MCST_SLOPES, power = row->coord == MCST_COSPOWER;
         const qd b = s->id == ID_phong_lobe ? s->a : s->b;
-        const qd wx = slopes ? s->a : power ? 1 / sqrtq(s->a + 1) : 1, wy = slopes ? s->b : power ? 1 / sqrtq(b + 1) : 1;
+        const qd wx = slopes  ? s->a
+                      : power ? 1 / sqrtq(s->a + 1)
+                              : 1,
+                 wy = slopes  ? s->b
+                      : power ? 1 / sqrtq(b + 1)
+                              : 1;
         const qd sine = sqrtq(x.x * x.x + x.y * x.y), got = sqrtq(at.x * at.x + at.y * at.y);
         const double across = (double)(sqrtq(square((at.x - x.x) / wx) + square((at.y - x.y) / wy)) /
                                        sqrtq(square(x.x / wx) + square(x.y / wy))),
@@ -250,13 +273,13 @@ static void check_point(const mcst_row *row, const setting *s, const float *p, c
             if (rel <= 1) score(g, SINE, rel, rel, where);
             else {
                 /* of visible normals h = c + i is a sum: relative to the whole of it, not to what is left */
-                const double wider =
-                    1 + movement(row, p, u[0], u[1], x) * EPS / (double)(sine * fminq(1, fminq(wx, wy) / fmaxq(wx, wy))) / 1e-6;
+                const double wider = 1 + movement(row, p, u[0], u[1], x) * EPS /
+                                             (double)(sine * fminq(1, fminq(wx, wy) / fmaxq(wx, wy))) / 1e-6;
                 score(g, SINE, rel, rel / wider, where);
                 g->ill[SINE] += rel <= wider;
                 CHECK(rel <= wider || g->beyond,
-                      "%s: sin(theta) %.9g, exact %.9g: off by %.3g along, %.3g across the lobe (bound %.3g)", where, (double)got,
-                      (double)sine, along, across, 1e-6 * wider);
+                      "%s: sin(theta) %.9g, exact %.9g: off by %.3g along, %.3g across the lobe (bound %.3g)", where,
+                      (double)got, (double)sine, along, across, 1e-6 * wider);
             }
         }
     }
@@ -279,15 +302,16 @@ static void check_point(const mcst_row *row, const setting *s, const float *p, c
     row->fn[0].pdf(p, w, &pdf);
     pdf_x = exact_pdf(row, s, at);
     if (pdf_x == 0) { /* rounded over the rim of disk, cone or cap: 0 or what is inside */
-        CHECK(pdf >= 0 && (double)pdf <= (double)pdf_u * 1.001, "%s: pdf(x) %.9g on the rim, %.9g inside", where, (double)pdf,
-              (double)pdf_u);
+        CHECK(pdf >= 0 && (double)pdf <= (double)pdf_u * 1.001, "%s: pdf(x) %.9g on the rim, %.9g inside", where,
+              (double)pdf, (double)pdf_u);
         return;
     }
     q.of_u = 0, q.what = PDF_X;
     judge(g, q, pdf, pdf_x, unit_of(pdf_x, peak), peak, where);
     /* and the two differ by the rounding of the point alone */
     if (out[3] > FLT_MIN && pdf > FLT_MIN && pdf < FLT_MAX && (double)pdf_x > 0x1p-120 * peak) {
-        const double ratio = (double)((qd)pdf / (qd)out[3] / (pdf_x / pdf_u)), unit = unit_of(pdf_u, peak) + unit_of(pdf_x, peak);
+        const double ratio = (double)((qd)pdf / (qd)out[3] / (pdf_x / pdf_u)),
+                     unit = unit_of(pdf_u, peak) + unit_of(pdf_x, peak);
         score(g, AGREE, fabs(ratio - 1) / unit, 0, where);
     }
     if (row->fn[0].eval) {
@@ -322,20 +346,20 @@ static void check_far(const mcst_row *row, const setting *s, const float *p, uin
             const double z = (double)z_of[i / 2], r = sqrt(1 - z * z),
                          l = sqrt((double)p[3] * (double)p[3] + (double)p[4] * (double)p[4]);
             const double side = i % 2 ? 1 : -1; /* away from wo, or towards it */
-            w[0] = (float)(l > 0 ? side * r * (double)p[3] / l : r), w[1] = (float)(l > 0 ? side * r * (double)p[4] / l : 0),
-            w[2] = (float)z;
+            w[0] = (float)(l > 0 ? side * r * (double)p[3] / l : r),
+            w[1] = (float)(l > 0 ? side * r * (double)p[4] / l : 0), w[2] = (float)z;
         } else if (i == 24) w[0] = -p[3], w[1] = -p[4], w[2] = p[5];
         else if (i == 25) w[0] = p[3], w[1] = p[4], w[2] = p[5];
         else if (i == 26) w[0] = -p[3], w[1] = -p[4], w[2] = -p[5];
         else if (i == 27) w[0] = -p[4], w[1] = p[3], w[2] = p[5];
         else {
             const double z = (double)u, r = sqrt(1 - z * z);
-            w[0] = (float)(r * cos(6.283185307179586 * (double)v)), w[1] = (float)(r * sin(6.283185307179586 * (double)v)),
-            w[2] = u;
+            w[0] = (float)(r * cos(6.283185307179586 * (double)v)),
+            w[1] = (float)(r * sin(6.283185307179586 * (double)v)), w[2] = u;
         }
         q.row = row, q.p = p, q.x = vec(w[0], w[1], w[2]), q.u1 = q.u2 = 0, q.of_u = 0, q.what = FAR_;
-        snprintf(where, sizeof where, "p %g %g, wo %a %a %a, w %a %a %a", (double)p[0], (double)p[1], (double)p[3], (double)p[4],
-                 (double)p[5], (double)w[0], (double)w[1], (double)w[2]);
+        snprintf(where, sizeof where, "p %g %g, wo %a %a %a, w %a %a %a", (double)p[0], (double)p[1], (double)p[3],
+                 (double)p[4], (double)p[5], (double)w[0], (double)w[1], (double)w[2]);
         if ((row->has_wo && p[5] < LEAST_COSINE) || (w[2] > 0 && w[2] < LEAST_COSINE)) g = t + 1;
         row->fn[0].pdf(p, w, &pdf);
         t->evaluations++, t->nans += isnan(pdf) != 0, t->infinities += isinf(pdf) != 0;
@@ -393,17 +417,20 @@ static size_t settings_of(const mcst_row *row, float (*list)[2]) {
                          : row->coord == MCST_COSPOWER ? MCST_COUNT(exponents)
                                                        : row->grid_size;
     for (i = 0; i < count; i++) {
-        if (row->coord == MCST_COSPOWER && row->params == 1 && more[i][0] != more[i][1] && more[i][1] > 1e-20f) continue;
+        if (row->coord == MCST_COSPOWER && row->params == 1 && more[i][0] != more[i][1] && more[i][1] > 1e-20f)
+            continue;
         list[n][0] = more[i][0], list[n++][1] = more[i][1];
     }
     for (i = 0; i < MCST_COUNT(line_more); i++)
-        if ((int)line_more[i][0] == (int)(row - mcst_rows)) list[n][0] = line_more[i][1], list[n++][1] = line_more[i][2];
+        if ((int)line_more[i][0] == (int)(row - mcst_rows))
+            list[n][0] = line_more[i][1], list[n++][1] = line_more[i][2];
     return n;
 }
 
 static void check_setting(const mcst_row *row, const float *p, uint64_t seed, double scale, tally *t) {
     static float u[U_MAX][2];
-    const int strata = (int)fmin(64, fmax(4, sqrt((row->has_wo ? 1024 : 4096) * scale))), n = make_u(row, seed, strata, u);
+    const int strata = (int)fmin(64, fmax(4, sqrt((row->has_wo ? 1024 : 4096) * scale))),
+              n = make_u(row, seed, strata, u);
     const setting s = setting_of(row, p);
     double peak = 0, extent = 0;
     int i;
@@ -428,7 +455,8 @@ static void print_tally(const char *name, const tally *t, int head) {
         puts("  raw/judged (ill)");
         return;
     }
-    printf("%-14s %11.0f %4.0f %4.0f %9.0f %9.0f |", name, t->evaluations, t->nans, t->infinities, t->not_unit, t->zero);
+    printf("%-14s %11.0f %4.0f %4.0f %9.0f %9.0f |", name, t->evaluations, t->nans, t->infinities, t->not_unit,
+           t->zero);
     for (i = 0; i < SCORES; i++) {
         char cell[40];
         if (t->ill[i] > 0) snprintf(cell, sizeof cell, "%.2g/%.2g (%.0f)", t->raw[i], t->judged[i], t->ill[i]);
@@ -474,7 +502,8 @@ static void check_settings(const mcst_row *row, tally *t) {
     }
     if (t->evaluations > 0 && mcst_case("NaN, infinities, lengths, densities of 0"))
         CHECK(t->nans == 0 && t->infinities == 0 && t->not_unit == 0 && t->zero == 0,
-              "%.0f NaN, %.0f infinite, %.0f not unit, %.0f of density 0", t->nans, t->infinities, t->not_unit, t->zero);
+              "%.0f NaN, %.0f infinite, %.0f not unit, %.0f of density 0", t->nans, t->infinities, t->not_unit,
+              t->zero);
 }
 
 static void check_masses(const mcst_row *row) {
@@ -489,8 +518,8 @@ static void check_masses(const mcst_row *row) {
         if (!mcst_mass_resolved(row, p)) continue;
         if (!mcst_case("%s %g %g", row->name, (double)list[j][0], (double)list[j][1])) continue;
         m = mcst_mass_of(row, p);
-        CHECK(fabs(m.integral - m.lit) <= m.tolerance, "integral %.8f, not lost %.8f (%g, tolerance %g)", m.integral, m.lit,
-              m.integral - m.lit, m.tolerance);
+        CHECK(fabs(m.integral - m.lit) <= m.tolerance, "integral %.8f, not lost %.8f (%g, tolerance %g)", m.integral,
+              m.lit, m.integral - m.lit, m.tolerance);
     }
 }
 

@@ -1,21 +1,22 @@
-/* Every float: the vector maths of the header and its maps of one number, over all floats of their range (or all 2^24 random
- * numbers k 2^-24), at every width.
+/* Every float: the vector maths of the header and its maps of one number, over all floats of their range (or all 2^24
+ * random numbers k 2^-24), at every width.
  *
- * For each of up to two results of a map: the largest error against double or long double mathematics, where it is, how often the
- * result turns back where the exact map does not, and by how much, whether it leaves its range, and whether the 4, 8 and 16 wide
- * forms give the bits of the scalar one. Limits are those that the comments of the header state. A double result is good to 2^-29
- * of a float ulp and counts as exact.
+ * For each of up to two results of a map: the largest error against double or long double mathematics, where it is, how
+ * often the result turns back where the exact map does not, and by how much, whether it leaves its range, and whether
+ * the 4, 8 and 16 wide forms give the bits of the scalar one. Limits are those that the comments of the header state. A
+ * double result is good to 2^-29 of a float ulp and counts as exact.
  *
- * MCS_TEST_SCALE below 1 takes every k-th number, k the next prime; the numbers around the ends and the seams of a range are always
- * all taken. A few sweeps that repeat others with another parameter take every 11th at full scale, too: the table has the
- * counts. */
+ * MCS_TEST_SCALE below 1 takes every k-th number, k the next prime; the numbers around the ends and the seams of a
+ * range are always all taken. A few sweeps that repeat others with another parameter take every 11th at full scale,
+ * too: the table has the counts. */
 #define MCST_WIDE
 #include "claims.h"
 
 enum { BLOCK = 4096, WIDTHS = 4, SEAMS = 8, AROUND = 64 };
 
-/* --- the maps at four widths ---------------------------------------------------------------------------------------------------
- * I(name) is the private name at a width, P(name) the public one; x goes in, y and z come out. */
+/* --- the maps at four widths
+ * --------------------------------------------------------------------------------------------------- I(name) is the
+ * private name at a width, P(name) the public one; x goes in, y and z come out. */
 
 static float arg[2]; /* the parameters of the map under test */
 
@@ -83,8 +84,8 @@ MAP(root)
 MAP(tail)
 MAP(quantile)
 
-/* The maps of a row, from u to a coordinate and its density: a line's x, else the first coordinate at u2 = 0, which is the radius
- * or sin(theta) at azimuth 0. And the way back of a line: from x to u and the density. */
+/* The maps of a row, from u to a coordinate and its density: a line's x, else the first coordinate at u2 = 0, which is
+ * the radius or sin(theta) at azimuth 0. And the way back of a line: from x to u and the density. */
 static const mcst_row *row; /* under test: its oracle is the truth */
 
 static void fill_lanes(int lanes, float *p) {
@@ -112,8 +113,10 @@ static void back_lanes(int form, int lanes, const float *in, float *y_out, float
         row->fn[form].pdf(p, in + i, z_out + i);
     }
 }
-#define AT_LANES(form, lanes)                                                                                            \
-    static void draw_##lanes(const float *in, float *y_out, float *z_out) { draw_lanes(form, lanes, in, y_out, z_out); } \
+#define AT_LANES(form, lanes)                                               \
+    static void draw_##lanes(const float *in, float *y_out, float *z_out) { \
+        draw_lanes(form, lanes, in, y_out, z_out);                          \
+    }                                                                       \
     static void back_##lanes(const float *in, float *y_out, float *z_out) { back_lanes(form, lanes, in, y_out, z_out); }
 AT_LANES(0, 1)
 #ifdef MCST_WIDE
@@ -127,7 +130,8 @@ static block_fn *const row_at[WIDTHS] = {draw_1, NULL, NULL, NULL};
 static block_fn *const row_back_at[WIDTHS] = {back_1, NULL, NULL, NULL};
 #endif
 
-/* --- the truth -----------------------------------------------------------------------------------------------------------------
+/* --- the truth
+ * -----------------------------------------------------------------------------------------------------------------
  * Near 0, where most floats are, two or three terms of the series: what is left out is below 2^-52. */
 
 typedef void exact_fn(const float *in, int n, double want[2][BLOCK]);
@@ -160,9 +164,14 @@ static void exact_behind(double t, double want[2]) { /* 1 + cos(2 pi t) = 2 cos^
     want[1] = -cos(TWO_PI * (t - 0.5));
 }
 static double atan_in_turns(double y) {
-    return (fabs(y) < SMALL ? y * (1 - y * y / 3) : fabs(y) > 1 / SMALL ? copysign(0.25 * TWO_PI, y) - 1 / y : atan(y)) / TWO_PI;
+    return (fabs(y) < SMALL       ? y * (1 - y * y / 3)
+            : fabs(y) > 1 / SMALL ? copysign(0.25 * TWO_PI, y) - 1 / y
+                                  : atan(y)) /
+           TWO_PI;
 }
-static void exact_atan_y(double y, double want[2]) { want[0] = want[1] = y < 0 ? 1 + atan_in_turns(y) : atan_in_turns(y); }
+static void exact_atan_y(double y, double want[2]) {
+    want[0] = want[1] = y < 0 ? 1 + atan_in_turns(y) : atan_in_turns(y);
+}
 static void exact_atan_x(double x, double want[2]) {
     const double t = atan_in_turns(x);
     want[0] = 0.25 - t, want[1] = 0.75 + t;
@@ -195,7 +204,8 @@ static void exact_tail(double y, double want[2]) {
               : y < 14.6 ? 0.5 * erfc(y * 0.70710678118654752440)
                          : 0;
 }
-/* Halley's iteration, started where the last one ended: the numbers come in order. On erf about the median, on erfc in the tails.
+/* Halley's iteration, started where the last one ended: the numbers come in order. On erf about the median, on erfc in
+ * the tails.
  */
 static double quantile(double p) {
     static double z;
@@ -207,8 +217,8 @@ static double quantile(double p) {
     if (!middle && !(side * z > 0.6)) z = side;
     if (middle && !(fabs(z) < 0.7)) z = 0;
     do {
-        const double f =
-            middle ? 0.5 * erf(z * 0.70710678118654752440) - q : side * (tail - 0.5 * erfc(side * z * 0.70710678118654752440));
+        const double f = middle ? 0.5 * erf(z * 0.70710678118654752440) - q
+                                : side * (tail - 0.5 * erfc(side * z * 0.70710678118654752440));
         const double r = f * 2.50662827463100050242 * exp(0.5 * z * z);
         step = r / (1 + 0.5 * z * r);
         z -= step;
@@ -266,11 +276,13 @@ EXACT(row)
 EXACT(any_row)
 EXACT(any_normal)
 
-/* --- sweeps ------------------------------------------------------------------------------------------------------------------- */
+/* --- sweeps
+ * -------------------------------------------------------------------------------------------------------------------
+ */
 
-/* ULP: of the exact value, or of `scale` where that is larger. RELATIVE: 1e-7 of the value, and a subnormal's spacing. DENSITY: E =
- * 1e-6 (1 + |ln(value/scale)|) of it, scale being the peak; a density is the peak times a float, so digits below FLT_MIN times the
- * peak are gone. NONE: no truth, only range, order and bits. */
+/* ULP: of the exact value, or of `scale` where that is larger. RELATIVE: 1e-7 of the value, and a subnormal's spacing.
+ * DENSITY: E = 1e-6 (1 + |ln(value/scale)|) of it, scale being the peak; a density is the peak times a float, so digits
+ * below FLT_MIN times the peak are gone. NONE: no truth, only range, order and bits. */
 enum unit { ULP, RELATIVE, DENSITY, NONE };
 static const char *const unit_name[] = {"ulp", "e-7", "E", "-"};
 
@@ -340,7 +352,8 @@ static double worst_of(const result *r, const float *got, const double *want, in
             uint64_t bits;
             size = size > least ? size : least;
             memcpy(&bits, &size, sizeof bits);
-            bits = ((uint64_t)(2 * 1023 + 23) << 52) - (bits & (uint64_t)0x7ff << 52); /* 1 over the spacing of floats there */
+            bits = ((uint64_t)(2 * 1023 + 23) << 52) -
+                   (bits & (uint64_t)0x7ff << 52); /* 1 over the spacing of floats there */
             memcpy(&per_ulp, &bits, sizeof bits);
             error[k] = fabs((double)got[k] - want[k]) * per_ulp;
         }
@@ -382,8 +395,8 @@ static void progress(const char *name, double share) {
     fprintf(stderr, "    %s: %.0f %%\n", name, 100 * share);
 }
 
-static void sweep_piece(const range *r, block_fn *const at[WIDTHS], exact_fn *exact, const result *results, int64_t from,
-                        int64_t to, int64_t step, found *f, long long *count) {
+static void sweep_piece(const range *r, block_fn *const at[WIDTHS], exact_fn *exact, const result *results,
+                        int64_t from, int64_t to, int64_t step, found *f, long long *count) {
     static float in[BLOCK], got[2][BLOCK + 1], other[2][BLOCK]; /* got[o][0] is the last result of the block before */
     static double want[2][BLOCK];
     int64_t i = from;
@@ -402,7 +415,8 @@ static void sweep_piece(const range *r, block_fn *const at[WIDTHS], exact_fn *ex
             for (o = 0; o < 2; o++) {
                 if (!memcmp(&got[o][1], other[o], sizeof other[o])) continue;
                 for (k = 0; k < n; k++)
-                    if (memcmp(&got[o][k + 1], &other[o][k], sizeof(float)) && !f[o].bits++) f[o].bits_at = (double)in[k];
+                    if (memcmp(&got[o][k + 1], &other[o][k], sizeof(float)) && !f[o].bits++)
+                        f[o].bits_at = (double)in[k];
             }
         }
         if (exact) exact(in, n, want);
@@ -452,25 +466,27 @@ static void sweep(const range *r, block_fn *const at[WIDTHS], exact_fn *exact, c
         const result *res = &results[o];
         char error[64] = "", back[64] = "";
         if (res->unit != NONE)
-            snprintf(error, sizeof error, "%7.3f %-3s (limit %g) at %.9g", f[o].worst, unit_name[res->unit], res->limit, f[o].at);
+            snprintf(error, sizeof error, "%7.3f %-3s (limit %g) at %.9g", f[o].worst, unit_name[res->unit], res->limit,
+                     f[o].at);
         if (res->rises) snprintf(back, sizeof back, "%lld back, %.2g ulp", f[o].backs, f[o].back);
         printf("  %-30s %-10s [%.8g, %.8g] %11lld  %-46s %-26s %6.1f s\n", o ? "" : mcst.name, res->name, (double)r->lo,
                (double)r->hi, count, error, back, (double)(clock() - began) / CLOCKS_PER_SEC);
-        CHECK(res->unit == NONE || f[o].worst <= res->limit, "%s: %.3f %s at %.9g (%a), limit %g", res->name, f[o].worst,
-              unit_name[res->unit], f[o].at, f[o].at, res->limit);
+        CHECK(res->unit == NONE || f[o].worst <= res->limit, "%s: %.3f %s at %.9g (%a), limit %g", res->name,
+              f[o].worst, unit_name[res->unit], f[o].at, f[o].at, res->limit);
         /* Two errors of opposite signs turn a map back by twice the limit at most. */
-        CHECK(!res->rises || res->unit != ULP || f[o].back <= 2 * res->limit, "%s turns back by %.3g ulp at %.9g (%a)", res->name,
-              f[o].back, f[o].back_at, f[o].back_at);
-        CHECK(f[o].outside == 0, "%s: %lld outside [%g, %g], first at %.9g (%a)", res->name, f[o].outside, res->lo, res->hi,
-              f[o].outside_at, f[o].outside_at);
+        CHECK(!res->rises || res->unit != ULP || f[o].back <= 2 * res->limit, "%s turns back by %.3g ulp at %.9g (%a)",
+              res->name, f[o].back, f[o].back_at, f[o].back_at);
+        CHECK(f[o].outside == 0, "%s: %lld outside [%g, %g], first at %.9g (%a)", res->name, f[o].outside, res->lo,
+              res->hi, f[o].outside_at, f[o].outside_at);
         if (!mcst_contracts())
-            CHECK(f[o].bits == 0, "%s: %lld results have other bits at another width, first at %.9g (%a)", res->name, f[o].bits,
-                  f[o].bits_at, f[o].bits_at);
+            CHECK(f[o].bits == 0, "%s: %lld results have other bits at another width, first at %.9g (%a)", res->name,
+                  f[o].bits, f[o].bits_at, f[o].bits_at);
     }
     fflush(stdout);
 }
 
-/* --- the tables --------------------------------------------------------------------------------------------------------------- */
+/* --- the tables
+ * --------------------------------------------------------------------------------------------------------------- */
 
 #define BELOW_1 0.99999994f
 #define SIN_COS(lo, hi, up, down)                                                      \
@@ -480,9 +496,9 @@ static void sweep(const range *r, block_fn *const at[WIDTHS], exact_fn *exact, c
         }                                                                              \
     }
 
-/* The header gives no number for 1 + cos = z (c0 + z c1 + ...): z, the product of the small second term, its sum with c0 and the
- * last product are 3.1 roundings of 2^-24 relative, and 2^-24 relative is at most 1 ulp; the fit is below 0.1. atan2: 2^-23 of a
- * turn is an ulp of 1. */
+/* The header gives no number for 1 + cos = z (c0 + z c1 + ...): z, the product of the small second term, its sum with
+ * c0 and the last product are 3.1 roundings of 2^-24 relative, and 2^-24 relative is at most 1 ulp; the fit is below
+ * 0.1. atan2: 2^-23 of a turn is an ulp of 1. */
 static const struct kernel {
     const char *name;
     block_fn *const *at;
@@ -497,14 +513,24 @@ static const struct kernel {
     SIN_COS(0.25f, 0.5f, -1, -1),
     SIN_COS(0.5f, 0.75f, -1, 1),
     SIN_COS(0.75f, 1.0f, 1, 1),
-    {"1 + cos", behind_at, behind_n, 0, {FLOATS, 0.375f, 0.62499994f, {0.5f}, 1, 1}, {{"1 + cos", ULP, 3.2, 0, 0, 0, 0.3, 0}}},
+    {"1 + cos",
+     behind_at,
+     behind_n,
+     0,
+     {FLOATS, 0.375f, 0.62499994f, {0.5f}, 1, 1},
+     {{"1 + cos", ULP, 3.2, 0, 0, 0, 0.3, 0}}},
     {"atan2(y, 1), y to 1",
      atan_y_at,
      atan_y_n,
      0,
      {FLOATS, 0, 1, {0}, 0, 1},
      {{"turns", ULP, 1, 1, 1, 0, 0.125, 0}, {"turns", RELATIVE, 1.5, 0, 0, 0, 0.125, 0}}},
-    {"atan2(y, 1), y beyond 1", atan_y_at, atan_y_n, 0, {FLOATS, 1, FLT_MAX, {0}, 0, 1}, {{"turns", ULP, 1, 1, 1, 0.125, 0.25, 0}}},
+    {"atan2(y, 1), y beyond 1",
+     atan_y_at,
+     atan_y_n,
+     0,
+     {FLOATS, 1, FLT_MAX, {0}, 0, 1},
+     {{"turns", ULP, 1, 1, 1, 0.125, 0.25, 0}}},
     {"atan2(y, 1), y below 0",
      atan_y_at,
      atan_y_n,
@@ -517,7 +543,12 @@ static const struct kernel {
      0,
      {FLOATS, -FLT_MAX, 0, {-1}, 1, 1},
      {{"y = 1", ULP, 1, 1, -1, 0.25, 0.5, 0}, {"y = -1", ULP, 1, 1, 1, 0.5, 0.75, 0}}},
-    {"ln x", log_at, log_n, 0, {FLOATS, FLT_MIN, FLT_MAX, {0.70710678f, 1, 1.41421354f}, 3, 1}, {{"ln", ULP, 1, 0, 1, -88, 89, 0}}},
+    {"ln x",
+     log_at,
+     log_n,
+     0,
+     {FLOATS, FLT_MIN, FLT_MAX, {0.70710678f, 1, 1.41421354f}, 3, 1},
+     {{"ln", ULP, 1, 0, 1, -88, 89, 0}}},
     {"ln(1 + x)",
      log1p_at,
      log1p_n,
@@ -540,12 +571,27 @@ static const struct kernel {
     {"x^3", power_at, power_n, 3, {FLOATS, 0, 1, {0}, 0, 1}, {{"power", ULP, 1, 0, 1, 0, 1, 0}}},
     {"x^37.5", power_at, power_n, 37.5f, {FLOATS, 0, 1, {0}, 0, 11}, {{"power", ULP, 1, 0, 1, 0, 1, 0}}},
     {"x^1e9", power_at, power_n, 1e9f, {FLOATS, 0.9999f, 1, {0}, 0, 1}, {{"power", ULP, 1, 0, 1, 0, 1, 0}}},
-    {"x^(2.5 + 1)", power_plus_1_at, power_plus_1_n, 2.5f, {FLOATS, 0, 1, {0}, 0, 11}, {{"power", ULP, 1, 0, 1, 0, 1, 0}}},
-    {"x^(1e9 + 1)", power_plus_1_at, power_plus_1_n, 1e9f, {FLOATS, 0.9999f, 1, {0}, 0, 1}, {{"power", ULP, 1, 0, 1, 0, 1, 0}}},
+    {"x^(2.5 + 1)",
+     power_plus_1_at,
+     power_plus_1_n,
+     2.5f,
+     {FLOATS, 0, 1, {0}, 0, 11},
+     {{"power", ULP, 1, 0, 1, 0, 1, 0}}},
+    {"x^(1e9 + 1)",
+     power_plus_1_at,
+     power_plus_1_n,
+     1e9f,
+     {FLOATS, 0.9999f, 1, {0}, 0, 1},
+     {{"power", ULP, 1, 0, 1, 0, 1, 0}}},
     {"x^(1 / (0 + 1))", root_at, root_n, 0, {FLOATS, 0, 1, {FLT_MIN}, 1, 11}, {{"root", ULP, 1, 0, 1, 0, 1, 0}}},
     {"x^(1 / (2 + 1))", root_at, root_n, 2, {FLOATS, 0, 1, {FLT_MIN}, 1, 1}, {{"root", ULP, 1, 0, 1, 0, 1, 0}}},
     {"x^(1 / (1e9 + 1))", root_at, root_n, 1e9f, {FLOATS, 0, 1, {FLT_MIN}, 1, 11}, {{"root", ULP, 1, 0, 1, 0, 1, 0}}},
-    {"normal tail", tail_at, tail_n, 0, {FLOATS, 0, INFINITY, {1, 14.1f, 14.5f}, 3, 1}, {{"Phi(-y)", ULP, 8, 0, -1, 0, 0.5, 0}}},
+    {"normal tail",
+     tail_at,
+     tail_n,
+     0,
+     {FLOATS, 0, INFINITY, {1, 14.1f, 14.5f}, 3, 1},
+     {{"Phi(-y)", ULP, 8, 0, -1, 0, 0.5, 0}}},
     {"normal quantile",
      quantile_at,
      quantile_n,
@@ -556,8 +602,8 @@ static const struct kernel {
 
 /* Limits of a line's x in ulp and of its density in E, as the header states them. */
 static double x_limit_of(const mcst_row *of) { return of->traits & MCST_QUANTILE ? 7 : 4; }
-/* The normal distribution: 0.38 E for deviations that are powers of 2; the quotient of others rounds once more, 2^-24 of 1.7 E
- * where that is worst. */
+/* The normal distribution: 0.38 E for deviations that are powers of 2; the quotient of others rounds once more, 2^-24
+ * of 1.7 E where that is worst. */
 static double pdf_limit_of(const mcst_row *of) { return of->claims[0].claim[CLAIM_PDF_U]; }
 
 /* sin(theta) of a lobe within 1e-6 of itself, of the others every coordinate within 2^-23 of the radius. */
@@ -602,7 +648,8 @@ static double peak_of(exact_fn *exact) {
     return peak;
 }
 
-static void set_result(result *r, const char *name, enum unit unit, double limit, double scale, int rises, double lo, double hi) {
+static void set_result(result *r, const char *name, enum unit unit, double limit, double scale, int rises, double lo,
+                       double hi) {
     r->name = name, r->unit = unit, r->limit = limit, r->scale = scale, r->rises = rises, r->lo = lo, r->hi = hi;
     r->nan_gives_0 = 0;
 }

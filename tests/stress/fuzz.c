@@ -1,15 +1,17 @@
-/* A libFuzzer target: raw bytes choose a function and are its arguments. Every public function is reached; every result must be
- * finite and in its range; arrays and tables are allocated at exactly their size, so that the address sanitizer sees a byte too
- * far.
+/* A libFuzzer target: raw bytes choose a function and are its arguments. Every public function is reached; every result
+ * must be finite and in its range; arrays and tables are allocated at exactly their size, so that the address sanitizer
+ * sees a byte too far.
  *
- *     clang -g -O1 -fsanitize=fuzzer,address,undefined,float-cast-overflow -fno-sanitize-recover=all -I. -Itests fuzz.c -o fuzz
+ *     clang -g -O1 -fsanitize=fuzzer,address,undefined,float-cast-overflow -fno-sanitize-recover=all -I. -Itests fuzz.c
+ *     -o fuzz
  *
- * With -DMCS_FUZZ_MAIN and any compiler the program replays the files given to it, or, without any, a corpus made from a counter
- * (1e7 inputs times MCS_TEST_SCALE); options as in mcs_test.h. */
+ * With -DMCS_FUZZ_MAIN and any compiler the program replays the files given to it, or, without any, a corpus made from
+ * a counter (1e7 inputs times MCS_TEST_SCALE); options as in mcs_test.h. */
 #include "latlong.h"
 #include "stress.h"
 
-/* --- the input -------------------------------------------------------------------------------------------------------------- */
+/* --- the input
+ * -------------------------------------------------------------------------------------------------------------- */
 
 typedef struct {
     const uint8_t *at;
@@ -66,7 +68,8 @@ static float take_u(bytes *b, int tame) {
     return tame ? mcs_u01(v) : st_float(v);
 }
 
-/* --- what must hold --------------------------------------------------------------------------------------------------------- */
+/* --- what must hold
+ * --------------------------------------------------------------------------------------------------------- */
 
 static const char *doing = "";
 #ifdef MCS_FUZZ_MAIN
@@ -92,7 +95,8 @@ static float *floats(size_t n) {
 }
 
 /* The array forms of a row: numbers from the bytes while there are any, then u and x. */
-static void fuzz_arrays(const mcst_row *row, const float *p, const float *u, const float *x, int tame, size_t n, bytes *b) {
+static void fuzz_arrays(const mcst_row *row, const float *p, const float *u, const float *x, int tame, size_t n,
+                        bytes *b) {
     float *in[3];
     for (int k = 0; k < 3; k++) in[k] = floats(n);
     float *to[5];
@@ -118,7 +122,8 @@ static void fuzz_arrays(const mcst_row *row, const float *p, const float *u, con
     for (int k = 0; k < 5; k++) free(to[k]);
     free(value);
 }
-/* --- the functions ---------------------------------------------------------------------------------------------------------- */
+/* --- the functions
+ * ---------------------------------------------------------------------------------------------------------- */
 
 static void fuzz_row(const mcst_row *row, bytes *b) {
     const int tame = take_u8(b) & 1;
@@ -208,7 +213,8 @@ static void fuzz_vectors(bytes *b) {
     MUST(finite3(f.s) && finite3(f.t) && finite3(f.n));
     MUST(finite3(mcs_to_world(&f, any)) && finite3(mcs_to_local(&f, any)));
     MUST(finite3(mcs_reflect(v, w)) && finite3(mcs_reflect(any, w)) && finite3(mcs_half(any, w)));
-    MUST(fabs(sqrt((double)h.x * (double)h.x + (double)h.y * (double)h.y + (double)h.z * (double)h.z) - 1) <= 4 * 0x1p-24);
+    MUST(fabs(sqrt((double)h.x * (double)h.x + (double)h.y * (double)h.y + (double)h.z * (double)h.z) - 1) <=
+         4 * 0x1p-24);
     MUST(proper(mcs_cos_d(v, w)) && proper(mcs_cos_d(any, v)));
     MUST(proper(mcs_schlick(p, q)) && mcs_schlick(p, q) <= 1);
     MUST(proper(mcs_mis_balance(p, q)) && mcs_mis_balance(p, q) <= 1);
@@ -276,7 +282,8 @@ static void draw_table(int kind, const void *t, uint32_t n, float u, float x, ui
         const mcs_pick s = mcs_alias_sample_bits((const mcs_alias *)t, b1, b2);
         MUST(below_one(s.u) && s.i < n && s.pmf > 0 && s.pmf <= 1);
         MUST(below_one(c.u) && c.pmf <= 1 && c.i < n && (good ? c.pmf > 0 : c.pmf == 0));
-        MUST(proper(mcs_alias_pmf((const mcs_alias *)t, i)) && (!good || mcs_alias_pmf((const mcs_alias *)t, c.i) == c.pmf));
+        MUST(proper(mcs_alias_pmf((const mcs_alias *)t, i)) &&
+             (!good || mcs_alias_pmf((const mcs_alias *)t, c.i) == c.pmf));
     } else {
         const mcs_pwc *pwc = (const mcs_pwc *)t;
         const mcs_cell c = mcs_pwc_sample(pwc, u);
@@ -333,7 +340,8 @@ static void fuzz_table(int kind, bytes *b) {
     free(pdf);
 }
 
-/* --- environment maps and products ------------------------------------------------------------------------------------------ */
+/* --- environment maps and products
+ * ------------------------------------------------------------------------------------------ */
 
 static void *room(size_t size) {
     void *p = malloc(size + !size);
@@ -341,7 +349,8 @@ static void *room(size_t size) {
     return p;
 }
 
-/* Draws and densities of a map, of a window of it where m is given, with the axes as frame or without: then only inside the map. */
+/* Draws and densities of a map, of a window of it where m is given, with the axes as frame or without: then only inside
+ * the map. */
 static void draw_env(const mcs_env *e, const mcs_env_window *m, int axes, bytes *b) {
     const size_t count = take_u8(b) % 40;
     float *u = floats(2 * count);
@@ -389,7 +398,8 @@ static void fuzz_product(const mcs_env *e, bytes *b) {
     mcs_tiles *t = (mcs_tiles *)room(size);
     mcs_product *p = (mcs_product *)room(product_size);
     float *u = floats(2 * count);
-    MUST(mcs_tiles_build(t, size - 1, e, 16) == MCS_ERR_MEMORY && mcs_tiles_build(t, size, e, take_u8(b) | 1u) == MCS_ERR_SIZE);
+    MUST(mcs_tiles_build(t, size - 1, e, 16) == MCS_ERR_MEMORY &&
+         mcs_tiles_build(t, size, e, take_u8(b) | 1u) == MCS_ERR_SIZE);
     mcs_status s = mcs_tiles_build(t, size, e, 16);
     MUST(s == MCS_OK);
     mcs_reflection r;
@@ -413,7 +423,8 @@ static void fuzz_product(const mcs_env *e, bytes *b) {
     float weight[512];
     for (size_t k = 0; k < 512; k++) weight[k] = k < 64 ? take_float(b) : weight[k / 8];
     for (size_t k = 0; k < 512; k++) MUST(finite3(mcs_tiles_direction(t, e, (uint32_t)k)));
-    s = weights ? mcs_product_build_weights(p, product_size, t, e, weight) : mcs_product_build(p, product_size, t, e, &r);
+    s = weights ? mcs_product_build_weights(p, product_size, t, e, weight)
+                : mcs_product_build(p, product_size, t, e, &r);
     MUST(s == MCS_OK);
     float *to[4];
     for (int i = 0; i < 4; i++) to[i] = floats(count);
@@ -431,7 +442,8 @@ static void fuzz_product(const mcs_env *e, bytes *b) {
         MUST(!(c.pdf > 0) || (mcs_oneshot_pdf(t, e, &r, c.w) > 0 && mcs_oneshot_pdf(t, e, &r, c.w) <= FLT_MAX));
     }
     mcs_product_sample_n(p, t, e, count, u, u + count, to[0], to[1], to[2], to[3], NULL, NULL);
-    for (size_t k = 0; k < count; k++) MUST(finite(to[0][k]) && finite(to[1][k]) && finite(to[2][k]) && proper(to[3][k]));
+    for (size_t k = 0; k < count; k++)
+        MUST(finite(to[0][k]) && finite(to[1][k]) && finite(to[2][k]) && proper(to[3][k]));
     for (int i = 0; i < 4; i++) free(to[i]);
     free(u);
     free(p);
@@ -470,7 +482,8 @@ static void fuzz_window(const mcs_env *e, const rectangle *t, bytes *b) {
     free(m);
 }
 /* A table of the image in `e`, and in `other` in two parts; `wrong`: an image that is not there. */
-static void fuzz_builds(const mcs_image *im, const mcs_image *wrong, uint32_t cut, mcs_env *e, mcs_env *other, size_t size) {
+static void fuzz_builds(const mcs_image *im, const mcs_image *wrong, uint32_t cut, mcs_env *e, mcs_env *other,
+                        size_t size) {
     memset(e, 0, size);
     memset(other, 0, size);
     MUST(mcs_env_build(e, size - 1, im) == MCS_ERR_MEMORY);
@@ -481,10 +494,12 @@ static void fuzz_builds(const mcs_image *im, const mcs_image *wrong, uint32_t cu
     }
     s = mcs_env_build(e, size, im);
     MUST(s == MCS_OK && e->total >= 0 && e->total <= 1e300 && mcs_env_check(e, size) == MCS_OK);
-    MUST(mcs_env_build_rows(other, size, im, cut, im->h) == MCS_OK && mcs_env_build_rows(other, size, im, 0, cut) == MCS_OK);
+    MUST(mcs_env_build_rows(other, size, im, cut, im->h) == MCS_OK &&
+         mcs_env_build_rows(other, size, im, 0, cut) == MCS_OK);
     MUST(mcs_env_finish(other, size, im) == s && !memcmp(e, other, size));
 }
-/* An image whose floats are what is left of the input, over and over; then the map, a window and, if asked for, products. */
+/* An image whose floats are what is left of the input, over and over; then the map, a window and, if asked for,
+ * products. */
 static void fuzz_env(int products, bytes *b) {
     const uint32_t w = 1 + take_u8(b) % 70;
     const uint32_t h = 1 + take_u8(b) % 40;
@@ -537,8 +552,8 @@ static void fuzz_env(int products, bytes *b) {
     free(other);
 }
 
-/* A table as it comes from a file: the input itself, or a map of the input's size with bytes of it changed; half of them with
- * checksums that fit, as they would hide from everything else that is checked. */
+/* A table as it comes from a file: the input itself, or a map of the input's size with bytes of it changed; half of
+ * them with checksums that fit, as they would hide from everything else that is checked. */
 static void fuzz_file(bytes *b) {
     const uint32_t kind = take_u8(b);
     const uint32_t raw = kind & 1;
@@ -595,7 +610,8 @@ static void fuzz_file(bytes *b) {
 
 enum { NUMBERS = MCST_NROWS, VECTORS, ESTIMATOR, TABLES, ENV = TABLES + KINDS, PRODUCT, ENV_FILE, FUNCTIONS };
 static const char *const other_name[FUNCTIONS - MCST_NROWS] = {
-    "numbers", "vectors", "estimator", "pwc", "pwl", "alias", "pwc of a function", "environment", "product", "environment file"};
+    "numbers", "vectors",           "estimator",   "pwc",     "pwl",
+    "alias",   "pwc of a function", "environment", "product", "environment file"};
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

@@ -1,7 +1,7 @@
-/* Hostile input: any bit pattern as any argument of every function, mixed with valid arguments so that each check behind another
- * one is reached. Asserted: every result is finite; densities, weights, values and inverses are in range; directions are unit; bad
- * input by the header's rules has density and weight 0. Then tables of random sizes from random numbers, in memory of exactly the
- * size that was asked for, between guards.
+/* Hostile input: any bit pattern as any argument of every function, mixed with valid arguments so that each check
+ * behind another one is reached. Asserted: every result is finite; densities, weights, values and inverses are in
+ * range; directions are unit; bad input by the header's rules has density and weight 0. Then tables of random sizes
+ * from random numbers, in memory of exactly the size that was asked for, between guards.
  *
  * At full scale (MCS_TEST_SCALE=1) more than 1e9 evaluations; a part is picked with --filter. */
 #define MCS_PACKETS 8

@@ -1,9 +1,11 @@
-/* Environment maps, windows, tiles and products of random sizes from hostile pictures, and damaged files. A part of hostile.c. */
+/* Environment maps, windows, tiles and products of random sizes from hostile pictures, and damaged files. A part of
+ * hostile.c. */
 #ifndef HOSTILE_MAPS_H
 #define HOSTILE_MAPS_H
 #include "hostile_tally.h"
 
-/* An image in memory of exactly its span; `bad` of its texels are bad. Guards and gaps between texels would be bad, too. */
+/* An image in memory of exactly its span; `bad` of its texels are bad. Guards and gaps between texels would be bad,
+ * too. */
 typedef struct {
     arena m;
     mcs_image im;
@@ -12,7 +14,8 @@ typedef struct {
 
 static const float *texel_at(const mcs_image *im, uint32_t x, uint32_t y) {
     const ptrdiff_t step = im->pixel_stride ? im->pixel_stride : (ptrdiff_t)im->channels;
-    return im->pixels + (ptrdiff_t)y * (im->row_stride ? im->row_stride : step * (ptrdiff_t)im->w) + (ptrdiff_t)x * step;
+    return im->pixels + (ptrdiff_t)y * (im->row_stride ? im->row_stride : step * (ptrdiff_t)im->w) +
+           (ptrdiff_t)x * step;
 }
 static double luminance(const mcs_image *im, uint32_t x, uint32_t y, int *bad) {
     const float *p = texel_at(im, x, y);
@@ -25,8 +28,8 @@ static double luminance(const mcs_image *im, uint32_t x, uint32_t y, int *bad) {
     }
     return n == 1 ? c[0] : 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
 }
-/* Weight of a texel: 1 lit, 0 black, -1 where rounding decides. Of a weight that is a sum of up to 27 floats each step rounds by
- * 2^-24 of it or, where it is subnormal, by 2^-150. */
+/* Weight of a texel: 1 lit, 0 black, -1 where rounding decides. Of a weight that is a sum of up to 27 floats each step
+ * rounds by 2^-24 of it or, where it is subnormal, by 2^-150. */
 static int texel_lit(const mcs_image *im, uint32_t x, uint32_t y) {
     const double floor = im->floor > 0 ? (double)im->floor : 0;
     double v = 0;
@@ -116,7 +119,8 @@ static mcs_vec3 hostile_direction(uint64_t *state) {
     return w;
 }
 
-/* What is drawn from: rows and columns of the map, wrapped; which texels may be found out where the picture is at hand. */
+/* What is drawn from: rows and columns of the map, wrapped; which texels may be found out where the picture is at hand.
+ */
 typedef struct {
     const mcs_env *e;
     const picture *p; /* NULL: any texel may be drawn */
@@ -141,8 +145,8 @@ static void check_texel(const part_of *q, tally *t, mcs_texel s, int good, doubl
     if (!inside || !(s.pdf > 0)) return;
     CHECK(in_part(q, s.row, s.col), "%s: texel %u %u outside %u + %u, %u + %u", what, (unsigned)s.col, (unsigned)s.row,
           (unsigned)q->col, (unsigned)q->cols, (unsigned)q->row, (unsigned)q->rows);
-    CHECK(!q->p || texel_lit(&q->p->im, s.col, s.row), "%s: texel %u %u of %u x %u is black, but drawn", what, (unsigned)s.col,
-          (unsigned)s.row, (unsigned)q->e->w, (unsigned)q->e->h);
+    CHECK(!q->p || texel_lit(&q->p->im, s.col, s.row), "%s: texel %u %u of %u x %u is black, but drawn", what,
+          (unsigned)s.col, (unsigned)s.row, (unsigned)q->e->w, (unsigned)q->e->h);
 }
 
 enum { DRAWS = 100 };
@@ -156,7 +160,9 @@ static void check_draw(const part_of *q, const mcs_env_window *m, int axes, size
     const int good = bits || (good_u(u1) && good_u(u2));
     const uint32_t b1 = (uint32_t)mcst_mix(state);
     const uint32_t b2 = k % 8 ? (uint32_t)mcst_mix(state) : 0xffffffffu;
-    const mcs_texel s = m ? mcs_env_window_sample(m, e, u1, u2) : bits ? mcs_env_sample_bits(e, b1, b2) : mcs_env_sample(e, u1, u2);
+    const mcs_texel s = m      ? mcs_env_window_sample(m, e, u1, u2)
+                        : bits ? mcs_env_sample_bits(e, b1, b2)
+                               : mcs_env_sample(e, u1, u2);
     const mcs_vec3 w = hostile_direction(state);
     const int bad = st_direction_bad(w.x, w.y, w.z);
     const mcs_texel a = mcs_env_texel(e, w);
@@ -169,22 +175,24 @@ static void check_draw(const part_of *q, const mcs_env_window *m, int axes, size
     CHECK(!good || !axes || s.pdf > 0, "u %a %a: density 0 at its own sample", (double)u1, (double)u2);
     CHECK(!good || !axes || (here == s.pdf && own.row == s.row && own.col == s.col),
           "u %a %a, bits %08x %08x, %u x %u: pdf %a, %a of its direction; texel %u %u, %u %u", (double)u1, (double)u2,
-          (unsigned)(bits ? b1 : 0), (unsigned)(bits ? b2 : 0), (unsigned)e->w, (unsigned)e->h, (double)s.pdf, (double)here,
-          (unsigned)s.col, (unsigned)s.row, (unsigned)own.col, (unsigned)own.row);
-    CHECK(proper(t, here) && proper(t, there) && a.row < e->h && a.col < e->w, "pdf %a and, of %a %a %a, %a", (double)here,
-          (double)w.x, (double)w.y, (double)w.z, (double)there);
-    CHECK(!axes || bad != 1 || there == 0, "%a %a %a is bad, but density %a", (double)w.x, (double)w.y, (double)w.z, (double)there);
+          (unsigned)(bits ? b1 : 0), (unsigned)(bits ? b2 : 0), (unsigned)e->w, (unsigned)e->h, (double)s.pdf,
+          (double)here, (unsigned)s.col, (unsigned)s.row, (unsigned)own.col, (unsigned)own.row);
+    CHECK(proper(t, here) && proper(t, there) && a.row < e->h && a.col < e->w, "pdf %a and, of %a %a %a, %a",
+          (double)here, (double)w.x, (double)w.y, (double)w.z, (double)there);
+    CHECK(!axes || bad != 1 || there == 0, "%a %a %a is bad, but density %a", (double)w.x, (double)w.y, (double)w.z,
+          (double)there);
     if (axes && bad == 0) {
         const int lit = q->p ? texel_lit(&q->p->im, a.col, a.row) : 1;
         const int due = in_part(q, a.row, a.col) ? lit : 0;
-        CHECK(due < 0 || (there > 0) == due, "%a %a %a in texel %u %u, lit %d: pdf %a", (double)w.x, (double)w.y, (double)w.z,
-              (unsigned)a.col, (unsigned)a.row, due, (double)there);
+        CHECK(due < 0 || (there > 0) == due, "%a %a %a in texel %u %u, lit %d: pdf %a", (double)w.x, (double)w.y,
+              (double)w.z, (unsigned)a.col, (unsigned)a.row, due, (double)there);
     }
     CHECK(finite(t, weight) && weight >= 0, "weight %a of density %a", (double)weight, (double)there);
     CHECK(below_one(t, back.x) && below_one(t, back.y), "invert %a %a", (double)back.x, (double)back.y);
 }
 
-/* Draws and densities of a map or, where m is given, of a window; with the axes as frame pdf and texel of a draw are its own. */
+/* Draws and densities of a map or, where m is given, of a window; with the axes as frame pdf and texel of a draw are
+ * its own. */
 static void check_map(const part_of *q, const mcs_env_window *m, int axes, uint64_t *state, tally *t) {
     const mcs_env *e = q->e;
     const size_t count = mcst_mix(state) % 70;
@@ -202,8 +210,8 @@ static void check_map(const part_of *q, const mcs_env_window *m, int axes, uint6
     for (size_t k = 0; k < count; k++) {
         const mcs_texel s = m ? mcs_env_window_sample(m, e, u[k], u[count + k]) : mcs_env_sample(e, u[k], u[count + k]);
         CHECK(finite(t, x[k]) && finite(t, y[k]) && finite(t, z[k]) && pdf[k] == s.pdf,
-              "array: u %a %a, w %a %a %a, pdf %a, not %a", (double)u[k], (double)u[count + k], (double)x[k], (double)y[k],
-              (double)z[k], (double)pdf[k], (double)s.pdf);
+              "array: u %a %a, w %a %a %a, pdf %a, not %a", (double)u[k], (double)u[count + k], (double)x[k],
+              (double)y[k], (double)z[k], (double)pdf[k], (double)s.pdf);
         if (mcst_mix(state) & 1) x[k] = st_hostile(mcst_mix(state));
     }
     mcs_env_pdf_n(e, count, x, y, z, pdf);
@@ -240,9 +248,8 @@ static void check_window(const picture *p, const mcs_env *e, uint64_t *state, ta
             none &= lit == 0;
         }
     const int black = at->uniform && !(e->uniform && e->total > 0);
-    CHECK(s == MCS_OK && (!some || !black) && (!none || black),
-          "window %u + %u, %u + %u of %u x %u: status %d", (unsigned)col, (unsigned)cols, (unsigned)row, (unsigned)rows,
-          (unsigned)e->w, (unsigned)e->h, (int)s);
+    CHECK(s == MCS_OK && (!some || !black) && (!none || black), "window %u + %u, %u + %u of %u x %u: status %d",
+          (unsigned)col, (unsigned)cols, (unsigned)row, (unsigned)rows, (unsigned)e->w, (unsigned)e->h, (int)s);
     part_of q;
     q.e = e;
     q.p = black ? NULL : p;
@@ -293,9 +300,10 @@ static mcs_reflection make_reflection(uint64_t *state, int *sane) {
     return r;
 }
 
-static void check_draw_of_product(const part_of *q, const mcs_product *p, const mcs_tiles *tiles, const mcs_reflection *r, int sane,
-                                  uint64_t *state, tally *t) {
-    /* own lobe: |wi| 4 ulp, a frame that is orthonormal to 4 ulp of 2^-23 in 3 ways, three rounded terms each: 34 2^-24 */
+static void check_draw_of_product(const part_of *q, const mcs_product *p, const mcs_tiles *tiles,
+                                  const mcs_reflection *r, int sane, uint64_t *state, tally *t) {
+    /* own lobe: |wi| 4 ulp, a frame that is orthonormal to 4 ulp of 2^-23 in 3 ways, three rounded terms each: 34 2^-24
+     */
     const double lobe_off = 0x1p-18;
     part_of all = *q;
     all.p = NULL;
@@ -312,17 +320,17 @@ static void check_draw_of_product(const part_of *q, const mcs_product *p, const 
     const float shot_there = mcs_oneshot_pdf(tiles, q->e, r, w);
     check_texel(tiled ? q : &all, t, a, good, tiled ? st_map_off : sane ? lobe_off : -1, "product");
     check_texel(&all, t, b, good, sane ? lobe_off : -1, "one-shot");
-    CHECK(proper(t, back) && proper(t, there) && proper(t, shot_back) && proper(t, shot_there), "pdf %a %a, %a %a", (double)back,
-          (double)there, (double)shot_back, (double)shot_there);
+    CHECK(proper(t, back) && proper(t, there) && proper(t, shot_back) && proper(t, shot_there), "pdf %a %a, %a %a",
+          (double)back, (double)there, (double)shot_back, (double)shot_there);
     CHECK(!(a.pdf > 0) || back > 0, "product: pdf %a, 0 of its direction", (double)a.pdf);
     CHECK(!(b.pdf > 0) || shot_back > 0, "one-shot: pdf %a, 0 of its direction", (double)b.pdf);
     if (st_direction_bad(w.x, w.y, w.z) == 1)
-        CHECK(there == 0 && shot_there == 0, "%a %a %a is bad, but densities %a, %a", (double)w.x, (double)w.y, (double)w.z,
-              (double)there, (double)shot_there);
+        CHECK(there == 0 && shot_there == 0, "%a %a %a is bad, but densities %a, %a", (double)w.x, (double)w.y,
+              (double)w.z, (double)there, (double)shot_there);
 }
 
-static void check_arrays_of_product(const part_of *q, const mcs_product *p, const mcs_tiles *tiles, uint64_t *state, size_t count,
-                                    tally *t) {
+static void check_arrays_of_product(const part_of *q, const mcs_product *p, const mcs_tiles *tiles, uint64_t *state,
+                                    size_t count, tally *t) {
     arena in = arena_make(2 * count * sizeof(float));
     arena out = arena_make(4 * count * sizeof(float));
     float *u = (float *)(void *)in.at;
@@ -334,10 +342,11 @@ static void check_arrays_of_product(const part_of *q, const mcs_product *p, cons
     mcs_product_sample_n(p, tiles, q->e, count, u, u + count, x, y, z, pdf, NULL, NULL);
     for (size_t k = 0; k < count; k++) {
         const mcs_texel one = mcs_product_sample(p, tiles, q->e, u[k], u[count + k]);
-        CHECK(finite(t, x[k]) && finite(t, y[k]) && finite(t, z[k]) && proper(t, pdf[k]), "array: u %a %a, w %a %a %a, pdf %a",
-              (double)u[k], (double)u[count + k], (double)x[k], (double)y[k], (double)z[k], (double)pdf[k]);
-        CHECK((pdf[k] > 0) == (one.pdf > 0), "array: u %a %a, pdf %a, not %a", (double)u[k], (double)u[count + k], (double)pdf[k],
-              (double)one.pdf);
+        CHECK(finite(t, x[k]) && finite(t, y[k]) && finite(t, z[k]) && proper(t, pdf[k]),
+              "array: u %a %a, w %a %a %a, pdf %a", (double)u[k], (double)u[count + k], (double)x[k], (double)y[k],
+              (double)z[k], (double)pdf[k]);
+        CHECK((pdf[k] > 0) == (one.pdf > 0), "array: u %a %a, pdf %a, not %a", (double)u[k], (double)u[count + k],
+              (double)pdf[k], (double)one.pdf);
     }
     CHECK(arena_intact(&in) && arena_intact(&out), "product, arrays: written outside");
     arena_free(&in);
@@ -360,11 +369,12 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
     CHECK(s == MCS_ERR_MEMORY && untouched(m.at, bytes), "product, a byte too few: %d", (int)s);
     for (size_t k = 0; k < n; k++) {
         const mcs_vec3 w = mcs_tiles_direction(tiles, q->e, (uint32_t)k);
-        CHECK(finite(t, w.x) && finite(t, w.y) && finite(t, w.z), "tile %u: direction %a %a %a", (unsigned)k, (double)w.x,
-              (double)w.y, (double)w.z);
+        CHECK(finite(t, w.x) && finite(t, w.y) && finite(t, w.z), "tile %u: direction %a %a %a", (unsigned)k,
+              (double)w.x, (double)w.y, (double)w.z);
         weight[k] = st_hostile(mcst_mix(state));
     }
-    s = weights ? mcs_product_build_weights(p, bytes, tiles, q->e, weight) : mcs_product_build(p, bytes, tiles, q->e, &r);
+    s = weights ? mcs_product_build_weights(p, bytes, tiles, q->e, weight)
+                : mcs_product_build(p, bytes, tiles, q->e, &r);
     CHECK(s == MCS_OK && arena_intact(&m), "product: status %d", (int)s);
     if (mcst_mix(state) % 4 == 0) p->brdf_share = 0; /* as the header allows */
     for (size_t k = 0; k < DRAWS; k++) check_draw_of_product(q, p, tiles, &r, sane, state, t);
@@ -401,7 +411,10 @@ static void check_damage(const arena *map, uint64_t *state, tally *t) {
     CHECK(s == MCS_ERR_MEMORY, "%u of %u bytes: %d", (unsigned)less, (unsigned)map->bytes, (int)s);
     for (int i = 0; i < changes; i++) {
         const uint64_t z = mcst_mix(state);
-        const size_t reach = z & 1 ? map->bytes : z & 2 ? sizeof *e : 2 * sizeof *e < map->bytes ? 2 * sizeof *e : map->bytes;
+        const size_t reach = z & 1                        ? map->bytes
+                             : z & 2                      ? sizeof *e
+                             : 2 * sizeof *e < map->bytes ? 2 * sizeof *e
+                                                          : map->bytes;
         m.at[(z >> 16) % reach] ^= (unsigned char)(z & 4 ? 1u << (z >> 8 & 7) : z >> 8);
     }
     s = mcs_env_check(e, map->bytes);
@@ -413,10 +426,10 @@ static void check_damage(const arena *map, uint64_t *state, tally *t) {
         const mcs_vec2 back = mcs_env_invert(e, i & 1 ? b.w : a.w);
         const int inside = a.row < e->h && a.col < e->w && b.row < e->h && b.col < e->w && c.row < e->h && c.col < e->w;
         t->outside += !inside;
-        CHECK(inside, "damaged: texels %u %u, %u %u, %u %u of %u x %u", (unsigned)a.col, (unsigned)a.row, (unsigned)b.col,
-              (unsigned)b.row, (unsigned)c.col, (unsigned)c.row, (unsigned)e->w, (unsigned)e->h);
-        CHECK(proper(t, a.pdf) && proper(t, b.pdf) && proper(t, c.pdf), "damaged: pdf %a %a %a", (double)a.pdf, (double)b.pdf,
-              (double)c.pdf);
+        CHECK(inside, "damaged: texels %u %u, %u %u, %u %u of %u x %u", (unsigned)a.col, (unsigned)a.row,
+              (unsigned)b.col, (unsigned)b.row, (unsigned)c.col, (unsigned)c.row, (unsigned)e->w, (unsigned)e->h);
+        CHECK(proper(t, a.pdf) && proper(t, b.pdf) && proper(t, c.pdf), "damaged: pdf %a %a %a", (double)a.pdf,
+              (double)b.pdf, (double)c.pdf);
         CHECK(below_one(t, back.x) && below_one(t, back.y), "damaged: invert %a %a", (double)back.x, (double)back.y);
         t->evaluations += 4;
     }
@@ -430,8 +443,8 @@ static void check_refused(const picture *p, const arena *m, uint64_t *state) {
     const size_t bytes = m->bytes;
     mcs_image wrong = p->im;
     mcs_status s = mcs_env_build(e, bytes - 1, &p->im);
-    CHECK(s == MCS_ERR_MEMORY && untouched(m->at, bytes), "%u x %u, a byte too few: %d", (unsigned)p->im.w, (unsigned)p->im.h,
-          (int)s);
+    CHECK(s == MCS_ERR_MEMORY && untouched(m->at, bytes), "%u x %u, a byte too few: %d", (unsigned)p->im.w,
+          (unsigned)p->im.h, (int)s);
     wrong.channels = 2;
     s = mcs_env_build(e, bytes, &wrong);
     CHECK(s == MCS_ERR_ARG && untouched(m->at, bytes), "2 channels: %d", (int)s);
@@ -467,8 +480,8 @@ static void check_env(int tiled, uint64_t *state, tally *t) {
             none &= lit == 0;
         }
     const int black = !(e->total > 0);
-    CHECK(s == MCS_OK && (!some || !black) && (!none || black), "%u x %u: status %d",
-          (unsigned)p.im.w, (unsigned)p.im.h, (int)s);
+    CHECK(s == MCS_OK && (!some || !black) && (!none || black), "%u x %u: status %d", (unsigned)p.im.w,
+          (unsigned)p.im.h, (int)s);
     CHECK(e->bad == p.bad, "%u bad texels, counted %u", (unsigned)p.bad, (unsigned)e->bad);
     CHECK(e->total >= 0 && e->total <= 1e300, "total %g", e->total);
     CHECK(mcs_env_check(e, bytes) == MCS_OK, "%u x %u: not a table: %d", (unsigned)p.im.w, (unsigned)p.im.h,
@@ -477,8 +490,8 @@ static void check_env(int tiled, uint64_t *state, tally *t) {
               mcs_env_build_rows(other, bytes, &p.im, 0, cut) == MCS_OK,
           "parts, cut at %u", (unsigned)cut);
     CHECK(mcs_env_build_rows(other, bytes, &p.im, cut, p.im.h + 1) == MCS_ERR_SIZE, "rows beyond the image");
-    CHECK(mcs_env_finish(other, bytes, &p.im) == s && arena_intact(&parts) && !memcmp(m.at, parts.at, bytes), "%u x %u cut at %u",
-          (unsigned)p.im.w, (unsigned)p.im.h, (unsigned)cut);
+    CHECK(mcs_env_finish(other, bytes, &p.im) == s && arena_intact(&parts) && !memcmp(m.at, parts.at, bytes),
+          "%u x %u cut at %u", (unsigned)p.im.w, (unsigned)p.im.h, (unsigned)cut);
     part_of q;
     q.e = e;
     q.p = black ? NULL : &p;
@@ -491,7 +504,8 @@ static void check_env(int tiled, uint64_t *state, tally *t) {
     for (int k = 0; k < 4; k++) check_damage(&m, state, t);
     e->frame = mcs_frame_make(hostile_direction(state));
     check_map(&q, NULL, 0, state, t);
-    CHECK(arena_intact(&m) && arena_intact(&p.m), "%u x %u: written outside while drawing", (unsigned)p.im.w, (unsigned)p.im.h);
+    CHECK(arena_intact(&m) && arena_intact(&p.m), "%u x %u: written outside while drawing", (unsigned)p.im.w,
+          (unsigned)p.im.h);
     arena_free(&m);
     arena_free(&parts);
     arena_free(&copy);

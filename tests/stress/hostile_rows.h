@@ -1,5 +1,5 @@
-/* Hostile arguments of every row of the registry, 8 wide and by array, and of the functions that are no row: vectors, Fresnel, MIS,
- * GGX terms, points, random numbers. A part of hostile.c. */
+/* Hostile arguments of every row of the registry, 8 wide and by array, and of the functions that are no row: vectors,
+ * Fresnel, MIS, GGX terms, points, random numbers. A part of hostile.c. */
 #ifndef HOSTILE_ROWS_H
 #define HOSTILE_ROWS_H
 #include "hostile_tally.h"
@@ -85,8 +85,10 @@ static void check_sample(const mcst_row *row, tally *t, const arguments *a, int 
     if (row->dim == 3) {
         /* 4 ulp; a mirrored direction is as long as wo, and as exact; bad ones count as +z */
         const double l2 = (double)s[0] * (double)s[0] + (double)s[1] * (double)s[1] + (double)s[2] * (double)s[2];
-        const double o2 = (double)a->p[3] * (double)a->p[3] + (double)a->p[4] * (double)a->p[4] + (double)a->p[5] * (double)a->p[5];
-        const double off = row->shape != MCST_IS_BRDF || st_above_bad(a->p[3], a->p[4], a->p[5]) == 1 ? 0 : fabs(sqrt(o2) - 1);
+        const double o2 =
+            (double)a->p[3] * (double)a->p[3] + (double)a->p[4] * (double)a->p[4] + (double)a->p[5] * (double)a->p[5];
+        const double off =
+            row->shape != MCST_IS_BRDF || st_above_bad(a->p[3], a->p[4], a->p[5]) == 1 ? 0 : fabs(sqrt(o2) - 1);
         const int due = off <= 0x1p-22;
         const int unit = fabs(sqrt(l2) - 1) <= 4 * 0x1p-24 + off;
         t->not_unit += due && !unit;
@@ -141,9 +143,9 @@ static void check_lanes(const mcst_row *row, const mcst_fns *fn, uint64_t seed, 
                     const int inside = back >= 0 && back < 1;
                     t->nans += isnan(back) != 0;
                     t->outside += !inside;
-                    CHECK(inside, "invert%d %a: p %a %a, wo %a %a %a, x %a %a %a", i + 1, (double)back, (double)a[l].p[0],
-                          (double)a[l].p[1], (double)a[l].p[3], (double)a[l].p[4], (double)a[l].p[5], (double)a[l].x[0],
-                          (double)a[l].x[1], (double)a[l].x[2]);
+                    CHECK(inside, "invert%d %a: p %a %a, wo %a %a %a, x %a %a %a", i + 1, (double)back,
+                          (double)a[l].p[0], (double)a[l].p[1], (double)a[l].p[3], (double)a[l].p[4], (double)a[l].p[5],
+                          (double)a[l].x[0], (double)a[l].x[1], (double)a[l].x[2]);
                 }
             } else {
                 check_value(t, &a[l], at, v[1][l]);
@@ -195,7 +197,8 @@ static void check_arrays(const mcst_row *row, uint64_t seed, long calls, tally *
     }
 }
 
-/* --- functions that are no row: vectors, Fresnel, MIS, GGX terms, points, random numbers ------------------------------------ */
+/* --- functions that are no row: vectors, Fresnel, MIS, GGX terms, points, random numbers
+ * ------------------------------------ */
 
 static mcs8_f eight(const float *v) {
     mcs8_f r;
@@ -223,14 +226,16 @@ static const float value_top[VALUES] = {2, 1, 1, 1, FLT_MAX, FLT_MAX, FLT_MAX, 1
 static const char *const value_name[VALUES] = {"cos_d",       "schlick", "mis_balance", "mis_power", "mix_pdf",
                                                "reflect_pdf", "ggx_d",   "ggx_g1",      "ggx_g2",    "cone_from_sin2"};
 
-/* in: arguments as in `arguments`, in order; out: the frame, two turned directions, the mirrored one, the half-vector. */
-static void check_lane_of_vectors(float in[11][LANES], float out[7][3][LANES], float value[VALUES][LANES], int l, tally *t) {
+/* in: arguments as in `arguments`, in order; out: the frame, two turned directions, the mirrored one, the half-vector.
+ */
+static void check_lane_of_vectors(float in[11][LANES], float out[7][3][LANES], float value[VALUES][LANES], int l,
+                                  tally *t) {
     const double n2 = dot(out[2], out[2], l);
     int sound = 1;
     for (int i = 0; i < 7; i++)
         for (int j = 0; j < 3; j++) sound &= finite(t, out[i][j][l]);
-    CHECK(sound, "frame, reflect or half of %a %a %a and %a %a %a", (double)in[3][l], (double)in[4][l], (double)in[5][l],
-          (double)in[8][l], (double)in[9][l], (double)in[10][l]);
+    CHECK(sound, "frame, reflect or half of %a %a %a and %a %a %a", (double)in[3][l], (double)in[4][l],
+          (double)in[5][l], (double)in[8][l], (double)in[9][l], (double)in[10][l]);
     /* a frame is as orthonormal as n is unit: to 4 ulp beyond that */
     for (int i = 0; i < 3; i++) {
         const double l2 = dot(out[i], out[i], l);
@@ -238,20 +243,21 @@ static void check_lane_of_vectors(float in[11][LANES], float out[7][3][LANES], f
         const int due = fabs(n2 - 1) <= 0x1p-22;
         const int unit = fabs(sqrt(l2) - 1) <= 4 * 0x1p-23 && fabs(across) <= 4 * 0x1p-23;
         t->not_unit += due && !unit;
-        CHECK(!due || unit, "frame of %a %a %a: length %.9g, across %.3g", (double)in[3][l], (double)in[4][l], (double)in[5][l],
-              sqrt(l2), across);
+        CHECK(!due || unit, "frame of %a %a %a: length %.9g, across %.3g", (double)in[3][l], (double)in[4][l],
+              (double)in[5][l], sqrt(l2), across);
     }
     sound = fabs(sqrt(dot(out[6], out[6], l)) - 1) <= 4 * 0x1p-24;
     t->not_unit += !sound;
-    CHECK(sound, "half of %a %a %a and %a %a %a", (double)in[3][l], (double)in[4][l], (double)in[5][l], (double)in[8][l],
-          (double)in[9][l], (double)in[10][l]);
+    CHECK(sound, "half of %a %a %a and %a %a %a", (double)in[3][l], (double)in[4][l], (double)in[5][l],
+          (double)in[8][l], (double)in[9][l], (double)in[10][l]);
     for (int i = 0; i < VALUES; i++) {
         const float top = value_top[i] * (value_top[i] < 3 ? 1.000001f : 1);
         sound = proper(t, value[i][l]) && value[i][l] <= top;
         t->outside += value[i][l] > top;
-        CHECK(sound, "%s = %a: in %a %a %a %a %a %a %a %a %a %a %a", value_name[i], (double)value[i][l], (double)in[0][l],
-              (double)in[1][l], (double)in[2][l], (double)in[3][l], (double)in[4][l], (double)in[5][l], (double)in[6][l],
-              (double)in[7][l], (double)in[8][l], (double)in[9][l], (double)in[10][l]);
+        CHECK(sound, "%s = %a: in %a %a %a %a %a %a %a %a %a %a %a", value_name[i], (double)value[i][l],
+              (double)in[0][l], (double)in[1][l], (double)in[2][l], (double)in[3][l], (double)in[4][l],
+              (double)in[5][l], (double)in[6][l], (double)in[7][l], (double)in[8][l], (double)in[9][l],
+              (double)in[10][l]);
     }
 }
 

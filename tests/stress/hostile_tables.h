@@ -25,7 +25,8 @@ static mcs_status table_build(int kind, arena *m, size_t bytes, const float *f, 
 /* What a bad entry or channel is to the header: +infinity FLT_MAX, anything else 0. */
 static float counted_as(float x) { return x > FLT_MAX ? FLT_MAX : x > 0 ? x : 0; }
 
-/* Entries of one of six styles, zeros among them; how many of them are bad and the sum of all as they count come back. */
+/* Entries of one of six styles, zeros among them; how many of them are bad and the sum of all as they count come back.
+ */
 static void make_entries(float *f, uint32_t n, uint64_t *state, uint32_t *bad, long double *sum, uint32_t *some) {
     const uint64_t style = mcst_mix(state) % 6;
     const uint64_t giant = mcst_mix(state) % n;
@@ -65,10 +66,11 @@ static void check_draws(int kind, const arena *m, const float *f, uint32_t n, in
             i = c.i;
             CHECK(proper(t, pdf) && pdf <= 1, "%u entries, u %a: pmf %a", (unsigned)n, (double)u, (double)pdf);
             CHECK(i < n, "%u entries, u %a: entry %u", (unsigned)n, (double)u, (unsigned)i);
-            CHECK(!good || pdf == (kind == ALIAS ? mcs_alias_pmf(alias, i) : mcs_discrete_pmf(pwc, i)), "u %a: pmf %a", (double)u,
-                  (double)pdf);
+            CHECK(!good || pdf == (kind == ALIAS ? mcs_alias_pmf(alias, i) : mcs_discrete_pmf(pwc, i)), "u %a: pmf %a",
+                  (double)u, (double)pdf);
             back = x;
-            (void)proper(t, kind == ALIAS ? mcs_alias_pmf(alias, (uint32_t)(z >> 16)) : mcs_discrete_pmf(pwc, (uint32_t)(z >> 16)));
+            (void)proper(t, kind == ALIAS ? mcs_alias_pmf(alias, (uint32_t)(z >> 16))
+                                          : mcs_discrete_pmf(pwc, (uint32_t)(z >> 16)));
         } else {
             const mcs_cell c = kind == PWL ? mcs_pwl_sample(pwl, u) : mcs_pwc_sample(pwc, u);
             const float at = kind == PWL ? mcs_pwl_pdf(pwl, c.x) : mcs_pwc_pdf(pwc, c.x);
@@ -76,14 +78,15 @@ static void check_draws(int kind, const arena *m, const float *f, uint32_t n, in
             pdf = c.pdf;
             i = c.i;
             CHECK(proper(t, pdf), "%u cells, u %a: pdf %a", (unsigned)n, (double)u, (double)pdf);
-            CHECK(i < n && (double)x * n >= i && (double)x * n < (double)i + 1, "%u cells, u %a: x %a in cell %u", (unsigned)n,
-                  (double)u, (double)x, (unsigned)i);
+            CHECK(i < n && (double)x * n >= i && (double)x * n < (double)i + 1, "%u cells, u %a: x %a in cell %u",
+                  (unsigned)n, (double)u, (double)x, (unsigned)i);
             CHECK(!good || kind == PWL || pdf == at, "u %a: pdf %a, %a at x", (double)u, (double)pdf, (double)at);
             u = z & 4 ? st_hostile(z >> 3) : x;
             back = kind == PWL ? mcs_pwl_invert(pwl, u) : mcs_pwc_invert(pwc, u);
             CHECK(proper(t, kind == PWL ? mcs_pwl_pdf(pwl, u) : mcs_pwc_pdf(pwc, u)), "pdf at %a", (double)u);
         }
-        CHECK(below_one(t, x) && below_one(t, back), "%u cells: x or rest %a, invert %a", (unsigned)n, (double)x, (double)back);
+        CHECK(below_one(t, x) && below_one(t, back), "%u cells: x or rest %a, invert %a", (unsigned)n, (double)x,
+              (double)back);
         if (!good) CHECK(pdf == 0, "u %a is bad, but density %a", (double)u, (double)pdf);
         else if (f && !uniform)
             CHECK(kind == PWL ? lit(f, i) || lit(f, i + 1) : lit(f, i), "entry %u is zero, but drawn", (unsigned)i);
@@ -119,7 +122,8 @@ static void check_array(int kind, const arena *m, uint64_t *state, tally *t) {
     float *in = (float *)(void *)u.at;
     float *ox = (float *)(void *)x.at;
     float *op = (float *)(void *)pdf.at;
-    for (uint32_t i = 0; i < count; i++) in[i] = i & 3 ? (float)(mcst_mix(state) >> 40) * 0x1p-24f : st_hostile(mcst_mix(state));
+    for (uint32_t i = 0; i < count; i++)
+        in[i] = i & 3 ? (float)(mcst_mix(state) >> 40) * 0x1p-24f : st_hostile(mcst_mix(state));
     sample_array(kind, m, count, in, ox, op);
     for (uint32_t i = 0; i < count; i++)
         CHECK(below_one(t, ox[i]) && proper(t, op[i]), "u %a: %a %a", (double)in[i], (double)ox[i], (double)op[i]);
@@ -150,8 +154,8 @@ static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
     e = table_build(kind, &m, bytes, f, 0, state);
     CHECK(e == MCS_ERR_SIZE && untouched(m.at, bytes), "0 entries: %d", (int)e);
     e = table_build(kind, &m, bytes, f, n, state);
-    CHECK(arena_intact(&m) && arena_intact(&source) && !memcmp(copy.at, source.at, source.bytes), "%u entries: written outside",
-          (unsigned)n);
+    CHECK(arena_intact(&m) && arena_intact(&source) && !memcmp(copy.at, source.at, source.bytes),
+          "%u entries: written outside", (unsigned)n);
     if (kind == FROM_FUNCTION) {
         CHECK(e == MCS_OK, "%u entries: status %d", (unsigned)n, (int)e);
         check_draws(PWC, &m, NULL, n, 1, state, t);
@@ -164,7 +168,8 @@ static void check_table(int kind, uint32_t n, uint64_t *state, tally *t) {
         const long double ends = kind == PWL ? (long double)counted_as(f[0]) + (long double)counted_as(f[n]) : 0;
         const long double want = sum - 0.5L * ends;
         const int uniform = (kind == ALIAS ? alias->uniform : head->uniform) == 1;
-        CHECK(e == MCS_OK && uniform == !some, "%u entries, %u not zero: status %d", (unsigned)n, (unsigned)some, (int)e);
+        CHECK(e == MCS_OK && uniform == !some, "%u entries, %u not zero: status %d", (unsigned)n, (unsigned)some,
+              (int)e);
         CHECK(counted == bad, "%u bad entries, counted %u", (unsigned)bad, (unsigned)counted);
         CHECK(fabsl((long double)total - want) <= (long double)n * 0x1p-53L * want, "total %g, sum %Lg", total, want);
         check_draws(kind, &m, f, n, uniform, state, t);
@@ -186,7 +191,8 @@ static void test_tables(double scale) {
         uint64_t state = mcst_seed_for("tables", kind_name[kind], 0);
         for (long k = 0; k < tables; k++) {
             const uint64_t z = mcst_mix(&state);
-            check_table(kind, k < 40 ? (uint32_t)k + 1 : 1 + (uint32_t)(z >> 40) % (z % 50 ? 5000 : 200000), &state, &t);
+            check_table(kind, k < 40 ? (uint32_t)k + 1 : 1 + (uint32_t)(z >> 40) % (z % 50 ? 5000 : 200000), &state,
+                        &t);
         }
         mcst_close_case();
         print_tally(kind_name[kind], &t);

@@ -30,12 +30,12 @@ static int below_one(tally *t, float v) {
 }
 
 static void print_head(void) {
-    mcst_note("%-22s %12s %5s %5s %9s %9s %14s %9s\n", "", "evaluations", "NaN", "inf", "negative", "not unit", "not discarded",
-              "range");
+    mcst_note("%-22s %12s %5s %5s %9s %9s %14s %9s\n", "", "evaluations", "NaN", "inf", "negative", "not unit",
+              "not discarded", "range");
 }
 static void print_tally(const char *name, const tally *t) {
-    mcst_note("%-22s %12.0f %5.0f %5.0f %9.0f %9.0f %14.0f %9.0f\n", name, t->evaluations, t->nans, t->infinities, t->negative,
-              t->not_unit, t->not_discarded, t->outside);
+    mcst_note("%-22s %12.0f %5.0f %5.0f %9.0f %9.0f %14.0f %9.0f\n", name, t->evaluations, t->nans, t->infinities,
+              t->negative, t->not_unit, t->not_discarded, t->outside);
     all_evaluations += t->evaluations;
 }
 #endif

@@ -1,20 +1,22 @@
-/* Images that break tables of light: one pixel among black ones, sums that overflow a float, one texel, one row, one column, light
- * at the poles only, texels that are no light, 16384 x 8192. As they are, bilinear and with a floor (MIS compensation): the map,
- * windows of it and products.
+/* Images that break tables of light: one pixel among black ones, sums that overflow a float, one texel, one row, one
+ * column, light at the poles only, texels that are no light, 16384 x 8192. As they are, bilinear and with a floor (MIS
+ * compensation): the map, windows of it and products.
  *
- * The truth is the image: weight times solid angle of each texel, in long double; of the header only what its comments name is
- * used. Asserted: the density integrates to 1; rows, and columns within a row, have their share of light within the integers that
- * the header documents, every lit texel at least one of them; no draw falls on a black texel, by the header's word and by
- * arithmetic in double; single and array forms give the same bits; directions are unit, densities finite, those of a draw more than
- * 0 and its texel that of its direction; nothing is written outside of the memory. --filter takes an image or a mode;
- * MCS_TEST_SCALE scales the draws, and below 1 the largest image is 1024 x 512. */
+ * The truth is the image: weight times solid angle of each texel, in long double; of the header only what its comments
+ * name is used. Asserted: the density integrates to 1; rows, and columns within a row, have their share of light within
+ * the integers that the header documents, every lit texel at least one of them; no draw falls on a black texel, by the
+ * header's word and by arithmetic in double; single and array forms give the same bits; directions are unit, densities
+ * finite, those of a draw more than 0 and its texel that of its direction; nothing is written outside of the memory.
+ * --filter takes an image or a mode; MCS_TEST_SCALE scales the draws, and below 1 the largest image is 1024 x 512. */
 #include "latlong.h"
 #include "stress.h"
 
 static const double eps = 0x1p-24; /* rounding of a float, relative */
 static const ld one = 0x1p31L;     /* probabilities of rows and of columns within a row are integers over this */
 
-/* --- images ------------------------------------------------------------------------------------------------------------------- */
+/* --- images
+ * -------------------------------------------------------------------------------------------------------------------
+ */
 
 typedef float (*shade)(uint32_t col, uint32_t row, uint32_t w, uint32_t h);
 
@@ -138,10 +140,11 @@ static const struct subject {
 
 enum mode { PLAIN, BILINEAR, FLOOR, MODES };
 static const char *const mode_name[MODES] = {"plain", "bilinear", "floor"};
-/* Relative rounding of a weight: a bilinear one is two sums of three floats, one above a floor is a difference of two. */
+/* Relative rounding of a weight: a bilinear one is two sums of three floats, one above a floor is a difference of two.
+ */
 static const double loose[MODES] = {0, 4 * 0x1p-24, 0x1p-24};
-/* The products with powers of 2 of a bilinear weight round where they are subnormal, 11 times by up to 2^-150: smaller weights than
- * these may be lost, and not much larger ones be wrong by more than `loose`. */
+/* The products with powers of 2 of a bilinear weight round where they are subnormal, 11 times by up to 2^-150: smaller
+ * weights than these may be lost, and not much larger ones be wrong by more than `loose`. */
 static const ld bilinear_least = 11 * 0x1p-150L, bilinear_sharp = 11 * 0x1p-126L;
 
 typedef struct {
@@ -169,8 +172,8 @@ static void *get(size_t bytes) {
 
 /* What a texel counts as: +infinity as FLT_MAX, NaN and negative numbers as 0. */
 static ld light(float x) { return x > FLT_MAX ? (ld)FLT_MAX : x > 0 ? (ld)x : 0; }
-/* The weights of a row of texels, which is how the header defines them: the texel, filtered by (1 2 1)/4 both ways with columns
- * that wrap, or less the floor. */
+/* The weights of a row of texels, which is how the header defines them: the texel, filtered by (1 2 1)/4 both ways with
+ * columns that wrap, or less the floor. */
 static const ld *weights(const picture *p, uint32_t y) {
     const uint32_t w = p->im.w;
     const uint32_t h = p->im.h;
@@ -182,7 +185,8 @@ static const ld *weights(const picture *p, uint32_t y) {
         else p->weight[x] = light(at[x]) > p->im.floor ? light(at[x]) - (ld)p->im.floor : 0;
     }
     for (uint32_t x = 0; p->mode == BILINEAR && x < w; x++)
-        p->weight[x] = 0.25L * p->between[x ? x - 1 : w - 1] + 0.5L * p->between[x] + 0.25L * p->between[x + 1 < w ? x + 1 : 0];
+        p->weight[x] =
+            0.25L * p->between[x ? x - 1 : w - 1] + 0.5L * p->between[x] + 0.25L * p->between[x + 1 < w ? x + 1 : 0];
     return p->weight;
 }
 /* 1: lit, 0: black, -1: rounding decides. */
@@ -267,7 +271,8 @@ static void discard(picture *p) {
     free(p->between);
 }
 
-/* --- what is drawn from ------------------------------------------------------------------------------------------------------- */
+/* --- what is drawn from
+ * ------------------------------------------------------------------------------------------------------- */
 
 enum { MAP, WINDOW, PRODUCT, KINDS };
 
@@ -287,7 +292,8 @@ static mcs_texel draw(const source *s, float u1, float u2) {
            : s->kind == WINDOW ? mcs_env_window_sample(s->window, s->e, u1, u2)
                                : mcs_product_sample(s->product, s->tiles, s->e, u1, u2);
 }
-static void draw_n(const source *s, size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
+static void draw_n(const source *s, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                   float *pdf) {
     if (s->kind == MAP) mcs_env_sample_n(s->e, n, u1, u2, x, y, z, pdf, NULL, NULL);
     else if (s->kind == WINDOW) mcs_env_window_sample_n(s->window, s->e, n, u1, u2, x, y, z, pdf, NULL, NULL);
     else mcs_product_sample_n(s->product, s->tiles, s->e, n, u1, u2, x, y, z, pdf, NULL, NULL);
@@ -307,7 +313,8 @@ typedef struct {
     double draws, mass[KINDS], row, col, length;
 } tally;
 
-/* --- densities of all texels -------------------------------------------------------------------------------------------------- */
+/* --- densities of all texels
+ * -------------------------------------------------------------------------------------------------- */
 
 typedef struct {
     float *x, *y, *z, *pdf;
@@ -328,29 +335,31 @@ static void middles(const picture *p, uint32_t y, const row_of_texels *to) {
     }
 }
 
-/* Height of a row in cos(theta), relative: a difference of doubles below 1, off by 2^-52 together. The row m from a pole is
- * sin(pi (m + 1/2)/h) pi/h high, and its borders are about (pi m/h)^2/2, of which they are off by 2^-53 each: by m/2 2^-53 or, at
- * the equator, h/pi 2^-53, times what rounding there is in computing them, a few. */
+/* Height of a row in cos(theta), relative: a difference of doubles below 1, off by 2^-52 together. The row m from a
+ * pole is sin(pi (m + 1/2)/h) pi/h high, and its borders are about (pi m/h)^2/2, of which they are off by 2^-53 each:
+ * by m/2 2^-53 or, at the equator, h/pi 2^-53, times what rounding there is in computing them, a few. */
 static double height_off(const picture *p) { return p->im.h * 0x1p-51; }
 
-/* The shares of a list of probabilities that add up to 1 against those of the truth: an integer over 2^31 is off by one of
- * rounding, its own one, its part of the ones of all `lit` entries, and n 2^-22 by the rounding of n sums in double; `off` is the
- * relative error of everything else. */
+/* The shares of a list of probabilities that add up to 1 against those of the truth: an integer over 2^31 is off by one
+ * of rounding, its own one, its part of the ones of all `lit` entries, and n 2^-22 by the rounding of n sums in double;
+ * `off` is the relative error of everything else. */
 static double share_bound(ld want, uint32_t lit, uint32_t n, double off) {
     return (double)((2 + lit * want + n * 0x1p-22L) / one + off * want);
 }
-static void check_share(const picture *p, double found, double want, double bound, double *worst, const char *what, uint32_t x,
-                        uint32_t y) {
+static void check_share(const picture *p, double found, double want, double bound, double *worst, const char *what,
+                        uint32_t x, uint32_t y) {
     const double err = fabs(found - want);
     if (bound > 0) *worst = fmax(*worst, err / bound);
-    CHECK(err <= bound, "%s: %s %u, %u: %.9g, not %.9g, in 2^-31", p->name, what, (unsigned)x, (unsigned)y, found * (double)one,
-          want * (double)one);
+    CHECK(err <= bound, "%s: %s %u, %u: %.9g, not %.9g, in 2^-31", p->name, what, (unsigned)x, (unsigned)y,
+          found * (double)one, want * (double)one);
 }
-/* A probability in units of 2^-31, where the eye can tell that it is an integer: at least 1. `off`: its relative error. */
+/* A probability in units of 2^-31, where the eye can tell that it is an integer: at least 1. `off`: its relative error.
+ */
 static void check_integer(const picture *p, double units, double off, const char *what, uint32_t x, uint32_t y) {
     const double nearest = fmax(1, floor(units + 0.5));
     if (units * off > 0.1) return;
-    CHECK(fabs(units - nearest) <= nearest * off, "%s: %s %u, %u: %.9g of 2^31", p->name, what, (unsigned)x, (unsigned)y, units);
+    CHECK(fabs(units - nearest) <= nearest * off, "%s: %s %u, %u: %.9g of 2^31", p->name, what, (unsigned)x,
+          (unsigned)y, units);
 }
 
 /* Every texel of the map: its density, its place, its share. */
@@ -378,28 +387,30 @@ static void check_map_texels(const source *s, const row_of_texels *t, tally *to)
             wrong += !(t->pdf[x] >= 0 && t->pdf[x] <= FLT_MAX) || (due >= 0 && (t->pdf[x] > 0) != due);
         }
         mass += found;
-        CHECK(wrong == 0, "%s: row %u: density of %u texels dark where there is light, or the reverse", p->name, (unsigned)y,
-              (unsigned)wrong);
+        CHECK(wrong == 0, "%s: row %u: density of %u texels dark where there is light, or the reverse", p->name,
+              (unsigned)y, (unsigned)wrong);
         for (uint32_t x = y % step; x < w; x += step) {
             mcs_vec3 dir;
             dir.x = t->x[x];
             dir.y = t->y[x];
             dir.z = t->z[x];
             const mcs_texel at = mcs_env_texel(s->e, dir);
-            CHECK(at.col == x && at.row == y && at.pdf == t->pdf[x], "%s: texel %u %u is %u %u; pdf %a, in an array %a", p->name,
-                  (unsigned)x, (unsigned)y, (unsigned)at.col, (unsigned)at.row, (double)at.pdf, (double)t->pdf[x]);
+            CHECK(at.col == x && at.row == y && at.pdf == t->pdf[x], "%s: texel %u %u is %u %u; pdf %a, in an array %a",
+                  p->name, (unsigned)x, (unsigned)y, (unsigned)at.col, (unsigned)at.row, (double)at.pdf,
+                  (double)t->pdf[x]);
         }
         if (!p->sharp) continue;
         /* densities and, of a row, its weight, a float; the truth's total is as far off as its weights */
         check_share(p, (double)found, want,
-                    p->even ? want * (eps + height) : share_bound(want, p->lit_rows, h, 2 * eps + 2 * off + 2 * height), &to->row,
-                    "row", y, y);
+                    p->even ? want * (eps + height) : share_bound(want, p->lit_rows, h, 2 * eps + 2 * off + 2 * height),
+                    &to->row, "row", y, y);
         if (p->even) continue;
         if (want > 0) check_integer(p, (double)(found * one), eps + height, "row", y, y);
         for (uint32_t x = 0; found > 0 && x < w; x++) { /* a density over the sum of densities */
             const double share = (double)(t->pdf[x] * omega / found);
             const double due = (double)(v[x] / sum);
-            check_share(p, share, due, due > 0 ? share_bound(due, p->lit[y], w, 2 * eps + 2 * off) : 0, &to->col, "texel", x, y);
+            check_share(p, share, due, due > 0 ? share_bound(due, p->lit[y], w, 2 * eps + 2 * off) : 0, &to->col,
+                        "texel", x, y);
             if (due > 0) check_integer(p, share * (double)one, 2.01 * eps, "texel", x, y);
         }
     }
@@ -408,7 +419,8 @@ static void check_map_texels(const source *s, const row_of_texels *t, tally *to)
     CHECK(fabsl(mass - 1) <= eps + height, "%s: the density integrates to 1 + %Lg", p->name, mass - 1);
 }
 
-/* Every texel of a window: nothing outside; where it has light, the density of the map times a number of the row's own. */
+/* Every texel of a window: nothing outside; where it has light, the density of the map times a number of the row's own.
+ */
 static void check_window_texels(const source *s, const row_of_texels *t, tally *to) {
     const picture *p = s->p;
     const uint32_t w = p->im.w;
@@ -443,17 +455,18 @@ static void check_window_texels(const source *s, const row_of_texels *t, tally *
             unlike += !(fabsl(t->x[x] - times * t->pdf[x]) <= 4.01 * eps * t->x[x]);
     }
     CHECK(outside == 0 && wrong == 0 && unlike == 0,
-          "%s, window %u + %u, %u + %u: %u densities outside, %u no densities, %u not those of the map", p->name, (unsigned)s->col,
-          (unsigned)s->cols, (unsigned)s->row, (unsigned)s->rows, (unsigned)outside, (unsigned)wrong, (unsigned)unlike);
+          "%s, window %u + %u, %u + %u: %u densities outside, %u no densities, %u not those of the map", p->name,
+          (unsigned)s->col, (unsigned)s->cols, (unsigned)s->row, (unsigned)s->rows, (unsigned)outside, (unsigned)wrong,
+          (unsigned)unlike);
     to->mass[WINDOW] = fmax(to->mass[WINDOW], fabs((double)(mass - 1)) / eps);
-    CHECK(fabsl(mass - 1) <= eps + height_off(p), "%s, window %u + %u, %u + %u: the density integrates to 1 + %Lg", p->name,
-          (unsigned)s->col, (unsigned)s->cols, (unsigned)s->row, (unsigned)s->rows, mass - 1);
+    CHECK(fabsl(mass - 1) <= eps + height_off(p), "%s, window %u + %u, %u + %u: the density integrates to 1 + %Lg",
+          p->name, (unsigned)s->col, (unsigned)s->cols, (unsigned)s->row, (unsigned)s->rows, mass - 1);
 }
 
-/* Every texel of a product. Within one, the density is a bilinear function of the place in azimuth and cos(theta): its middle is
- * its mean. Places are known to 2^-22 of a column or row (as the header says), and no such function, of four numbers with mean 1,
- * changes by more than 4 across a tile, nor more than that across a texel. Its four numbers take 6 roundings, its value 4, the
- * density 1. */
+/* Every texel of a product. Within one, the density is a bilinear function of the place in azimuth and cos(theta): its
+ * middle is its mean. Places are known to 2^-22 of a column or row (as the header says), and no such function, of four
+ * numbers with mean 1, changes by more than 4 across a tile, nor more than that across a texel. Its four numbers take 6
+ * roundings, its value 4, the density 1. */
 static void check_product_texels(const source *s, const row_of_texels *t, tally *to) {
     const picture *p = s->p;
     const uint32_t w = p->im.w;
@@ -480,13 +493,17 @@ static void check_product_texels(const source *s, const row_of_texels *t, tally 
           mass - s->lit, bound);
 }
 
-/* --- draws -------------------------------------------------------------------------------------------------------------------- */
+/* --- draws
+ * --------------------------------------------------------------------------------------------------------------------
+ */
 
-static const float corner[] = {0.0f,  0x1p-149f, FLT_MIN, 1e-30f,        0x1p-32f,      0x1p-25f,      0x1p-24f,     0x1p-12f,
-                               0.25f, 0.5f,      0.75f,   0x0.fffffcp0f, 0x0.fffffdp0f, 0x0.fffffep0f, 0x0.ffffffp0f};
+static const float corner[] = {0.0f,     0x1p-149f,     FLT_MIN,       1e-30f,        0x1p-32f,
+                               0x1p-25f, 0x1p-24f,      0x1p-12f,      0.25f,         0.5f,
+                               0.75f,    0x0.fffffcp0f, 0x0.fffffdp0f, 0x0.fffffep0f, 0x0.ffffffp0f};
 enum { CORNERS = (int)MCST_COUNT(corner), BATCH = 256 };
 
-/* One draw; its density is that of its direction, to the bit unless it is a product's, which follows the place in the texel. */
+/* One draw; its density is that of its direction, to the bit unless it is a product's, which follows the place in the
+ * texel. */
 static void check_draw(const source *s, mcs_texel d, const char *what, double u1, double u2, tally *to) {
     const picture *p = s->p;
     const double x = d.w.x;
@@ -502,26 +519,26 @@ static void check_draw(const source *s, mcs_texel d, const char *what, double u1
         CHECK(d.pdf == 0, "%s, %s: u %a %a: pdf %a without light", p->name, what, u1, u2, (double)d.pdf);
         return;
     }
-    CHECK(in && positive, "%s, %s: u %a %a: texel %u %u, pdf %a", p->name, what, u1, u2, (unsigned)d.col, (unsigned)d.row,
-          (double)d.pdf);
+    CHECK(in && positive, "%s, %s: u %a %a: texel %u %u, pdf %a", p->name, what, u1, u2, (unsigned)d.col,
+          (unsigned)d.row, (double)d.pdf);
     if (!in) return;
     CHECK(!s->lit || p->even || !black(p, d.col, d.row), "%s, %s: u %a %a: texel %u %u is black", p->name, what, u1, u2,
           (unsigned)d.col, (unsigned)d.row);
     mcs_texel own = mcs_env_texel(s->e, d.w);
-    CHECK(own.col == d.col && own.row == d.row, "%s, %s: u %a %a: texel %u %u, of its direction %u %u", p->name, what, u1, u2,
-          (unsigned)d.col, (unsigned)d.row, (unsigned)own.col, (unsigned)own.row);
+    CHECK(own.col == d.col && own.row == d.row, "%s, %s: u %a %a: texel %u %u, of its direction %u %u", p->name, what,
+          u1, u2, (unsigned)d.col, (unsigned)d.row, (unsigned)own.col, (unsigned)own.row);
     own.pdf = density(s, d.w);
-    CHECK(s->kind == PRODUCT ? own.pdf > 0 : own.pdf == d.pdf, "%s, %s: u %a %a: pdf %a, of its direction %a", p->name, what, u1,
-          u2, (double)d.pdf, (double)own.pdf);
+    CHECK(s->kind == PRODUCT ? own.pdf > 0 : own.pdf == d.pdf, "%s, %s: u %a %a: pdf %a, of its direction %a", p->name,
+          what, u1, u2, (double)d.pdf, (double)own.pdf);
     double c, r;
-    /* atan2 of the floats in double: each is off by 2^-24 of itself, an azimuth by as many radians or 2^-24 columns of w/2 pi, the
-     * angle to the pole likewise; the header may have placed it that far on the other side. */
+    /* atan2 of the floats in double: each is off by 2^-24 of itself, an azimuth by as many radians or 2^-24 columns of
+     * w/2 pi, the angle to the pole likewise; the header may have placed it that far on the other side. */
     texel_of(p->im.w, p->im.h, d.w, &c, &r);
     double aside = fabs(c - d.col - 0.5);
     aside = aside > p->im.w / 2.0 ? p->im.w - aside : aside;
     CHECK(aside <= 0.5 + eps * p->im.w && fabs(r - d.row - 0.5) <= 0.5 + eps * p->im.h,
-          "%s, %s: u %a %a: texel %u %u, by its direction column %.9g, row %.9g", p->name, what, u1, u2, (unsigned)d.col,
-          (unsigned)d.row, c, r);
+          "%s, %s: u %a %a: texel %u %u, by its direction column %.9g, row %.9g", p->name, what, u1, u2,
+          (unsigned)d.col, (unsigned)d.row, c, r);
 }
 
 static void check_draws(const source *s, long n, const char *what, tally *to) {
@@ -550,7 +567,8 @@ static void check_draws(const source *s, long n, const char *what, tally *to) {
             unequal += s->kind == MAP && !(again[k] == pdf[k]);
             check_draw(s, d, what, (double)u1[k], (double)u2[k], to);
             if (s->kind == MAP) {
-                static const uint32_t odd[8] = {0, 1, 255, 0x7fffffffu, 0x80000000u, 0xffffff00u, 0xfffffffeu, 0xffffffffu};
+                static const uint32_t odd[8] = {0,           1,           255,         0x7fffffffu,
+                                                0x80000000u, 0xffffff00u, 0xfffffffeu, 0xffffffffu};
                 const uint64_t b = mcst_mix(&state);
                 const uint32_t b1 = b & 7 ? (uint32_t)(b >> 32) : odd[b >> 6 & 7];
                 const uint32_t b2 = b & 56 ? (uint32_t)mcst_mix(&state) : odd[b >> 9 & 7];
@@ -564,7 +582,8 @@ static void check_draws(const source *s, long n, const char *what, tally *to) {
     arena_free(&out);
 }
 
-/* --- one image in one mode ---------------------------------------------------------------------------------------------------- */
+/* --- one image in one mode
+ * ---------------------------------------------------------------------------------------------------- */
 
 static int any_lit(const source *s) {
     int some = 0;
@@ -584,8 +603,9 @@ static void check_windows(const source *map, const row_of_texels *t, long n, tal
     const picture *p = map->p;
     const uint32_t w = p->im.w;
     const uint32_t h = p->im.h;
-    const uint32_t part[3][4] = {
-        {h / 4, (h + 1) / 2, w - (w + 3) / 4, (w + 1) / 2}, {p->sun_row, 1, p->sun_col, 1}, {h - 1, 1, w / 2, (w + 1) / 2}};
+    const uint32_t part[3][4] = {{h / 4, (h + 1) / 2, w - (w + 3) / 4, (w + 1) / 2},
+                                 {p->sun_row, 1, p->sun_col, 1},
+                                 {h - 1, 1, w / 2, (w + 1) / 2}};
     for (int i = 0; i < 3; i++) {
         source s = *map;
         arena a = arena_make(mcs_env_window_bytes(part[i][1]));
@@ -607,7 +627,8 @@ static void check_windows(const source *map, const row_of_texels *t, long n, tal
     }
 }
 
-/* Products with a matte surface that leans, and with a rough lobe. Only the tiles: the lobe's own share goes where it likes. */
+/* Products with a matte surface that leans, and with a rough lobe. Only the tiles: the lobe's own share goes where it
+ * likes. */
 static void check_products(const source *map, const row_of_texels *t, long n, tally *to) {
     const picture *p = map->p;
     const int count = (size_t)p->im.w * p->im.h > 1 << 22 ? 1 : 2; /* some ten seconds each */
@@ -668,7 +689,8 @@ static void check_image(const struct subject *subject, enum mode mode) {
         const int due = any_lit(&map);
         CHECK(rc == MCS_OK && (map.lit ? due != 0 : due <= 0), "%s: status %d", p.name, (int)rc);
     }
-    CHECK(arena_intact(&a) && e->bad == p.bad, "%s: written outside, or %u bad, not %u", p.name, (unsigned)e->bad, (unsigned)p.bad);
+    CHECK(arena_intact(&a) && e->bad == p.bad, "%s: written outside, or %u bad, not %u", p.name, (unsigned)e->bad,
+          (unsigned)p.bad);
     /* borders of rows are doubles below 2, and no row is lower than the first; sums in double */
     if (p.sharp)
         CHECK(fabsl(e->total - p.total) <= p.total * (1e-12L + loose[mode] + 0x1p-51L / (1 - cosl(acosl(-1.0L) / h))),
@@ -678,8 +700,8 @@ static void check_image(const struct subject *subject, enum mode mode) {
     check_windows(&map, &t, n / 4, &to);
     if (w >= 32 && h >= 16) check_products(&map, &t, n / 4, &to);
     CHECK(arena_intact(&a), "%s: written outside while drawing", p.name);
-    mcst_note("  %-20s %5u %5u %-8s %8.0f %6.2f %6.2f", p.name, (unsigned)w, (unsigned)h, mode_name[mode], to.draws, to.mass[MAP],
-              to.mass[WINDOW]);
+    mcst_note("  %-20s %5u %5u %-8s %8.0f %6.2f %6.2f", p.name, (unsigned)w, (unsigned)h, mode_name[mode], to.draws,
+              to.mass[MAP], to.mass[WINDOW]);
     if (w >= 32 && h >= 16) mcst_note(" %7.1f", to.mass[PRODUCT]);
     else mcst_note(" %7s", "-");
     if (p.sharp) mcst_note(" %6.3f %6.3f", to.row, to.col);
@@ -692,7 +714,8 @@ static void check_image(const struct subject *subject, enum mode mode) {
 
 int main(int argc, char **argv) {
     mcst_start(argc, argv);
-    mcst_note("  mass, length: largest error in 2^-24; shares: of rows, of texels in their row, largest error over its bound\n"
+    mcst_note("  mass, length: largest error in 2^-24; shares: of rows, of texels in their row, largest error over its "
+              "bound\n"
               "  %-20s %5s %5s %-8s %8s %6s %6s %7s %6s %6s %6s\n",
               "", "width", "rows", "mode", "draws", "map", "window", "product", "rows", "texels", "length");
     mcst_group("images");
