@@ -432,7 +432,8 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_T_BRDF(row) MCST_TAIL_BRDF(row)
 #define MCST_TABLE(X, shape, row, fn, arg, base, coord, grid, claims, vary, traits) \
     {#row, #fn, MCST_SHAPE_##shape(row), MCST_##coord, MCST_SIZE_##shape, MCST_COUNT_##arg, MCST_WO_##shape, \
-     mcst_grid_##grid, MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), MCST_T_##shape(row), \
+     mcst_grid_##grid, MCST_COUNT(mcst_grid_##grid), mcst_chi_##grid, MCST_COUNT(mcst_chi_##grid), \
+     MCST_T_##shape(row), \
      mcst_claims_##claims, MCST_COUNT(mcst_claims_##claims), vary, traits, MCST_DOMAIN_##grid},
 /* clang-format on */
 

@@ -2,7 +2,7 @@
  * tests/bits.txt. Scalar, 4, 8, 16 wide and array forms must all give it, whatever the machine, its byte order, the
  * compiler and its optimisation.
  *
- * The functions are those of the header's index: a new one without an adapter (registry.h, bits.h) or a line in bits.txt
+ * The functions are those of part I: a new one without an adapter (registry.h, bits.h) or a line in bits.txt
  * fails by name. Where results change on purpose:   build/tests/test_bits --print > tests/bits.txt
  *
  * As CUDA (nvcc -x cu --fmad=false) the same file evaluates every scalar function in kernels too, where a GPU is
