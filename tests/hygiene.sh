@@ -172,10 +172,11 @@ for c in $compilers; do
     fi
     for std in c++20 c++2b; do # 2b: C++23, by the name that older compilers know, too
         "$c" -x c++ -std=$std -fsyntax-only /dev/null 2>/dev/null || continue
-        for s in none MCS_NO_WIDE $ways; do echo "$c $std fsyntax-only $s $dir/$(use $s).c"; done
+        for s in none MCS_NO_WIDE MCS_PACKETS=16; do echo "$c $std fsyntax-only $s $dir/$(use $s).c"; done
     done
     for std in c99 c11 c17 c++11 c++17; do
         for s in none $switches $ways; do
+            case $std-$s in c99-* | c++17-*) ;; *-MCS_DECLARE | *-MCS_IMPLEMENTATION) continue ;; esac
             echo "$c $std fsyntax-only $s $dir/$(use $s).c"
             [ $s != MCS_IMPLEMENTATION ] || continue
             for level in O0 O2; do
