@@ -155,8 +155,8 @@ include() { case $1 in MCS_DECLARE | MCS_IMPLEMENTATION) echo none ;; *) echo "$
 
 # --- the matrix: compilers x standards x switches. A file that only includes the header is compiled at -O0 and -O2; the one that uses
 # everything goes through the front end each time, and through code generation (a minute of work) in plain form, with MCS_NO_WIDE,
-# which changes bodies where the other switches only leave some out, and with packets. The standards after C++17, as far as the
-# compiler knows them, may deprecate what those allow: the front end will say. The newest clang is asked about the oldest and newest
+# which changes bodies where the other switches only leave some out, and with packets. All switches go with C99 and C++17. The
+# standards after C++17, as far as the compiler knows them, may deprecate what those allow: the front end will say. The newest clang is asked about the oldest and newest
 # standards.
 for c in $compilers; do
     if [ "$c" = "$newest" ]; then
@@ -174,9 +174,11 @@ for c in $compilers; do
         "$c" -x c++ -std=$std -fsyntax-only /dev/null 2>/dev/null || continue
         for s in none MCS_NO_WIDE MCS_PACKETS=16; do echo "$c $std fsyntax-only $s $dir/$(use $s).c"; done
     done
-    for std in c99 c11 c17 c++11 c++17; do
+    for std in c11 c17 c++11; do
+        for s in none MCS_NO_WIDE MCS_PACKETS=16; do echo "$c $std fsyntax-only $s $dir/$(use $s).c"; done
+    done
+    for std in c99 c++17; do
         for s in none $switches $ways; do
-            case $std-$s in c99-* | c++17-*) ;; *-MCS_DECLARE | *-MCS_IMPLEMENTATION) continue ;; esac
             echo "$c $std fsyntax-only $s $dir/$(use $s).c"
             [ $s != MCS_IMPLEMENTATION ] || continue
             for level in O0 O2; do
