@@ -251,15 +251,8 @@ static inline int mcst_cell_at(const mcst_map *m, double s, double t) {
     return i * m->t_bins + j;
 }
 
-static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
-    if (m->coord == MCST_BY_TRUTH) {
-        const float at[3] = {(float)x, (float)y, (float)w};
-        ld u[2] = {0, 0};
-        m->row->truth.invert(m->p, at, u);
-        return mcst_cell_at(m, (double)u[0], (double)u[1]);
-    }
-    double t = 0;
-    double v[3];
+/* The coordinates of a point or direction in the frame of the map. */
+static inline void mcst_in_frame(const mcst_map *m, double x, double y, double w, double v[3]) {
     v[0] = x;
     v[1] = y;
     v[2] = w;
@@ -271,6 +264,17 @@ static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
         v[1] = mcst_dot(d, m->ey);
         v[2] = mcst_dot(d, m->ez);
     }
+}
+static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
+    if (m->coord == MCST_BY_TRUTH) {
+        const float at[3] = {(float)x, (float)y, (float)w};
+        ld u[2] = {0, 0};
+        m->row->truth.invert(m->p, at, u);
+        return mcst_cell_at(m, (double)u[0], (double)u[1]);
+    }
+    double t = 0;
+    double v[3];
+    mcst_in_frame(m, x, y, w, v);
     double s, n, z;
     switch (m->coord) {
     case MCST_UNIT: s = (x - m->a) / m->b; break;
