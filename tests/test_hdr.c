@@ -5,12 +5,12 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Memory as the reader asks for it: the largest request is noted, and so many are granted. */
+/* Memory as the reader asks for it: the most_asked request is noted, and so many are granted. */
 enum { ALWAYS = 1 << 30 };
-static size_t largest;
+static size_t most_asked;
 static int granted = ALWAYS;
 static void *counted(void *block, size_t size) {
-    if (size > largest) largest = size;
+    if (size > most_asked) most_asked = size;
     return granted-- > 0 ? realloc(block, size) : NULL;
 }
 #define HDR_REALLOC counted
@@ -52,7 +52,7 @@ static int load(hdr_picture *p, const bytes *from) {
     memcpy(copy, from->byte, from->n);
     FILE *f = fmemopen(copy, from->n, "rb");
     if (!f) abort();
-    largest = 0;
+    most_asked = 0;
     const int ok = hdr_read_file(p, f);
     fclose(f);
     return ok;
@@ -702,7 +702,7 @@ static int check_damaged(const bytes *file) {
     } else {
         check_fault(&p);
     }
-    CHECK(largest <= 8 * (p.done + 32767), "%lu bytes for %lu pixels", (unsigned long)largest, (unsigned long)p.done);
+    CHECK(most_asked <= 8 * (p.done + 32767), "%lu bytes for %lu pixels", (unsigned long)most_asked, (unsigned long)p.done);
     free(p.pixel);
     return ok;
 }
@@ -751,7 +751,7 @@ static void test_damage(void) {
                 begin(&file, "#?RADIANCE\n", resolution[i]);
                 for (int k = 0; k < pixels; k++) put_pixel(&file, 130, 1, 2, 128);
                 expect_fault(&file, "the file ends in scan line");
-                CHECK(largest <= 1 << 16, "%s: %lu bytes", resolution[i], (unsigned long)largest);
+                CHECK(most_asked <= 1 << 16, "%s: %lu bytes", resolution[i], (unsigned long)most_asked);
             }
         }
     }
