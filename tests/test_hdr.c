@@ -5,7 +5,7 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Memory as the reader asks for it: the most_asked request is noted, and so many are granted. */
+/* Memory as the reader asks for it: the largest request is noted, and so many are granted. */
 enum { ALWAYS = 1 << 30 };
 static size_t most_asked;
 static int granted = ALWAYS;
@@ -702,7 +702,8 @@ static int check_damaged(const bytes *file) {
     } else {
         check_fault(&p);
     }
-    CHECK(most_asked <= 8 * (p.done + 32767), "%lu bytes for %lu pixels", (unsigned long)most_asked, (unsigned long)p.done);
+    CHECK(most_asked <= 8 * (p.done + 32767), "%lu bytes for %lu pixels", (unsigned long)most_asked,
+          (unsigned long)p.done);
     free(p.pixel);
     return ok;
 }
