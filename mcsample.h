@@ -76,9 +76,9 @@
  *               found at run time; mcs_lanes tells it.
  *
  * Lanes         mcs4_X, mcs8_X and mcs16_X do for 4, 8 and 16 points what mcs_X does for one. MCS_PACKETS asks for
- *               them: 8 gives those of 4 and of 8 lanes. They exist for mcs_u01,
- *               mcs_u01_open, mcs_sobol, mcs_sobol_bits, mcs_r2, mcs_hash, mcs_set, mcs_load, mcs_store, and for every
- *               function of [1d] to [mis] that has no _n. float becomes mcs8_f, bits and indices become mcs8_u, int32_t
+ *               them: 8 gives those of 4 and of 8 lanes. They exist for mcs_u01, mcs_u01_open, mcs_sobol,
+ *               mcs_sobol_bits, mcs_r2, mcs_hash, mcs_set, mcs_load, mcs_store, and for every function of [1d] to [mis]
+ *               that has no _n. float becomes mcs8_f, bits and indices become mcs8_u, int32_t
  *               becomes mcs8_i, where true is -1, and a struct mcs_T becomes mcs8_T. The dimension and the seed of a
  *               point stay scalar. One example stands for all:
  *
@@ -237,8 +237,7 @@
 #define MCSI_DECLARED
 #endif
 
-/* ---- linkage
- * ---------------------------------------------------------------------------------------------------------
+/* ---- linkage --------------------------------------------------------------------------------------------------------
  * MCS_FN        stands before public functions that are inline everywhere, and before private ones that may stay calls.
  * MCS_API       stands before public functions that a project may compile once: array functions, tables, maps,
  *               products.
@@ -1723,8 +1722,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 #if defined(MCSI_GNU) && !defined(__cplusplus)
-/* The header declares variables at their first use, as C99 and C++ allow. Some projects let the compiler warn of that.
- */
+/* The header declares variables at their first use, as C99 and C++ allow. Some projects have compilers warn of that. */
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdeclaration-after-statement"
 #endif
@@ -1733,8 +1731,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 #define MCSI_SUMS_MAY_MOVE /* (x + y) - y may become x */
 #endif
 
-/* clang removes builtins that are named after instructions in time, and has portable ones instead. gcc keeps its own.
- */
+/* clang removes builtins that are named after instructions in time, and has portable ones instead. gcc keeps them. */
 #if defined(__has_builtin)
 #if __has_builtin(__builtin_elementwise_sqrt)
 #define MCSI_ELEMENTWISE_SQRT
@@ -1802,10 +1799,9 @@ MCS_FN double mcsi_sqrt_d(double x) {
 #endif
 }
 
-/* ---- what is compiled here
- * ------------------------------------------------------------------------------------------- The body is compiled in
- * passes, which have 1, 4, 8 and 16 lanes. The scalar pass makes all public functions of one point. The others make
- * packets, where MCS_PACKETS asks for them, or loops of array functions, or both. */
+/* ---- what is compiled here ----
+ * The body is compiled in passes, which have 1, 4, 8 and 16 lanes. The scalar pass makes all public functions of one
+ * point. The others make packets, where MCS_PACKETS asks for them, or loops of array functions, or both. */
 #ifndef MCSI_DECLARED
 #ifndef MCS_NO_TABLES
 #define MCSI_TABLES /* bodies of [tables] and [env] */
@@ -1889,8 +1885,7 @@ typedef int32_t mcs_i;
 typedef uint32_t mcs_u;
 typedef double mcsi_d;
 
-/* ---- batches: the arrays of one call
- * ---------------------------------------------------------------------------------- */
+/* ---- batches: the arrays of one call ----------------------------------------------------------------------------- */
 
 #if MCSI_BASE_W > 0
 enum { MCSI_IN_MAX = 3, MCSI_OUT_MAX = 5, MCSI_LANES_MAX = 16 };
@@ -3702,7 +3697,7 @@ MCSI_CORE mcs_f mcsi_phong_cos_power(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 w
     const mcs_vec3 cross = mcsi_vec3(r.y * d.z - r.z * d.y, r.z * d.x - r.x * d.z, r.x * d.y - r.y * d.x);
     const mcs_f cosine = mcsi_exact_dot(r, wi);
     *ok = *ok & (cosine > 0.0f);
-    return mcsi_cos_power(m->n, mcsi_dot(cross, cross) / (cosine * cosine));
+    return mcsi_cos_power(m->n, mcsi_quotient(mcsi_dot(cross, cross), cosine * cosine));
 }
 MCSI_FN mcs_f mcs_phong_pdf(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
     mcs_i ok = mcsi_always();

@@ -318,8 +318,7 @@ static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
     return mcst_cell_at(m, s, t);
 }
 
-/* --- the density over the bins
- * ---------------------------------------------------------------------------------------------- */
+/* --- the density over the bins ------------------------------------------------------------------------------------ */
 
 /* Gauss-Legendre on [0,1] with 8 points (Abramowitz and Stegun 1964, table 25.4). */
 static const double mcst_gl_x[8] = {0.5 - 0.4801449282487681, 0.5 - 0.3983332387068134, 0.5 - 0.2627662049581645,
@@ -457,8 +456,7 @@ static inline double mcst_masses(const mcst_row *row, const float *p, double tol
     return total;
 }
 
-/* --- chi-square and Kolmogorov-Smirnov
- * ---------------------------------------------------------------------------------------- */
+/* --- chi-square and Kolmogorov-Smirnov ---------------------------------------------------------------------------- */
 
 enum { MCST_BLOCK = 2048, MCST_GRID_U = 16, MCST_FINE_U = 1024 };
 

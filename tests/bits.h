@@ -392,8 +392,7 @@ FN(stat_ci) {
 }
 #undef STAT
 
-/* --- environment maps
- * ------------------------------------------------------------------------------------------------------- */
+/* --- environment maps --------------------------------------------------------------------------------------------- */
 
 #define HOST(name) MCST_HOST_FN void bits1_##name(const float *in, float *out)
 /* Black, bad and very bright entries among others. */
@@ -651,8 +650,7 @@ FN(env_window_pdf) {
 }
 #undef WINDOW
 
-/* --- products
- * --------------------------------------------------------------------------------------------------------------- */
+/* --- products ----------------------------------------------------------------------------------------------------- */
 
 MCST_HD static mcs_reflection bits_reflection(const float *in) {
     mcs_reflection r;
@@ -734,8 +732,7 @@ FN(oneshot_pdf) {
     PUT(1, mcs_oneshot_pdf(m->tiles, m->env, &r, mcs_oneshot_sample(m->tiles, m->env, &r, IN(6), IN(7)).w));
 }
 
-/* --- array forms
- * ------------------------------------------------------------------------------------------------------------ */
+/* --- array forms -------------------------------------------------------------------------------------------------- */
 
 #define ARRAY(name) MCST_HOST_FN void bits_array_##name(int k, size_t n, float(*in)[CASES], float(*out)[CASES])
 #define DRAW(name, ...)                                                                     \

@@ -7,8 +7,7 @@
 #include "registry.h"
 #include "index.h"
 
-/* --- the hash: FNV-1a, 64 bits, over the bit patterns, low byte first
- * ------------------------------------------------------- */
+/* --- the hash: FNV-1a, 64 bits, over the bit patterns, low byte first --------------------------------------------- */
 
 #define BITS_START 0xcbf29ce484222325u
 MCST_HD static inline uint64_t bits_hash(uint64_t hash, const void *words, size_t n) {
@@ -23,8 +22,7 @@ MCST_HD static inline uint64_t bits_hash(uint64_t hash, const void *words, size_
     return hash;
 }
 
-/* --- the size of inputs and results
- * ----------------------------------------------------------------------------------------- */
+/* --- the size of inputs and results ------------------------------------------------------------------------------- */
 
 /* BLOCKS parameter sets with BLOCK cases each, so that an array form has two vectors of 8 and a rest. */
 enum {
@@ -74,8 +72,7 @@ MCST_HD static inline int bits_kind_of(const float *in, int kinds) {
     return (int)(word % (uint32_t)kinds);
 }
 
-/* --- the adapters of bits.h
- * ------------------------------------------------------------------------------------------------- */
+/* --- the adapters of bits.h --------------------------------------------------------------------------------------- */
 
 typedef void bits_fn(const float *in, float *out);
 /* For n cases of one map, or of one product. in: random numbers 0, 1, points 2, 3, 4. */
@@ -116,8 +113,7 @@ static int bits_valid; /* tables and maps have no bad entries */
 #endif
 
 #ifndef MCST_SHARED
-/* --- functions by name
- * ------------------------------------------------------------------------------------------------------ */
+/* --- functions by name -------------------------------------------------------------------------------------------- */
 
 #ifdef MCST_WIDE
 #define FOUR(x) \

@@ -168,8 +168,7 @@ typedef struct {
     mcst_domain domain;
 } mcst_row;
 
-/* --- parameter grids, extremes included
- * ------------------------------------------------------------------------------- */
+/* --- parameter grids, extremes included --------------------------------------------------------------------------- */
 
 static const float mcst_grid_none[][2] = {{0, 0}};
 static const float mcst_grid_linear[][2] = {{1, 3},    {1, 1},         {0, 1},           {1, 0},        {1e-6f, 1},
@@ -195,8 +194,7 @@ static const float mcst_grid_exponents[][2] = {
     {1e3f, 1e3f}, {1e4f, 1e4f},   {1e6f, 1e6f},   {1e9f, 1e9f}, {0, 100},      {1e4f, 1},
     {1e9f, 1e5f}, {1e-3f, 1e-3f}, {1e-2f, 1e-2f}, {1e-3f, 100}, {1e4f, 1e-2f}, {1e-2f, 1e9f}};
 
-/* --- what may be given
- * -------------------------------------------------------------------------------------------------------- */
+/* --- what may be given -------------------------------------------------------------------------------------------- */
 
 static inline int mcst_outside(float v, float least, float most) { return !(v >= least && v <= most); }
 static inline int mcst_bad_none(int i, float v) {
@@ -282,8 +280,7 @@ static inline o_vec2 mcst_o2(const float *x) {
     return v;
 }
 
-/* --- claims
- * ----------------------------------------------------------------------------------------------------------------- */
+/* --- claims ------------------------------------------------------------------------------------------------------- */
 
 /* clang-format off */
 /* The figures of u for small exponents: a power n of the cosine gives (1-u1)/cos with ln cos = ln(1-u1)/(n+1), at most
@@ -324,8 +321,7 @@ static const mcst_claim mcst_claims_ashikhmin[] = {
 };
 /* clang-format on */
 
-/* --- the functions of the rows
- * ------------------------------------------------------------------------------------------- */
+/* --- the functions of the rows ------------------------------------------------------------------------------------ */
 
 #if defined(MCS_NO_WIDE) || defined(MCST_ARRAYS)
 #undef MCST_WIDE
@@ -377,8 +373,7 @@ MCST_ROWS(MCST_DECLARE)
 #include "truth.h"
 #endif
 
-/* --- the table
- * ----------------------------------------------------------------------------------------------------------- */
+/* --- the table ---------------------------------------------------------------------------------------------------- */
 
 /* clang-format off */
 #ifdef MCST_WIDE
@@ -470,8 +465,7 @@ static inline void mcst_grid_get(const mcst_row *row, size_t i, float p[MCST_P])
     mcst_fill(row, g[0], g[1], o[0], o[1], p);
 }
 
-/* --- random numbers of the tests: splitmix64 (Steele, Lea, Flood 2014)
- * -------------------------------------------------------- */
+/* --- random numbers of the tests: splitmix64 (Steele, Lea, Flood 2014) -------------------------------------------- */
 
 static inline uint64_t mcst_mix(uint64_t *state) {
     uint64_t z = *state += 0x9E3779B97F4A7C15u;

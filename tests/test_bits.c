@@ -16,8 +16,7 @@
 
 static float given[CASES][BITS_IN], result[CASES][BITS_OUT];
 
-/* --- inputs
- * ----------------------------------------------------------------------------------------------------------------- */
+/* --- inputs ------------------------------------------------------------------------------------------------------- */
 
 /* Mostly in 2^-7 ... 2, a quarter in 2^-24 ... 2^31, some over all floats, some special. */
 static float any_parameter(uint64_t *state) {
@@ -88,8 +87,7 @@ static void make_inputs(const mcst_row *row) {
     }
 }
 
-/* --- evaluation
- * ------------------------------------------------------------------------------------------------------------- */
+/* --- evaluation --------------------------------------------------------------------------------------------------- */
 
 /* Fills `result` at width w; neighbouring lanes get cases of different parameter sets. */
 static void evaluate(target t, int w) {
@@ -146,8 +144,7 @@ static void evaluate_arrays(target t) {
     else evaluate_blocks(t);
 }
 
-/* --- the same on a GPU
- * ------------------------------------------------------------------------------------------------------ */
+/* --- the same on a GPU -------------------------------------------------------------------------------------------- */
 
 #ifdef __CUDACC__
 namespace gpu {
@@ -199,8 +196,7 @@ static const char *evaluate(target t) {
 } // namespace gpu
 #endif
 
-/* --- stored hashes
- * ---------------------------------------------------------------------------------------------------------- */
+/* --- stored hashes ------------------------------------------------------------------------------------------------ */
 
 static char stored_name[MCST_NAMES][MCST_NAME];
 static uint64_t stored[MCST_NAMES];

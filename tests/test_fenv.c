@@ -32,9 +32,10 @@ enum { FE_INVALID, FE_DIVBYZERO, FE_OVERFLOW };
 
 static float given[CASES][BITS_IN];
 enum { TRAPS = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW, NS = 68 };
+/* Inputs are drawn as often as this: what one draw of them raises may be missing in another. */
+enum { DRAWS = 4 };
 
-/* --- valid inputs
- * ----------------------------------------------------------------------------------------------------------- */
+/* --- valid inputs ------------------------------------------------------------------------------------------------- */
 
 static double unit_of(uint64_t *state) { return (double)(mcst_mix(state) >> 11) * 0x1p-53; }
 static float spread(uint64_t *state, double lo, double hi) { return (float)(lo * pow(hi / lo, unit_of(state))); }
@@ -92,15 +93,16 @@ static void valid_point(const mcst_row *row, uint64_t *state, const float *of, f
         row->fn[0].sample(of, &u[0], &u[1], out);
         memcpy(x, out, 3 * sizeof *x);
     } else if (row->shape == MCST_IS_LINE || row->shape == MCST_IS_PLANE) {
-        int k;
-        for (k = 0; k < 3; k++)
-            x[k] = (z >> (4 + k) & 1 ? 1.0f : -1.0f) *
-                   (z & 4 ? of[k & 1] * spread(state, 0.1, 10) : spread(state, 1e-45, 3.4e38));
+        for (int k = 0; k < 3; k++) {
+            const double size =
+                z & 4 ? (double)of[k & 1] * (double)spread(state, 0.1, 10) : (double)spread(state, 1e-45, 3.4e38);
+            x[k] = (z >> (4 + k) & 1 ? 1.0f : -1.0f) * (float)fmin(size, FLT_MAX);
+        }
     }
 }
 
-static void make_valid(const mcst_row *row) {
-    uint64_t state = mcst_seed_for(row ? row->name : "others", "valid", 0);
+static void make_valid(const mcst_row *row, int draw) {
+    uint64_t state = mcst_seed_for(row ? row->name : "others", "valid", (size_t)draw);
     int b, i, k;
     for (b = 0; b < BLOCKS; b++) {
         float set[U] = {0};
@@ -118,8 +120,7 @@ static void make_valid(const mcst_row *row) {
     }
 }
 
-/* --- exceptions
- * ------------------------------------------------------------------------------------------------------------- */
+/* --- exceptions --------------------------------------------------------------------------------------------------- */
 
 static const char *flags_of(int raised) {
     static char text[64];
@@ -174,20 +175,23 @@ static void raise_by_arrays(target t) {
         }
 }
 
+static void raise_ways(target t) {
+    for (int way = 0; way < WAYS; way++) {
+        if (!has_way(t, way)) continue;
+        if (way < ARRAYS) raise_by_lanes(t, way);
+        else if (way == ARRAYS) raise_by_arrays(t);
+    }
+}
 static void raise_all(target t) {
-    int way;
     do {
-        make_valid(t.form == OTHER ? NULL : &mcst_rows[t.at]);
-        for (way = 0; way < WAYS; way++) {
-            if (!has_way(t, way)) continue;
-            if (way < ARRAYS) raise_by_lanes(t, way);
-            else if (way == ARRAYS) raise_by_arrays(t);
+        for (int draw = 0; draw < DRAWS; draw++) {
+            make_valid(t.form == OTHER ? NULL : &mcst_rows[t.at], draw);
+            raise_ways(t);
         }
     } while (next_row(&t));
 }
 
-/* --- the same where exceptions trap
- * ----------------------------------------------------------------------------------------- */
+/* --- the same where exceptions trap ------------------------------------------------------------------------------- */
 
 #if defined(__GLIBC__) && defined(FENV_FORK)
 /* A child with the exceptions unmasked goes through every function; what it dies of is its exit status. */
@@ -212,8 +216,7 @@ static void test_traps(void) {
 }
 #endif
 
-/* --- flush to zero, denormals are zero
- * --------------------------------------------------------------------------------------- */
+/* --- flush to zero, denormals are zero ---------------------------------------------------------------------------- */
 
 #if (defined(__x86_64__) || defined(__i386__)) && defined(__SSE2__)
 #define FENV_FLUSH
@@ -256,7 +259,7 @@ static double lost_eval(const mcst_row *row, const float *in) {
 /* Input with nothing subnormal in it, nor in quotients of a point and a radius, and cosines of 0 or 1e-7 and more. */
 static void make_normal(const mcst_row *row) {
     int i, k;
-    make_valid(row);
+    make_valid(row, 0);
     for (i = 0; i < CASES; i++) {
         float *const in = given[i];
         const float least = row->shape == MCST_IS_PLANE ? in[0] * 0x1p-60f : FLT_MIN;

@@ -124,8 +124,7 @@ static void columns(const float *p, const float *u1, const float *u2, float *out
     put(out, ((float)i + left / column_weight(i)) / COLUMNS, 0, 0, 1);
 }
 
-/* --- densities gone wrong
- * ---------------------------------------------------------------------------------------------------------- */
+/* --- densities gone wrong ----------------------------------------------------------------------------------------- */
 
 static float column_density(const float *x, int shift) {
     const int i = (int)(*x * COLUMNS);

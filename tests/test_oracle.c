@@ -14,8 +14,7 @@
 
 #define EPS 0x1p-24
 
-/* --- the points u
- * ----------------------------------------------------------------------------------------------------------- */
+/* --- the points u ------------------------------------------------------------------------------------------------- */
 
 /* 902: where the logarithm of a cosine near its power 1 rounds worst */
 static const float corners[] = {0,    0x1p-149f, 0x1p-24f,     0x1p-12f,           0.25f,       0.49999997f,
@@ -42,8 +41,7 @@ static int make_u(const mcst_row *row, uint64_t seed, float u[MAX_U][2]) {
     return n;
 }
 
-/* --- check 3: mass
- * ----------------------------------------------------------------------------------------------------------- */
+/* --- check 3: mass ------------------------------------------------------------------------------------------------ */
 
 static void check_mass(const mcst_row *row, const float *p) {
     const mcst_mass m = mcst_mass_of(row, p);
@@ -51,8 +49,7 @@ static void check_mass(const mcst_row *row, const float *p) {
           m.integral - m.lit, m.tolerance);
 }
 
-/* --- check 4: accuracy
- * ---------------------------------------------------------------------------------------------------------
+/* --- check 4: accuracy -----------------------------------------------------------------------------------------------
  */
 
 enum { PDF_U, PDF_X, PDF_FAR, WHERE, WIDTH, UNIT, WEIGHT, WEIGHT_X, EVAL, CLOSURE, INVERT, ROUND_TRIP, ERRORS };
@@ -356,8 +353,7 @@ static void check_accuracy(const mcst_row *row, const float *p, uint64_t seed) {
     CHECK(asserted == 0, "good parameters asserted %d times", asserted);
 }
 
-/* --- check 5: bad input
- * ------------------------------------------------------------------------------------------------------------ */
+/* --- check 5: bad input ------------------------------------------------------------------------------------------- */
 
 static const float odd[] = {0,      -0.0f, 1,      -1,           2,       -2,      0.5f,    0x1p-149f, -0x1p-149f,
                             1e-30f, 1e30f, 1e-10f, 1 - 0x1p-24f, FLT_MIN, FLT_MAX, -FLT_MAX};

@@ -92,8 +92,7 @@ static void check_lanes(const mcst_row *row, int form, int lanes, uint64_t *stat
         }
 }
 
-/* --- array forms
- * ------------------------------------------------------------------------------------------------------------ */
+/* --- array forms -------------------------------------------------------------------------------------------------- */
 
 static const float guard = -123456.0f;
 enum { ROOM = N + 8 };
@@ -196,8 +195,7 @@ static void check_arrays(const mcst_row *row, const float *p, uint64_t *state) {
     if (row->pdf_n) check_values_n(row, p, want);
 }
 
-/* --- is the registry complete?
- * ------------------------------------------------------------------------------------------------ */
+/* --- is the registry complete? ------------------------------------------------------------------------------------ */
 
 static int is_known(const char *name) {
     size_t i;

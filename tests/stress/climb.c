@@ -11,8 +11,7 @@
 #define EPS 0x1p-24   /* half an ulp of 1 */
 enum { CLIMBS = 60 }; /* for each figure, at full size */
 
-/* --- points
- * ----------------------------------------------------------------------------------------------------------------- */
+/* --- points ------------------------------------------------------------------------------------------------------- */
 
 /* One input. What a figure does not depend on is never changed. */
 typedef struct {
@@ -123,8 +122,7 @@ static void move_point(const mcst_row *row, int figure, point *t) {
     } while (one_in(3));
 }
 
-/* --- scores
- * ----------------------------------------------------------------------------------------------------------------- */
+/* --- scores ------------------------------------------------------------------------------------------------------- */
 
 /* The greatest density: of a grid of u, then uphill from there. Only its logarithm counts. */
 static double peak_of(const mcst_row *row, const float *p) {

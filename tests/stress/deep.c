@@ -12,8 +12,7 @@ enum { CELLS_U = 65536, SHIFTS = 3, BACK_EVERY = 4 };
 static const double samples_at_full_scale = 1e9, samples_of_make_test = 1e7;
 static const double shifts[SHIFTS] = {0.001, 0.003, 0.01};
 
-/* --- counting
- * ----------------------------------------------------------------------------------------------------------------- */
+/* --- counting ----------------------------------------------------------------------------------------------------- */
 
 static double observed[MCST_CELLS + 1], expected[MCST_CELLS + 1], back[2][CELLS_U], taken_back;
 
@@ -62,8 +61,7 @@ static double draw(const mcst_row *row, const float *p, const mcst_map *map, dou
     return done;
 }
 
-/* --- chi-square
- * --------------------------------------------------------------------------------------------------------------- */
+/* --- chi-square --------------------------------------------------------------------------------------------------- */
 
 /* Cells to groups. The random numbers are multiples of 2^-24, so a ring of constant s, an interval of one of them, gets
  * a share that is up to 2^-24 off its mass m. That adds n 2^-48 / m to chi-square: rings are joined until it is below
@@ -127,8 +125,7 @@ static double visible(double dof, double level) {
     return hi;
 }
 
-/* --- wrong densities
- * ---------------------------------------------------------------------------------------------------------- */
+/* --- wrong densities ---------------------------------------------------------------------------------------------- */
 
 static const mcst_row *right;
 static unsigned varied;
@@ -166,8 +163,7 @@ static void wrong_masses(enum kind kind, const mcst_row *row, const float *p, co
     for (i = 0; i < all; i++) wrong[i] /= sum;
 }
 
-/* --- one row
- * ------------------------------------------------------------------------------------------------------------------ */
+/* --- one row ------------------------------------------------------------------------------------------------------ */
 
 static double ks_back(const double *counts, double n) {
     /* The distance at the edges of 65536 cells. Inside of a cell it grows by about the standard deviation of its count,

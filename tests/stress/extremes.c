@@ -20,8 +20,7 @@
  * floats; results must be finite and directions unit there, too, and the errors are printed as a line of their own. */
 #define LEAST_COSINE 9.9e-16f
 
-/* --- does the oracle agree with itself?
- * ------------------------------------------------------------------------------------- */
+/* --- does the oracle agree with itself? --------------------------------------------------------------------------- */
 
 /* The density at map(u) times the area of the map there, by central differences: 1. */
 static qd density_times_area(const mcst_row *row, const setting *s, qd u1, qd u2) {
@@ -34,8 +33,7 @@ static qd density_times_area(const mcst_row *row, const setting *s, qd u1, qd u2
     return exact_pdf(row, s, x) * (row->inputs == 1 ? len(d[0]) : len(cross(d[0], d[2])));
 }
 
-/* --- the grid
- * --------------------------------------------------------------------------------------------------------------- */
+/* --- the grid ----------------------------------------------------------------------------------------------------- */
 
 /* Alphas beyond both limits of the header, anisotropy 1e4 and more; exponents likewise. */
 static const float alphas[][2] = {{1e-8f, 1e-8f}, {1e-7f, 1e-7f}, {1e-6f, 1e-6f}, {1e-5f, 1e-5f}, {1e-3f, 1e-3f},
@@ -102,8 +100,7 @@ static int make_u(const mcst_row *row, uint64_t seed, int strata, float (*u)[2])
     return n;
 }
 
-/* --- scores
- * ----------------------------------------------------------------------------------------------------------------- */
+/* --- scores ------------------------------------------------------------------------------------------------------- */
 
 enum { PDF_U, PDF_X, FAR_, VALUE, WEIGHT, AGREE, WHERE, SINE, SCORES };
 /* Densities, values and weights in E; where: in half ulps of 1 (lines and disks: of the size); sine: relative, in 1e-6.

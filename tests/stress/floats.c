@@ -14,9 +14,8 @@
 
 enum { BLOCK = 4096, WIDTHS = 4, SEAMS = 8, AROUND = 64 };
 
-/* --- the maps at four widths
- * --------------------------------------------------------------------------------------------------- I(name) is the
- * private name at a width, P(name) the public one; x goes in, y and z come out. */
+/* --- the maps at four widths ---
+ * I(name) is the private name at a width, P(name) the public one; x goes in, y and z come out. */
 
 static float arg[2]; /* the parameters of the map under test */
 
@@ -130,8 +129,7 @@ static block_fn *const row_at[WIDTHS] = {draw_1, NULL, NULL, NULL};
 static block_fn *const row_back_at[WIDTHS] = {back_1, NULL, NULL, NULL};
 #endif
 
-/* --- the truth
- * -----------------------------------------------------------------------------------------------------------------
+/* --- the truth -------------------------------------------------------------------------------------------------------
  * Near 0, where most floats are, two or three terms of the series: what is left out is below 2^-52. */
 
 typedef void exact_fn(const float *in, int n, double want[2][BLOCK]);
@@ -276,8 +274,7 @@ EXACT(row)
 EXACT(any_row)
 EXACT(any_normal)
 
-/* --- sweeps
- * -------------------------------------------------------------------------------------------------------------------
+/* --- sweeps ----------------------------------------------------------------------------------------------------------
  */
 
 /* ULP: of the exact value, or of `scale` where that is larger. RELATIVE: 1e-7 of the value, and a subnormal's spacing.
@@ -485,8 +482,7 @@ static void sweep(const range *r, block_fn *const at[WIDTHS], exact_fn *exact, c
     fflush(stdout);
 }
 
-/* --- the tables
- * --------------------------------------------------------------------------------------------------------------- */
+/* --- the tables --------------------------------------------------------------------------------------------------- */
 
 #define BELOW_1 0.99999994f
 #define SIN_COS(lo, hi, up, down)                                                      \

@@ -10,8 +10,7 @@
 #include "latlong.h"
 #include "stress.h"
 
-/* --- the input
- * -------------------------------------------------------------------------------------------------------------- */
+/* --- the input ---------------------------------------------------------------------------------------------------- */
 
 typedef struct {
     const uint8_t *at;
@@ -68,8 +67,7 @@ static float take_u(bytes *b, int tame) {
     return tame ? mcs_u01(v) : st_float(v);
 }
 
-/* --- what must hold
- * --------------------------------------------------------------------------------------------------------- */
+/* --- what must hold ----------------------------------------------------------------------------------------------- */
 
 static const char *doing = "";
 #ifdef MCS_FUZZ_MAIN
@@ -122,8 +120,7 @@ static void fuzz_arrays(const mcst_row *row, const float *p, const float *u, con
     for (int k = 0; k < 5; k++) free(to[k]);
     free(value);
 }
-/* --- the functions
- * ---------------------------------------------------------------------------------------------------------- */
+/* --- the functions ------------------------------------------------------------------------------------------------ */
 
 static void fuzz_row(const mcst_row *row, bytes *b) {
     const int tame = take_u8(b) & 1;
@@ -340,8 +337,7 @@ static void fuzz_table(int kind, bytes *b) {
     free(pdf);
 }
 
-/* --- environment maps and products
- * ------------------------------------------------------------------------------------------ */
+/* --- environment maps and products -------------------------------------------------------------------------------- */
 
 static void *room(size_t size) {
     void *p = malloc(size + !size);

@@ -197,8 +197,7 @@ static void check_arrays(const mcst_row *row, uint64_t seed, long calls, tally *
     }
 }
 
-/* --- functions that are no row: vectors, Fresnel, MIS, GGX terms, points, random numbers
- * ------------------------------------ */
+/* --- functions that are no row: vectors, Fresnel, MIS, GGX terms, points, random numbers -------------------------- */
 
 static mcs8_f eight(const float *v) {
     mcs8_f r;

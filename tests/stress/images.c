@@ -14,8 +14,7 @@
 static const double eps = 0x1p-24; /* rounding of a float, relative */
 static const ld one = 0x1p31L;     /* probabilities of rows and of columns within a row are integers over this */
 
-/* --- images
- * -------------------------------------------------------------------------------------------------------------------
+/* --- images ----------------------------------------------------------------------------------------------------------
  */
 
 typedef float (*shade)(uint32_t col, uint32_t row, uint32_t w, uint32_t h);
@@ -271,8 +270,7 @@ static void discard(picture *p) {
     free(p->between);
 }
 
-/* --- what is drawn from
- * ------------------------------------------------------------------------------------------------------- */
+/* --- what is drawn from ------------------------------------------------------------------------------------------- */
 
 enum { MAP, WINDOW, PRODUCT, KINDS };
 
@@ -313,8 +311,7 @@ typedef struct {
     double draws, mass[KINDS], row, col, length;
 } tally;
 
-/* --- densities of all texels
- * -------------------------------------------------------------------------------------------------- */
+/* --- densities of all texels -------------------------------------------------------------------------------------- */
 
 typedef struct {
     float *x, *y, *z, *pdf;
@@ -493,8 +490,7 @@ static void check_product_texels(const source *s, const row_of_texels *t, tally 
           mass - s->lit, bound);
 }
 
-/* --- draws
- * --------------------------------------------------------------------------------------------------------------------
+/* --- draws -----------------------------------------------------------------------------------------------------------
  */
 
 static const float corner[] = {0.0f,     0x1p-149f,     FLT_MIN,       1e-30f,        0x1p-32f,
@@ -582,8 +578,7 @@ static void check_draws(const source *s, long n, const char *what, tally *to) {
     arena_free(&out);
 }
 
-/* --- one image in one mode
- * ---------------------------------------------------------------------------------------------------- */
+/* --- one image in one mode ---------------------------------------------------------------------------------------- */
 
 static int any_lit(const source *s) {
     int some = 0;
