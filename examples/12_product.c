@@ -1,7 +1,7 @@
 /* Product sampling: directions drawn in proportion, nearly, to radiance times cosine, with a table for the one point
  * (prepared), or without (one-shot). The map is that of 08_environment.c, a grey sky with one texel of sun, seen by a
- * matte surface that faces +z; the known answer is the same: the sum over texels of radiance times (2 pi / W) (cos^2 t0
- * - cos^2 t1) / 2. */
+ * matte surface that faces +z. The known answer is the same: the sum over texels of radiance times
+ * (2 pi / W) (cos^2 t0 - cos^2 t1) / 2. */
 #include "mcsample.h"
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* Every public function of mcsample.h in one shape, found by its name in the header's index: by the rows of registry.h
+/* Every public function of mcsample.h in one shape, found by its name in the header's part I: by the rows of registry.h
  * and by the adapters of bits.h. What test_bits.c and test_fenv.c share. With -DMCST_LINKED the adapters are in
  * tests/shared. */
 #ifndef MCST_FUNCTIONS_H

@@ -1,5 +1,4 @@
-/* The names of the public functions of mcsample.h, read from its text: of the prototypes between the two lines below,
- * where the header has them, else of its index. */
+/* The names of the public functions of mcsample.h, from the prototypes between the two lines below. */
 #ifndef MCST_INDEX_H
 #define MCST_INDEX_H
 #include <stdio.h>
@@ -51,32 +50,7 @@ static inline void mcst_read_prototypes(const char *from, const char *end) {
     }
 }
 
-/* Where the index stands and not prototypes: names of types are in it, too. */
-static inline int mcst_is_type(const char *header, const char *name) {
-    char text[64];
-    snprintf(text, sizeof text, "} %s;", name);
-    if (strstr(header, text)) return 1;
-    snprintf(text, sizeof text, "} MCS_(%s);", name + 4);
-    return strstr(header, text) != NULL;
-}
-
-/* Its first block, up to a tag, is types. */
-static inline void mcst_read_list(const char *header) {
-    const char *at = strstr(header, "/* INDEX"), *const end = strstr(header, "END OF INDEX");
-    at = at ? strstr(at, "[rng]") : NULL;
-    while (at && end && (at = strstr(at, "mcs_")) != NULL && at < end) {
-        size_t length = 0;
-        while (mcst_is_word(at[length])) length++;
-        if (!mcst_is_word(at[-1])) {
-            const int count = mcst_name_count;
-            mcst_add_name(at, length);
-            if (mcst_name_count > count && mcst_is_type(header, mcst_name[count])) mcst_name_count = count;
-        }
-        at += length;
-    }
-}
-
-/* Fills mcst_name; 0 when the header cannot be read whole. */
+/* Fills mcst_name; 0 when the header cannot be read whole, or has no such lines. */
 static inline int mcst_read_names(void) {
     static char header[1 << 20];
     FILE *f = fopen(MCS_HEADER, "rb");
@@ -86,9 +60,10 @@ static inline int mcst_read_names(void) {
     length = fread(header, 1, sizeof header - 1, f);
     fclose(f);
     header[length] = 0;
-    from = strstr(header, MCST_INTERFACE), end = strstr(header, MCST_INTERFACE_END);
-    if (from && end) mcst_read_prototypes(from, end);
-    else mcst_read_list(header);
+    from = strstr(header, MCST_INTERFACE);
+    end = strstr(header, MCST_INTERFACE_END);
+    if (!from || !end) return 0;
+    mcst_read_prototypes(from, end);
     return length < sizeof header - 1;
 }
 #endif

@@ -2,7 +2,7 @@
  * hosts that trap them must survive every function, so operands of branches and lanes that are not taken count too. And
  * flush-to-zero with denormals-are-zero, which renderers set, changes nothing but what is subnormal.
  *
- * The functions are those of the header's index, by the adapters of functions.h, so that a new one is covered at once.
+ * The functions are those of the header's part I, by the adapters of functions.h, so that a new one is covered at once.
  */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE /* feenableexcept */
@@ -345,7 +345,7 @@ int main(int argc, char **argv) {
         r = huge * huge;
         CHECK(fetestexcept(FE_OVERFLOW), "overflow");
         (void)r;
-        CHECK(mcst_name_count > 100, "%d functions in the index of %s", mcst_name_count, MCS_HEADER);
+        CHECK(mcst_name_count > 100, "%d functions in part I of %s", mcst_name_count, MCS_HEADER);
     }
     for (i = 0; i < BITS_MAPS; i++)
         if (mcst_case("building map %d, its window, tiles and products", i)) {

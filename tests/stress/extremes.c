@@ -213,119 +213,171 @@ static void count_point(const mcst_row *row, const float *p, tally *t, const flo
         t->not_unit += !(fabs(sqrt(l2) - 1) <= 4 * EPS + (row->shape == MCST_IS_BRDF ? fabs(sqrt(o2) - 1) : 0));
 }
 
-static void check_point(const mcst_row *row, const setting *s, const float *p, const float *u, double peak,
-                        double extent, tally *t) {
-    question q;
-    q3 x, at;
-    qd pdf_u, pdf_x;
-    float out[5] = {0}, pdf = 0, w[3];
+/* A drawn point and what is exact of it. Scores go to `scores`: the second tally has what lies beyond the promises. */
+typedef struct {
+    const mcst_row *row;
+    const setting *s;
+    const float *p, *u;
+    double peak, extent;
+    q3 x, at;           /* the exact point; the float point */
+    float w[3], out[5]; /* the float point; all that sample gives */
+    qd pdf_u, pdf_x;    /* the exact density at x and at `at` */
+    float pdf;          /* what _pdf gives at `at` */
+    tally *scores;
     char where[160];
-    double err, limit, size;
-    tally *g = t; /* where scores go */
-    int i, lost;
-    exact_map(row, s, u[0], u[1], &x);
-    row->fn[0].sample(p, &u[0], &u[1], out);
-    count_point(row, p, t, out);
+} drawn_point;
+
+static drawn_point draw_point(const mcst_row *row, const setting *s, const float *p, const float *u, tally *t) {
+    drawn_point d;
+    memset(&d, 0, sizeof d);
+    d.row = row;
+    d.s = s;
+    d.p = p;
+    d.u = u;
+    exact_map(row, s, u[0], u[1], &d.x);
+    row->fn[0].sample(p, &u[0], &u[1], d.out);
+    count_point(row, p, t, d.out);
     t->evaluations += 2;
-    for (i = 0; i < 3; i++) w[i] = out[i];
-    if (row->has_wo && (p[5] < LEAST_COSINE || (row->shape == MCST_IS_BRDF && w[2] < LEAST_COSINE))) g = t + 1;
-    at = vec(w[0], w[1], w[2]);
-    snprintf(where, sizeof where, "p %g %g, wo %a %a %a, u %a %a", (double)p[0], (double)p[1], (double)p[3],
+    memcpy(d.w, d.out, sizeof d.w);
+    d.at = vec(d.w[0], d.w[1], d.w[2]);
+    const int grazing = p[5] < LEAST_COSINE || (row->shape == MCST_IS_BRDF && d.w[2] < LEAST_COSINE);
+    d.scores = row->has_wo && grazing ? t + 1 : t;
+    snprintf(d.where, sizeof d.where, "p %g %g, wo %a %a %a, u %a %a", (double)p[0], (double)p[1], (double)p[3],
              (double)p[4], (double)p[5], (double)u[0], (double)u[1]);
-    for (i = 0; i < 5; i++) CHECK(isfinite(out[i]), "%s: out[%d] = %g", where, i, (double)out[i]);
-    /* where: 4 ulp of 1, 6 of the normal distribution; of a reflection (h.wo) h - wo magnifies 3 half ulps of h by 4
-     * and adds 3 roundings. Lines and disks count from their size, where x is a difference from that of its terms. */
-    size = row->dim == 3 ? 1 : fmax(fabs((double)x.x), fabs((double)x.y));
-    if (row->coord == MCST_TENT) size = (double)p[0];
-    if (row->coord == MCST_WHOLELINE) size = fmax(size, fabs((double)p[0]) + (double)p[1]);
-    err = (double)len(add(at, times(-1, x))) / EPS;
-    limit = row->shape == MCST_IS_BRDF ? 16 : row->traits & MCST_QUANTILE ? 12 : 8;
-    err = err * EPS <= 0x1p-125 * extent + 0x1p-148
-              ? 0
-              : err / size; /* what is subnormal in units of the range has lost digits */
-    if (err <= limit) score(g, WHERE, err, err / limit, where);
-    else {
-        const double wider = limit + movement(row, p, u[0], u[1], x) / size;
-        score(g, WHERE, err, err / wider, where);
-        g->ill[WHERE] += err <= wider;
-        CHECK(err <= wider || g->beyond, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g",
-              where, (double)w[0], (double)w[1], (double)w[2], (double)x.x, (double)x.y, (double)x.z, err, wider);
-    }
-    if (row->dim == 3 && row->shape != MCST_IS_BRDF) {
-        /* sin(theta), and the point across the lobe in units of its width: both relative, where sin^2(theta) is a
-         * normal float (u of 2^-100, which no generator makes, would need more) */
-        const int slopes = row->coord == MCST_SLOPES, power = row->coord == MCST_COSPOWER;
-        const qd b = s->id == ID_phong_lobe ? s->a : s->b;
-        const qd wx = slopes  ? s->a
-                      : power ? 1 / sqrtq(s->a + 1)
-                              : 1,
-                 wy = slopes  ? s->b
-                      : power ? 1 / sqrtq(b + 1)
-                              : 1;
-        const qd sine = sqrtq(x.x * x.x + x.y * x.y), got = sqrtq(at.x * at.x + at.y * at.y);
-        const double across = (double)(sqrtq(square((at.x - x.x) / wx) + square((at.y - x.y) / wy)) /
-                                       sqrtq(square(x.x / wx) + square(x.y / wy))),
-                     along = fabs((double)(got / sine - 1)), rel = fmax(across, along) / 1e-6;
-        if (sine * sine > 0x1p-124) {
-            if (rel <= 1) score(g, SINE, rel, rel, where);
-            else {
-                /* of visible normals h = c + i is a sum: relative to the whole of it, not to what is left */
-                const double wider = 1 + movement(row, p, u[0], u[1], x) * EPS /
-                                             (double)(sine * fminq(1, fminq(wx, wy) / fmaxq(wx, wy))) / 1e-6;
-                score(g, SINE, rel, rel / wider, where);
-                g->ill[SINE] += rel <= wider;
-                CHECK(rel <= wider || g->beyond,
-                      "%s: sin(theta) %.9g, exact %.9g: off by %.3g along, %.3g across the lobe (bound %.3g)", where,
-                      (double)got, (double)sine, along, across, 1e-6 * wider);
-            }
-        }
-    }
-    /* the returned density belongs to u */
-    q.row = row, q.p = p, q.u1 = u[0], q.u2 = u[1], q.x = at, q.of_u = 1, q.what = PDF_U;
-    pdf_u = exact_pdf(row, s, x);
-    lost = row->shape == MCST_IS_BRDF && !(x.z > 0);
-    if (row->shape == MCST_IS_BRDF && (lost || fabsq(x.z) <= 40 * (qd)EPS)) { /* near the horizon either is right */
-        CHECK(!lost || out[3] == 0 || fabsq(x.z) <= 40 * (qd)EPS, "%s: lost, but pdf %g", where, (double)out[3]);
-        if (!(out[3] > 0)) {
-            CHECK(out[4] == 0, "%s: lost, but weight %g", where, (double)out[4]);
-            return;
-        }
-        if (lost) return;
-    }
-    if (row->dim < 3 && pdf_u == 0 && out[3] == 0) return; /* the density is 0 there */
-    if (out[3] == 0 && pdf_u > (qd)(0x1p-126 * peak + 0x1p-148)) t->zero++;
-    if (!judge(g, q, out[3], pdf_u, unit_of(pdf_u, peak), peak, where)) return;
-    /* pdf() belongs to the float point */
-    row->fn[0].pdf(p, w, &pdf);
-    pdf_x = exact_pdf(row, s, at);
-    if (pdf_x == 0) { /* rounded over the rim of disk, cone or cap: 0 or what is inside */
-        CHECK(pdf >= 0 && (double)pdf <= (double)pdf_u * 1.001, "%s: pdf(x) %.9g on the rim, %.9g inside", where,
-              (double)pdf, (double)pdf_u);
+    return d;
+}
+
+/* 4 ulp of 1, 6 of the normal distribution; of a reflection (h.wo) h - wo magnifies 3 half ulps of h by 4 and adds 3
+ * roundings. Lines and disks count from their size, where x is a difference from that of its terms. */
+static void check_where(const drawn_point *d) {
+    const mcst_row *row = d->row;
+    const q3 x = d->x;
+    double size = row->dim == 3 ? 1 : fmax(fabs((double)x.x), fabs((double)x.y));
+    if (row->coord == MCST_TENT) size = (double)d->p[0];
+    if (row->coord == MCST_WHOLELINE) size = fmax(size, fabs((double)d->p[0]) + (double)d->p[1]);
+    const double off = (double)len(add(d->at, times(-1, x))) / EPS;
+    const double limit = row->shape == MCST_IS_BRDF ? 16 : row->traits & MCST_QUANTILE ? 12 : 8;
+    /* what is subnormal in units of the range has lost digits */
+    const double err = off * EPS <= 0x1p-125 * d->extent + 0x1p-148 ? 0 : off / size;
+    if (err <= limit) {
+        score(d->scores, WHERE, err, err / limit, d->where);
         return;
     }
-    q.of_u = 0, q.what = PDF_X;
-    judge(g, q, pdf, pdf_x, unit_of(pdf_x, peak), peak, where);
-    /* and the two differ by the rounding of the point alone */
-    if (out[3] > FLT_MIN && pdf > FLT_MIN && pdf < FLT_MAX && (double)pdf_x > 0x1p-120 * peak) {
-        const double ratio = (double)((qd)pdf / (qd)out[3] / (pdf_x / pdf_u)),
-                     unit = unit_of(pdf_u, peak) + unit_of(pdf_x, peak);
-        score(g, AGREE, fabs(ratio - 1) / unit, 0, where);
+    const double wider = limit + movement(row, d->p, d->u[0], d->u[1], x) / size;
+    score(d->scores, WHERE, err, err / wider, d->where);
+    d->scores->ill[WHERE] += err <= wider;
+    CHECK(err <= wider || d->scores->beyond, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g",
+          d->where, (double)d->w[0], (double)d->w[1], (double)d->w[2], (double)x.x, (double)x.y, (double)x.z, err,
+          wider);
+}
+
+/* sin(theta), and the point across the lobe in units of its width: both relative, where sin^2(theta) is a normal float
+ * (u of 2^-100, which no generator makes, would need more). */
+static void check_sine(const drawn_point *d) {
+    const setting *s = d->s;
+    const q3 x = d->x;
+    const q3 at = d->at;
+    const int slopes = d->row->coord == MCST_SLOPES;
+    const int power = d->row->coord == MCST_COSPOWER;
+    const qd b = s->id == ID_phong_lobe ? s->a : s->b;
+    const qd wx = slopes ? s->a : power ? 1 / sqrtq(s->a + 1) : 1;
+    const qd wy = slopes ? s->b : power ? 1 / sqrtq(b + 1) : 1;
+    const qd sine = sqrtq(x.x * x.x + x.y * x.y);
+    const qd got = sqrtq(at.x * at.x + at.y * at.y);
+    if (!(sine * sine > 0x1p-124)) return;
+    const double across = (double)(sqrtq(square((at.x - x.x) / wx) + square((at.y - x.y) / wy)) /
+                                   sqrtq(square(x.x / wx) + square(x.y / wy)));
+    const double along = fabs((double)(got / sine - 1));
+    const double rel = fmax(across, along) / 1e-6;
+    if (rel <= 1) {
+        score(d->scores, SINE, rel, rel, d->where);
+        return;
     }
-    if (row->fn[0].eval) {
-        const qd f = exact_value(s, at), weight = f > 0 ? f * at.z / pdf_x : 0;
-        float value = 0, v = 0;
-        row->fn[0].eval(p, w, &value), row->fn[0].weight(p, w, &v);
-        t->evaluations += 2;
-        q.what = VALUE;
-        judge(g, q, value, f, unit_of(pdf_x, peak), peak * (double)(f / pdf_x), where);
-        q.what = WEIGHT;
-        if (f > 0) judge(g, q, v, weight, 1e-6, 0, where);
-        /* the weight of the sample is a function of the cosines; wi.z is known to half an ulp of 1 */
-        if (f > 0 && !g->beyond)
-            CHECK(fabs((double)((qd)out[4] / fminq(weight, FLT_MAX)) - 1) <= 2e-6 + 40 * EPS / (double)w[2] ||
-                      weight < (qd)0x1p-100,
-                  "%s: weight %.9g, exact %.9g", where, (double)out[4], (double)weight);
+    /* of visible normals h = c + i is a sum: relative to the whole of it, not to what is left */
+    const double whole = (double)(sine * fminq(1, fminq(wx, wy) / fmaxq(wx, wy)));
+    const double wider = 1 + movement(d->row, d->p, d->u[0], d->u[1], x) * EPS / whole / 1e-6;
+    score(d->scores, SINE, rel, rel / wider, d->where);
+    d->scores->ill[SINE] += rel <= wider;
+    CHECK(rel <= wider || d->scores->beyond,
+          "%s: sin(theta) %.9g, exact %.9g: off by %.3g along, %.3g across the lobe (bound %.3g)", d->where,
+          (double)got, (double)sine, along, across, 1e-6 * wider);
+}
+
+/* Is the sample kept? A lost one has density and weight 0; near the horizon either is right. */
+static int check_kept(const drawn_point *d) {
+    const int lost = d->row->shape == MCST_IS_BRDF && !(d->x.z > 0);
+    const int at_horizon = fabsq(d->x.z) <= 40 * (qd)EPS;
+    if (d->row->shape != MCST_IS_BRDF || !(lost || at_horizon)) return 1;
+    CHECK(!lost || d->out[3] == 0 || at_horizon, "%s: lost, but pdf %g", d->where, (double)d->out[3]);
+    if (!(d->out[3] > 0)) {
+        CHECK(d->out[4] == 0, "%s: lost, but weight %g", d->where, (double)d->out[4]);
+        return 0;
     }
+    return !lost;
+}
+
+static question question_of(const drawn_point *d, int what) {
+    question q;
+    q.row = d->row;
+    q.p = d->p;
+    q.u1 = d->u[0];
+    q.u2 = d->u[1];
+    q.x = d->at;
+    q.of_u = what == PDF_U;
+    q.what = what;
+    return q;
+}
+
+/* The returned density belongs to u, _pdf to the float point, and the two differ by the rounding of the point alone.
+ * Returns whether there is more to ask. */
+static int check_densities(drawn_point *d, tally *t) {
+    const double peak = d->peak;
+    tally *const g = d->scores;
+    if (d->row->dim < 3 && d->pdf_u == 0 && d->out[3] == 0) return 0; /* the density is 0 there */
+    if (d->out[3] == 0 && d->pdf_u > (qd)(0x1p-126 * peak + 0x1p-148)) t->zero++;
+    const double unit_u = unit_of(d->pdf_u, peak);
+    if (!judge(g, question_of(d, PDF_U), d->out[3], d->pdf_u, unit_u, peak, d->where)) return 0;
+    d->row->fn[0].pdf(d->p, d->w, &d->pdf);
+    d->pdf_x = exact_pdf(d->row, d->s, d->at);
+    if (d->pdf_x == 0) { /* rounded over the rim of disk, cone or cap: 0 or what is inside */
+        CHECK(d->pdf >= 0 && (double)d->pdf <= (double)d->pdf_u * 1.001, "%s: pdf(x) %.9g on the rim, %.9g inside",
+              d->where, (double)d->pdf, (double)d->pdf_u);
+        return 0;
+    }
+    const double unit_x = unit_of(d->pdf_x, peak);
+    judge(g, question_of(d, PDF_X), d->pdf, d->pdf_x, unit_x, peak, d->where);
+    if (d->out[3] > FLT_MIN && d->pdf > FLT_MIN && d->pdf < FLT_MAX && (double)d->pdf_x > 0x1p-120 * peak) {
+        const double ratio = (double)((qd)d->pdf / (qd)d->out[3] / (d->pdf_x / d->pdf_u));
+        score(g, AGREE, fabs(ratio - 1) / (unit_u + unit_x), 0, d->where);
+    }
+    return 1;
+}
+
+static void check_value(const drawn_point *d, tally *t) {
+    tally *const g = d->scores;
+    const qd f = exact_value(d->s, d->at);
+    const qd weight = f > 0 ? f * d->at.z / d->pdf_x : 0;
+    float value = 0;
+    float v = 0;
+    d->row->fn[0].eval(d->p, d->w, &value);
+    d->row->fn[0].weight(d->p, d->w, &v);
+    t->evaluations += 2;
+    judge(g, question_of(d, VALUE), value, f, unit_of(d->pdf_x, d->peak), d->peak * (double)(f / d->pdf_x), d->where);
+    if (!(f > 0)) return;
+    judge(g, question_of(d, WEIGHT), v, weight, 1e-6, 0, d->where);
+    /* the weight of the sample is a function of the cosines; wi.z is known to half an ulp of 1 */
+    if (!g->beyond)
+        CHECK(fabs((double)((qd)d->out[4] / fminq(weight, FLT_MAX)) - 1) <= 2e-6 + 40 * EPS / (double)d->w[2] ||
+                  weight < (qd)0x1p-100,
+              "%s: weight %.9g, exact %.9g", d->where, (double)d->out[4], (double)weight);
+}
+
+static void check_point(drawn_point *d, tally *t) {
+    for (int i = 0; i < 5; i++) CHECK(isfinite(d->out[i]), "%s: out[%d] = %g", d->where, i, (double)d->out[i]);
+    check_where(d);
+    if (d->row->dim == 3 && d->row->shape != MCST_IS_BRDF) check_sine(d);
+    d->pdf_u = exact_pdf(d->row, d->s, d->x);
+    if (check_kept(d) && check_densities(d, t) && d->row->fn[0].eval) check_value(d, t);
 }
 
 /* Directions that the sampler does not pick: mirrored, opposed, back, across, grazing, below, and any. */
@@ -439,7 +491,12 @@ static void check_setting(const mcst_row *row, const float *p, uint64_t seed, do
         extent = fmax(extent, fabs((double)x.x));
         if (pdf > (qd)peak && pdf < (qd)1e300) peak = (double)pdf;
     }
-    for (i = 0; i < n; i++) check_point(row, &s, p, u[i], peak, extent, t);
+    for (i = 0; i < n; i++) {
+        drawn_point d = draw_point(row, &s, p, u[i], t);
+        d.peak = peak;
+        d.extent = extent;
+        check_point(&d, t);
+    }
     if (row->dim == 3) check_far(row, &s, p, seed, peak, t);
     sweep(row, p, seed, (size_t)fmax(1, 4 * scale), t);
 }

@@ -4,7 +4,7 @@
  * from random numbers, in memory of exactly the size that was asked for, between guards.
  *
  * At full scale (MCS_TEST_SCALE=1) more than 1e9 evaluations; a part is picked with --filter. */
-#define MCS_PACKETS 8
+#define MCST_WIDE
 #include "hostile_rows.h"
 #include "hostile_tables.h"
 #include "hostile_maps.h"

@@ -4,20 +4,7 @@
 #define HOSTILE_ROWS_H
 #include "hostile_tally.h"
 
-#define MCST_W 8
-#include "adapters.h"
-
 enum { LANES = 8, ARRAY = 1024 };
-
-/* The functions of each row, 8 wide. */
-#define ST_FNS_LINE(row) MCST_FNS_UV(mcst8_, row)
-#define ST_FNS_PLANE(row) MCST_FNS_UV(mcst8_, row)
-#define ST_FNS_DIR(row) MCST_FNS_UV(mcst8_, row)
-#define ST_FNS_LOBE(row) MCST_FNS_UV(mcst8_, row)
-#define ST_FNS_VLOBE(row) MCST_FNS_UV(mcst8_, row)
-#define ST_FNS_BRDF(row) MCST_FNS_BRDF(mcst8_, row)
-#define ST_FNS(shape, row, fn, arg, base, coord, grid) ST_FNS_##shape(row),
-static const mcst_fns wide[] = {MCST_ROWS(ST_FNS)};
 
 /* One argument set of one lane: a quarter of the numbers is hostile, the others are valid. */
 typedef struct {
@@ -346,7 +333,8 @@ static void test_rows(double scale) {
         const mcst_row *row = &mcst_rows[i];
         tally t = nothing;
         mcst_group(row->name);
-        if (mcst_case("eight lanes")) check_lanes(row, &wide[i], mcst_seed_for(row->name, "lanes", 0), rounds, &t);
+        if (row->fn[2].sample && mcst_case("eight lanes"))
+            check_lanes(row, &row->fn[2], mcst_seed_for(row->name, "lanes", 0), rounds, &t);
         if (mcst_case("arrays")) check_arrays(row, mcst_seed_for(row->name, "arrays", 0), calls, &t);
         mcst_close_case();
         if (t.evaluations > 0) print_tally(row->name, &t);
