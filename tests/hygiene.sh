@@ -153,11 +153,11 @@ done
 use() { echo "use_$(include "$1")"; }
 include() { case $1 in MCS_DECLARE | MCS_IMPLEMENTATION) echo none ;; *) echo "$1" ;; esac; }
 
-# --- the matrix: compilers x standards x switches. A file that only includes the header is compiled at -O0 and -O2; the one that uses
-# everything goes through the front end each time, and through code generation (a minute of work) in plain form, with MCS_NO_WIDE,
-# which changes bodies where the other switches only leave some out, and with packets. All switches go with C99 and C++17. The
-# standards after C++17, as far as the compiler knows them, may deprecate what those allow: the front end will say. The newest clang is asked about the oldest and newest
-# standards.
+# --- the matrix: compilers x standards x switches. A file that only includes the header is compiled at -O0 and -O2. The one that uses
+# everything goes through the front end each time, and through code generation (a minute of work with packets) in plain form, with
+# MCS_NO_WIDE, which changes bodies where the other switches only leave some out, and with packets in C at -O2. All switches go with C99
+# and C++17. The standards after C++17, as far as the compiler knows them, may deprecate what those allow: the front end will say. The
+# newest clang is asked about the oldest and newest standards.
 for c in $compilers; do
     if [ "$c" = "$newest" ]; then
         for std in c99 c2x c++11 c++2b; do
@@ -166,8 +166,8 @@ for c in $compilers; do
         for std in c99 c++17; do
             echo "$c $std O0 none $dir/include_none.c"
             echo "$c $std O2 none $dir/use_none.c"
-            echo "$c $std O2 MCS_PACKETS=16 $dir/use_MCS_PACKETS=16.c"
         done
+        echo "$c c99 O2 MCS_PACKETS=16 $dir/use_MCS_PACKETS=16.c"
         continue
     fi
     for std in c++20 c++2b; do # 2b: C++23, by the name that older compilers know, too
@@ -183,8 +183,8 @@ for c in $compilers; do
             [ $s != MCS_IMPLEMENTATION ] || continue
             for level in O0 O2; do
                 echo "$c $std $level $s $dir/include_$(include $s).c"
-                case $std-$s in
-                    c99-none | c++17-none | c99-MCS_NO_WIDE | c++17-MCS_NO_WIDE | c99-MCS_PACKETS=16 | c++17-MCS_PACKETS=16)
+                case $std-$level-$s in
+                    *-none | *-MCS_NO_WIDE | c99-O2-MCS_PACKETS=16)
                         echo "$c $std $level $s $dir/use_$s.c" ;;
                 esac
             done
