@@ -1498,18 +1498,23 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
 
 /* ==== [product] environment times reflection times cosine ============================================================
  * Directions for direct lighting, drawn almost in proportion to the whole integrand L f cos instead of to one of its
- * factors. Occlusion is not known here. The map is cut into tiles. A tile is drawn by its light times the reflection
- * towards that light; then a point in it, by the light and by the reflection towards the tile's corners.
+ * factors. The map is cut into tiles. A tile is drawn by its light times the reflection towards that light; then a
+ * point in it, by the light, and where it pays by the reflection towards the tile's corners.
  *
  *   tiles       mcs_tiles_build, once per map.
- *   prepared    mcs_product_build, once per shading point; then mcs_product_sample. For several samples at a point, and
- *               for narrow lobes (see below), which it follows more closely.
- *   one-shot    mcs_oneshot_sample, with no table. For one sample at a point: it costs more, but nothing is built.
- *   of weights  mcs_product_build_weights, for reflections that mcs_reflection cannot describe: one weight per tile.
+ *   prepared    mcs_product_build, once per shading point. For several draws at a point, and for one in the open.
+ *   of a region mcs_product_build_region, for a part of a scene in whose points one table is drawn from. It knows which
+ *               light is hidden there. For one draw at a point: it costs no more than a draw from the map. See [region].
+ *   of weights  mcs_product_build_weights, for anything else: one weight per tile.
+ *
+ * All are drawn from by mcs_product_sample. Pair the last two with one sample of the BRDF (mcs_mis_balance): they do not
+ * know the point's own lobe.
  *
  *   t           tiles of the map
  *   e           the map
  *   p           a product
+ *   g           a region
+ *   k           number of a tile: col rows + row
  *   r           what the surface does with light
  *   u1, u2      random numbers in [0,1)
  *   w           a unit direction in world space
@@ -1518,10 +1523,10 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * but for what is said below. They hold no pointers: a copy of the bytes is as good, in a file or on a graphics
  * processor. What an object was built from goes to every call. The same arguments make the same bytes, all of them.
  *
- *   rows        tiles              bytes of a product     bytes of tiles: map 1024 x 512     4096 x 2048
- *   16          16 x 32            16,512                 0.72 MB                            1.4 MB
- *   32          32 x 64            36,928                 2.4 MB                             3.8 MB
- *   64          64 x 128           117,696                8.7 MB                             11.5 MB
+ *   rows   tiles     bytes of a product   mcs_product_table_bytes   bytes of tiles: map 1024 x 512   4096 x 2048
+ *   16     16 x 32   18,568               6,728                     0.67 MB                          1.3 MB
+ *   32     32 x 64   45,128               25,416                    2.2 MB                           3.6 MB
+ *   64     64 x 128  150,472              99,464                    8.0 MB                           10.7 MB
  *
  * 16 is enough for most: a tile then spans 11 degrees. More rows make products better and slower to build.
  *
@@ -1541,8 +1546,7 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * tile, and c = 1 (GGX) or 3 (the others, which have no tails), the share is (1 - matte) m/(1 + m), where m/(1 + m) is
  * at most 0.95, and
  *
- *   m = c T/(14 A) - 0.03     prepared
- *   m = c T/A - 0.3           one-shot
+ *   m = c T/(14 A) - 0.03
  *
  * For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified. That gains little below
  * several thousand samples, as every tile has a residue of its own.
@@ -1553,8 +1557,8 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * Bad:      u outside [0,1) or a bad direction gives density 0 and a finite direction. So does a wo below the surface;
  *           where all light is below it, only the lobe's share has a density. Parameters out of range are taken as the
  *           nearer end, NaN as the lower one.
- * Cost:     a sample takes that of the map and two short searches, 2 square roots and 5 divisions; one-shot also the
- *           reflection towards 48 tiles and patches (40 with 32 rows, 64 with 64) and 4 corners. README.md has times.
+ * Cost:     a sample takes that of the map and two short searches; a warp takes 2 square roots and 5 divisions.
+ *           README.md has times.
  * Source:   Clarberg and Akenine-Moeller 2008, "Practical product importance sampling for direct illumination"; Cline,
  *           Egbert, Talbot, Cardon 2006, "Two stage importance sampling for direct lighting"; bilinear warping: Pharr,
  *           Jakob, Humphreys 2023, A.5. */
@@ -1584,7 +1588,15 @@ typedef struct {
     float alpha_x, alpha_y;
     float matte;         /* weight of the diffuse part, 0 to 1; the lobe has the rest */
     mcs_profile profile; /* any other value counts as MCS_PROFILE_GGX */
+    uint32_t draws;      /* how many you expect to draw at this point: tells how much to prepare; 0 counts as 1 */
 } mcs_reflection;
+
+/* What a part of a scene has learned: see [region]. */
+typedef struct {
+    uint32_t rows, cols; /* of tiles */
+    float points;        /* reflections that were added */
+    uint32_t unused;     /* private */
+} mcs_region;            /* more lies behind it: float[n] each of sums of squared reflections, rays, and rays through */
 
 /* A lobe to draw from. Private. */
 typedef struct {
@@ -1600,9 +1612,10 @@ typedef struct {
     LIST(double, per_share, (R))                   /* of each row: probability of one of its shares */            \
     LIST(uint32_t, row_sums, (R) + 2)              /* cumulative shares of rows, and a word that aligns */        \
     LIST(uint32_t, tile_sums, (2 * (R) + 1) * (R)) /* [cols + 1][rows]: cumulative shares of tiles within rows */ \
+    LIST(float, row_weight, (R))                   /* weights of rows */                                          \
+    LIST(float, light, 2 * (R) * (R))              /* [cols][rows]: light of tiles, as far as it comes through */ \
     LIST(float, value, 2 * (R) * (R))              /* [cols][rows]: reflection towards tiles */                   \
     LIST(float, corner, 2 * (R) * ((R) + 1))       /* [cols][rows + 1]: reflection towards their corners */       \
-    LIST(float, row_weight, (R))                   /* weights of rows */                                          \
     LIST(float, grid, (MCSI_GRID + MCSI_NODES) * MCSI_GRIDS) /* of heavy tiles: see mcsi_grid_build */            \
     LIST(uint8_t, grid_of, 2 * (R) * (R))                    /* [cols][rows]: 1 + number of the tile's grid, 0: none */
 /* Where these lists begin, in bytes, and where the last one ends. Private. */
@@ -1639,14 +1652,25 @@ MCS_API mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e,
 /* The world direction in which the light of tile k lies, k < rows cols; any larger k counts as the last. It is the
  * middle of a tile that has no light. */
 MCS_API mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k);
+/* The tile of a texel, and of a world direction. rows cols, which is no tile, for what lies outside the map and for a
+ * bad direction. */
+MCS_API uint32_t mcs_tiles_of_texel(const mcs_tiles *t, const mcs_env *e, uint32_t col, uint32_t row);
+MCS_API uint32_t mcs_tiles_of_direction(const mcs_tiles *t, const mcs_env *e, mcs_vec3 w);
 
-/* ---- the prepared form: a product per point ---- */
+/* ---- products ---- */
 
-/* Bytes of a product; 0 for rows other than 16, 32 and 64. */
+/* Bytes of a product; 0 for rows other than 16, 32 and 64. Of one that is built of weights or of a region,
+ * mcs_product_table_bytes are enough. */
 MCS_API size_t mcs_product_bytes(uint32_t rows);
-/* Builds the product of a map and a reflection. It holds for the orientation (e->frame) that the map has now. */
+MCS_API size_t mcs_product_table_bytes(uint32_t rows);
+/* Builds the product of a map and a reflection. It holds for the orientation (e->frame) that the map has now. g: the
+ * region that the point belongs to, whose visibility then dims the light; or NULL. */
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                     const mcs_reflection *r);
+                                     const mcs_reflection *r, const mcs_region *g);
+/* Builds the product of a map and a region: one table for all its points. up: a region that this one is a part of,
+ * whose visibility counts until this one has rays of its own; or NULL. */
+MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+                                            const mcs_region *g, const mcs_region *up);
 /* Builds the product of a map and any reflection. weight has rows cols entries, one per tile: the reflection times the
  * cosine about mcs_tiles_direction(t, e, k), in any unit. It must be > 0 wherever the reflection may be. Negative
  * entries and NaN count as 0, +infinity as FLT_MAX. The lobe gets no share. */
@@ -1662,14 +1686,55 @@ MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mc
 MCS_API void mcs_product_sample_n(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t n, const float *u1,
                                   const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
                                   uint32_t *row);
+/* Densities of n directions. */
+MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t n, const float *x,
+                               const float *y, const float *z, float *pdf);
+#endif
 #endif
 
-/* ---- the one-shot form: nothing is built but tiles ---- */
-
-/* Draws a world direction, from patches of the map down to a tile. */
-MCS_API mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1, float u2);
-/* The density with which mcs_oneshot_sample draws w. It is another one than that of mcs_product_pdf. */
-MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w);
+/* ==== [region] what a part of a scene learns of its light ===========================================================
+ * A region is a set of points that see nearly the same: a piece of one object that faces one way. How to cut a scene is
+ * the renderer's; object, cell of a grid and main axis of the normal will do, with cells of 3/8 of the object. A region
+ * collects what its surfaces reflect and which light comes through to them, tile by tile. From both
+ * mcs_product_build_region makes one table for all its points, from which a draw costs as much as from the map.
+ *
+ *     mcs_region_start(g, bytes, t);
+ *     for a dozen points: mcs_region_add_point(g, t, e, &reflection);
+ *     mcs_product_build_region(p, size, t, e, g, NULL);            and again when the number of its rays has doubled
+ *     for each sample: mcs_region_add_ray(g, mcs_tiles_of_texel(t, e, s.col, s.row), through);
+ *
+ * A tile of the table weighs its light times the root mean square of the reflections towards it times V^(3/4), where V
+ * is the share of rays that came through:
+ *
+ *   V = (through + 4 V0)/(rays + 4), and at least 0.05
+ *
+ * with V0 that of the region above it, 1 where there is none. No reflection counts less than a hundredth of the mean of
+ * all tiles: whatever has light can be drawn, and nothing is biased.
+ *
+ * Unbiased learning: a table must not be built of the rays of the very samples that are drawn from it. Rebuild it
+ * between passes.
+ *
+ *   g          a region, in memory of yours like a product; it holds no pointers
+ *   points     Reflections above the surface; others are not added. Without any, the table follows light and V alone.
+ *   rays       Shadow rays, of samples of any kind. A tile counts up to 2^24.
+ *   threads    Let each have regions of its own and merge them. Rays add up exactly, in any order; points in a fixed
+ *              order only.
+ *   cost       Bytes: 16 + 12 rows cols (6160 with 16 rows). README.md has times. */
+#if !defined(MCS_NO_TABLES) && !defined(MCS_NO_LOBES)
+/* Bytes of a region; 0 for rows other than 16, 32 and 64. */
+MCS_API size_t mcs_region_bytes(uint32_t rows);
+/* Starts an empty region. Errors are those of the builders of products. */
+MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles *t);
+/* Adds what a point of the region reflects. */
+MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r);
+/* Adds a shadow ray towards tile k; through: whether the light is seen. Nothing is added where k is no tile. */
+MCS_API void mcs_region_add_ray(mcs_region *g, uint32_t k, int through);
+/* Adds all that `other` has collected, over as many tiles. */
+MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other);
+/* Lets all that was collected count `keep` times as much, 0 to 1: for scenes that change. */
+MCS_API void mcs_region_decay(mcs_region *g, float keep);
+/* V of tile k; up: the region above, or NULL. */
+MCS_API float mcs_region_visibility(const mcs_region *g, const mcs_region *up, uint32_t k);
 #endif
 
 /* ==== [estimator] running mean, variance and standard error ========================================================
@@ -6144,17 +6209,23 @@ typedef struct {
     uint32_t row, col;
     double down, across;
 } mcsi_spot;
-/* Where direction w lies. Returns 0 for a bad direction. */
+/* Where a direction lies that is not bad. */
+MCSI_CORE mcsi_spot mcsi_env_spot(const mcs_env *e, mcsi_angles a) {
+    mcsi_spot s;
+    s.row = mcsi_env_row_at(e, a.off_pole, a.polar);
+    s.col = mcsi_env_col_at(e, a.azimuth);
+    const double *edge = mcsi_env_edge(e) + mcsi_env_from_pole(s.row, e->h);
+    const double t = ((double)mcsi_abs(a.off_pole) - edge[0]) / (edge[1] - edge[0]);
+    const double from_pole = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
+    s.down = mcsi_bits(a.off_pole) < 0 ? 1.0 - from_pole : from_pole;
+    s.across = (double)a.azimuth * e->w - s.col;
+    return s;
+}
+/* Returns 0 for a bad direction. */
 MCSI_CORE int mcsi_env_find(const mcs_env *e, mcs_vec3 w, mcsi_spot *s) {
     const mcsi_angles a = mcsi_env_angles(&e->frame, w);
     if (!(a.off_pole < 4.0f)) return 0;
-    s->row = mcsi_env_row_at(e, a.off_pole, a.polar);
-    s->col = mcsi_env_col_at(e, a.azimuth);
-    const double *edge = mcsi_env_edge(e) + mcsi_env_from_pole(s->row, e->h);
-    const double t = ((double)mcsi_abs(a.off_pole) - edge[0]) / (edge[1] - edge[0]);
-    const double from_pole = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
-    s->down = mcsi_bits(a.off_pole) < 0 ? 1.0 - from_pole : from_pole;
-    s->across = (double)a.azimuth * e->w - s->col;
+    *s = mcsi_env_spot(e, a);
     return 1;
 }
 MCSI_CORE int mcsi_window_holds(const mcs_env *e, const mcsi_window *r, uint32_t row, uint32_t col) {
@@ -6455,7 +6526,7 @@ MCSI_CORE void mcsi_window_prefetch(const mcsi_window *r, double u2) {
  * The map is cut into `rows` rows and 2 rows columns of tiles. Lists of tiles go column by column: tile (row, col) has
  * the number col rows + row. Directions are in the map's frame. */
 
-/* The light of a tile, or of several tiles in the lanes. */
+/* The light of a tile; in the lanes, of several tiles. */
 typedef struct {
     mcs_f light;        /* radiance integrated over the tile */
     mcs_vec3 mean;      /* mean direction of the light; its length d <= 1 is the shorter, the more the light spreads */
@@ -6494,15 +6565,11 @@ MCSI_CORE void mcsi_tile_light_store(const mcsi_tile_light *l, float *first, siz
 
 enum {
     MCSI_TILE_ROWS_MAX = 64,
-    MCSI_TILE_MEMBERS = 9, /* floats of a mcsi_tile_light */
-    MCSI_PATCH_ROWS = 4,   /* patches: the map in 4 x 8 pieces, from which the one-shot form descends */
-    MCSI_PATCH_COLS = 8,
-    MCSI_PATCHES = 32,
+    MCSI_TILE_MEMBERS = 9,               /* floats of a mcsi_tile_light */
     MCSI_NODES = 8,                      /* of a grid on the light of a tile, along a side */
     MCSI_GRID = MCSI_NODES * MCSI_NODES, /* and all of them */
     MCSI_GRIDS = 32                      /* of a product, at most */
 };
-/* A tile, or another piece of a map that is cut in the same way. */
 typedef struct {
     uint32_t row, col;
 } mcsi_tile;
@@ -6510,26 +6577,19 @@ typedef struct {
 typedef struct {
     size_t light;    /* float[9][n], a mcsi_tile_light of each tile */
     size_t evenness; /* float[n], the last of the nine */
-    size_t patch;  /* float[9][32] of the patches; then of each patch float[9][parts] of its parts; and then, unless the
-                        parts are tiles, of each part float[9][tiles] of its tiles */
-    size_t corner; /* float[3][cols][rows + 1]: x, y, z of the corners of all tiles; those on the right are the next
+    size_t corner;   /* float[3][cols][rows + 1]: x, y, z of the corners of all tiles; those on the right are the next
                         column's */
-    size_t
-        around; /* float[n][3][4]: x, y, z of the corners of each tile: upper left, lower left, upper and lower right */
-    size_t node;   /* float[n][3][8][8]: x, y, z of the nodes of a grid on each tile's light */
-    size_t window; /* an mcs_env_window[n], window_bytes each */
+    size_t node;     /* float[n][3][8][8]: x, y, z of the nodes of a grid on each tile's light */
+    size_t window;   /* an mcs_env_window[n], window_bytes each */
     size_t bytes;
 } mcsi_tiles_offsets;
 MCSI_CORE mcsi_tiles_offsets mcsi_tiles_layout(uint32_t rows, size_t window_bytes) {
     const size_t n = 2 * (size_t)rows * rows;
-    const size_t patches = n == 16 * MCSI_PATCHES ? MCSI_PATCHES + n : 17 * MCSI_PATCHES + n; /* of all levels */
     mcsi_tiles_offsets o;
     o.light = sizeof(mcs_tiles);
     o.evenness = o.light + (MCSI_TILE_MEMBERS - 1) * n * sizeof(float);
-    o.patch = o.evenness + n * sizeof(float);
-    o.corner = o.patch + MCSI_TILE_MEMBERS * patches * sizeof(float);
-    o.around = o.corner + 3 * (n + 2 * (size_t)rows) * sizeof(float);
-    o.node = o.around + 3 * 4 * n * sizeof(float);
+    o.corner = o.evenness + n * sizeof(float);
+    o.node = o.corner + 3 * (n + 2 * (size_t)rows) * sizeof(float);
     o.window = o.node + 3 * MCSI_GRID * n * sizeof(float);
     o.bytes = o.window + n * window_bytes;
     return o;
@@ -6564,24 +6624,25 @@ MCSI_CORE mcsi_tile mcsi_tile_of_spot(const mcs_tiles *t, const mcs_env *e, cons
     tile.col = mcsi_tile_of(spot->col, t->cols, e->w);
     return tile;
 }
-/* Parts of a patch along a side, where the map has `rows` rows of such patches. */
-MCSI_CORE uint32_t mcsi_patch_side(const mcs_tiles *t, uint32_t rows) {
-    return rows == MCSI_PATCH_ROWS ? 4 : t->rows / rows;
+MCS_API uint32_t mcs_tiles_of_texel(const mcs_tiles *t, const mcs_env *e, uint32_t col, uint32_t row) {
+    if (col >= e->w || row >= e->h) return t->rows * t->cols;
+    return mcsi_tile_of(col, t->cols, e->w) * t->rows + mcsi_tile_of(row, t->rows, e->h);
 }
-/* Floats from the start of a level of patches to that of the next one: `parts` of each of 2 rows^2 patches above. */
-MCSI_CORE size_t mcsi_level_length(uint32_t rows, uint32_t parts) {
-    return MCSI_TILE_MEMBERS * 2 * (size_t)rows * rows * parts;
+MCS_API uint32_t mcs_tiles_of_direction(const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
+    const mcsi_angles a = mcsi_env_angles(&e->frame, w);
+    if (!(a.off_pole < 4.0f)) return t->rows * t->cols;
+    return mcs_tiles_of_texel(t, e, mcsi_env_col_at(e, a.azimuth), mcsi_env_row_at(e, a.off_pole, a.polar));
 }
 
 /* ---- [product] tiles: from texels to the light of a tile ---- */
 
-/* A tile or patch while its texels are added up. */
+/* A tile while its texels are added up. */
 typedef struct {
     double light, x, y, z;   /* sums of light, and of light times direction */
     double within;           /* sum of light times the spread within its texel */
     double area, across, up; /* sums over rows of their height, and of it times sin(theta) and cos(theta) */
     uint32_t row0, row1, col0, col1;
-} mcsi_patch;
+} mcsi_tile_texels;
 MCS_FN mcs_vec3 mcsi_texel_corner(const mcs_env *e, uint32_t row, uint32_t col) {
     const double t = mcsi_env_top(e, row);
     const float sine = mcsi_sqrt((float)(t * (2.0 - t)));
@@ -6590,11 +6651,11 @@ MCS_FN mcs_vec3 mcsi_texel_corner(const mcs_env *e, uint32_t row, uint32_t col) 
     return mcsi_vec3(sine * c, sine * s, (float)(1.0 - t));
 }
 /* Corners of a tile: upper left, lower left, upper right, lower right. */
-MCSI_CORE mcs_vec3 mcsi_patch_corner(const mcs_env *e, const mcsi_patch *p, uint32_t k) {
+MCSI_CORE mcs_vec3 mcsi_tile_texels_corner(const mcs_env *e, const mcsi_tile_texels *p, uint32_t k) {
     return mcsi_texel_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0);
 }
-/* Adds a row of texels, those of the patch's columns. */
-MCS_FN void mcsi_patch_add_row(const mcs_env *e, uint32_t row, mcsi_patch *p) {
+/* Adds a row of texels, those of the tile's columns. */
+MCS_FN void mcsi_tile_texels_add_row(const mcs_env *e, uint32_t row, mcsi_tile_texels *p) {
     const double t = 0.5 * (mcsi_env_top(e, row) + mcsi_env_top(e, row + 1));
     const double sine = mcsi_sqrt_d(t * (2.0 - t));
     const double height = mcsi_env_height(row, e->h);
@@ -6628,7 +6689,7 @@ MCS_FN void mcsi_patch_add_row(const mcs_env *e, uint32_t row, mcsi_patch *p) {
 }
 /* The spread of even light, as evenness is relative to it. A column's mean direction lies sin(x)/x from the axis, x
  * half its width. */
-MCS_FN float mcsi_patch_evenness(const mcs_env *e, const mcsi_patch *p, double spread) {
+MCS_FN float mcsi_tile_texels_evenness(const mcs_env *e, const mcsi_tile_texels *p, double spread) {
     if (!(p->area > 0.0 && p->col1 > p->col0)) return 1.0f;
     const double turns = 0.5 * (p->col1 - p->col0) / e->w;
     float s, c;
@@ -6640,10 +6701,10 @@ MCS_FN float mcsi_patch_evenness(const mcs_env *e, const mcsi_patch *p, double s
     return (float)(ratio < 1.0 ? mcsi_sqrt_d(ratio) : 1.0);
 }
 /* The largest distance from m to a corner. */
-MCS_FN double mcsi_patch_radius(const mcs_env *e, const mcsi_patch *p, mcs_vec3 m) {
+MCS_FN double mcsi_tile_texels_radius(const mcs_env *e, const mcsi_tile_texels *p, mcs_vec3 m) {
     double most = 0.0;
     for (uint32_t k = 0; k < 4; k++) {
-        const mcs_vec3 corner = mcsi_patch_corner(e, p, k);
+        const mcs_vec3 corner = mcsi_tile_texels_corner(e, p, k);
         const double x = (double)(corner.x - m.x);
         const double y = (double)(corner.y - m.y);
         const double z = (double)(corner.z - m.z);
@@ -6652,7 +6713,7 @@ MCS_FN double mcsi_patch_radius(const mcs_env *e, const mcsi_patch *p, mcs_vec3 
     }
     return mcsi_sqrt_d(most);
 }
-MCS_FN mcsi_tile_light mcsi_patch_light(const mcs_env *e, const mcsi_patch *p) {
+MCS_FN mcsi_tile_light mcsi_tile_texels_light(const mcs_env *e, const mcsi_tile_texels *p) {
     const double sum = mcsi_sqrt_d(p->x * p->x + p->y * p->y + p->z * p->z);
     const mcs_vec3 m = sum > 0.0 ? mcsi_vec3((float)(p->x / sum), (float)(p->y / sum), (float)(p->z / sum))
                                  : mcsi_texel_corner(e, (p->row0 + p->row1) / 2, (p->col0 + p->col1) / 2);
@@ -6660,7 +6721,7 @@ MCS_FN mcsi_tile_light mcsi_patch_light(const mcs_env *e, const mcsi_patch *p) {
     const double length = mean < 1.0 ? mean : 1.0;
     const double both = 1.0 - length * length + (p->light > 0.0 ? p->within / p->light : 0.0);
     const double spread = both < 1.0 ? both : 1.0;
-    const double tile_radius = mcsi_patch_radius(e, p, m);
+    const double tile_radius = mcsi_tile_texels_radius(e, p, m);
     const double light_radius = 1.5 * mcsi_sqrt_d(spread);
     mcsi_tile_light l;
     l.light = (float)p->light;
@@ -6669,7 +6730,7 @@ MCS_FN mcsi_tile_light mcsi_patch_light(const mcs_env *e, const mcsi_patch *p) {
     l.spread = (float)spread;
     l.tile_radius = (float)tile_radius + 1e-6f;
     l.light_radius = (float)(light_radius < tile_radius ? light_radius : tile_radius) + 1e-6f;
-    l.evenness = mcsi_patch_evenness(e, p, spread);
+    l.evenness = mcsi_tile_texels_evenness(e, p, spread);
     return l;
 }
 /* ---- [product] tiles: building ---- */
@@ -6693,61 +6754,29 @@ MCS_FN void mcsi_tile_nodes(const mcs_env *e, const mcs_env_window *m, float *no
         node[2 * MCSI_GRID + k] = w.z;
     }
 }
-/* Stores all there is of a tile, whose texels it adds up. */
-MCS_FN void mcsi_tile_build(const mcs_env *e, mcs_tiles *t, mcsi_tile tile, mcsi_patch *p) {
+/* Stores all there is of a tile. */
+MCS_FN void mcsi_tile_build(const mcs_env *e, mcs_tiles *t, mcsi_tile tile) {
     const mcsi_tiles_offsets o = mcsi_tiles_offsets_of(t);
     const size_t n = mcsi_tiles_count(t);
     const size_t k = mcsi_tile_number(t->rows, tile);
-    for (uint32_t row = p->row0; row < p->row1; row++) mcsi_patch_add_row(e, row, p);
-    const mcsi_tile_light light = mcsi_patch_light(e, p);
+    mcsi_tile_texels sum;
+    MCSI_FILL(&sum, 0, sizeof sum);
+    sum.row0 = mcsi_tile_begin(tile.row, t->rows, e->h);
+    sum.row1 = mcsi_tile_begin(tile.row + 1, t->rows, e->h);
+    sum.col0 = mcsi_tile_begin(tile.col, t->cols, e->w);
+    sum.col1 = mcsi_tile_begin(tile.col + 1, t->cols, e->w);
+    for (uint32_t row = sum.row0; row < sum.row1; row++) mcsi_tile_texels_add_row(e, row, &sum);
+    const mcsi_tile_light light = mcsi_tile_texels_light(e, &sum);
     mcsi_tile_light_store(&light, MCSI_WRITE(float, t, o.light) + k, n);
-    float *around = MCSI_WRITE(float, t, o.around) + 3 * 4 * k;
-    for (uint32_t c = 0; c < 4; c++) {
-        const mcs_vec3 w = mcsi_patch_corner(e, p, c);
-        around[c] = w.x;
-        around[4 + c] = w.y;
-        around[8 + c] = w.z;
-    }
-    /* Window and nodes of a tile without light are zeros, which nothing reads. So is what a window leaves of its bytes.
-     * */
+    /* Window and nodes of a tile without light are zeros, which nothing reads. So is what a window leaves of its
+     * bytes. */
     mcs_env_window *m = MCSI_WRITE(mcs_env_window, t, o.window + k * t->window_bytes);
     float *node = MCSI_WRITE(float, t, o.node) + 3 * (size_t)MCSI_GRID * k;
     MCSI_FILL(m, 0, t->window_bytes);
-    if (!(p->light > 0.0)) {
-        MCSI_FILL(node, 0, 3 * MCSI_GRID * sizeof *node);
-        return;
-    }
-    mcs_env_window_build(m, t->window_bytes, e, p->row0, p->row1 - p->row0, p->col0, p->col1 - p->col0);
+    MCSI_FILL(node, 0, 3 * MCSI_GRID * sizeof *node);
+    if (!(sum.light > 0.0)) return;
+    mcs_env_window_build(m, t->window_bytes, e, sum.row0, sum.row1 - sum.row0, sum.col0, sum.col1 - sum.col0);
     mcsi_tile_nodes(e, m, node);
-}
-/* A patch of a map that is cut into `rows` rows of patches: a tile, or the sum of its parts, which are built and stored
- * from `level` on. */
-MCS_FN mcsi_patch mcsi_patch_build(const mcs_env *e, mcs_tiles *t, uint32_t rows, mcsi_tile patch, float *level) {
-    mcsi_patch p;
-    MCSI_FILL(&p, 0, sizeof p);
-    p.row0 = mcsi_tile_begin(patch.row, rows, e->h);
-    p.row1 = mcsi_tile_begin(patch.row + 1, rows, e->h);
-    p.col0 = mcsi_tile_begin(patch.col, 2 * rows, e->w);
-    p.col1 = mcsi_tile_begin(patch.col + 1, 2 * rows, e->w);
-    if (rows == t->rows) {
-        mcsi_tile_build(e, t, patch, &p);
-        return p;
-    }
-    const uint32_t side = mcsi_patch_side(t, rows);
-    const uint32_t parts = side * side;
-    float *stored = level + MCSI_TILE_MEMBERS * (size_t)(patch.col * rows + patch.row) * parts;
-    for (uint32_t k = 0; k < parts; k++) {
-        const mcsi_tile at = {patch.row * side + k % side, patch.col * side + k / side};
-        const mcsi_patch part = mcsi_patch_build(e, t, rows * side, at, level + mcsi_level_length(rows, parts));
-        const mcsi_tile_light light = mcsi_patch_light(e, &part);
-        mcsi_tile_light_store(&light, stored + k, parts);
-        p.light += part.light;
-        p.x += part.x;
-        p.y += part.y;
-        p.z += part.z;
-        p.within += part.within;
-    }
-    return p;
 }
 MCS_FN void mcsi_tiles_corners(const mcs_env *e, mcs_tiles *t) {
     const size_t corners = (size_t)t->cols * (t->rows + 1);
@@ -6769,14 +6798,11 @@ MCS_API mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e,
     t->cols = 2 * rows;
     t->window_bytes = (uint32_t)mcsi_tiles_window_bytes(e, rows);
     t->unused = 0;
-    float *patches = MCSI_WRITE(float, t, mcsi_tiles_offsets_of(t).patch);
-    float *parts = patches + (int)MCSI_TILE_MEMBERS * MCSI_PATCHES;
-    for (uint32_t k = 0; k < MCSI_PATCHES; k++) {
-        const mcsi_tile at = {k % MCSI_PATCH_ROWS, k / MCSI_PATCH_ROWS};
-        const mcsi_patch p = mcsi_patch_build(e, t, MCSI_PATCH_ROWS, at, parts);
-        const mcsi_tile_light light = mcsi_patch_light(e, &p);
-        mcsi_tile_light_store(&light, patches + k, MCSI_PATCHES);
-    }
+    for (uint32_t col = 0; col < t->cols; col++)
+        for (uint32_t row = 0; row < t->rows; row++) {
+            const mcsi_tile tile = {row, col};
+            mcsi_tile_build(e, t, tile);
+        }
     mcsi_tiles_corners(e, t);
     return MCS_OK;
 }
@@ -6917,17 +6943,6 @@ MCSI_LOOP void mcsi_tile_values_loop(const mcsi_surface *s, size_t n, const floa
         mcs_store(value + i, mcsi_tile_value(&axes, s, &l));
     }
 }
-/* The same of patches, and their weights. */
-MCSI_LOOP void mcsi_patch_weights_loop(const mcsi_surface *s, size_t n, const float *patch, float *value,
-                                       float *weight) {
-    const mcs_frame axes = mcsi_spread_frame(&s->axes);
-    for (size_t i = 0; i < n; i += MCSI_W) {
-        const mcsi_tile_light l = mcsi_tile_light_load(patch + i, n);
-        const mcs_f v = mcsi_tile_value(&axes, s, &l);
-        mcs_store(value + i, v);
-        mcs_store(weight + i, v * l.light);
-    }
-}
 /* Reflection towards n corners or nodes, n floats each of x, y, z. */
 MCSI_LOOP void mcsi_corner_values_loop(const mcsi_surface *s, size_t n, const float *corner, float *value) {
     const mcs_frame axes = mcsi_spread_frame(&s->axes);
@@ -6941,7 +6956,6 @@ MCSI_LOOP void mcsi_corner_values_loop(const mcsi_surface *s, size_t n, const fl
 #if MCSI_W == 1
 /* By the widest loop that this processor has; defined behind the passes. */
 MCS_FN void mcsi_tile_values_n(const mcsi_surface *s, size_t n, const float *tile, float *value);
-MCS_FN void mcsi_patch_weights_n(const mcsi_surface *s, size_t n, const float *patch, float *value, float *weight);
 MCS_FN void mcsi_corner_values_n(const mcsi_surface *s, size_t n, const float *corner, float *value);
 #endif
 
@@ -6976,13 +6990,11 @@ MCSI_CORE mcsi_warp mcsi_warp_make(const mcsi_warp_source *s) {
     w.v11 = (w.v11 + least) * scale;
     return w;
 }
-#ifdef MCSI_PUBLIC
 MCSI_CORE mcs_f mcsi_warp_density(const mcsi_warp *w, mcs_f t1, mcs_f t2) {
     const mcs_f a = w->v00 + t2 * (w->v01 - w->v00);
     const mcs_f b = w->v10 + t2 * (w->v11 - w->v10);
     return a + t1 * (b - a);
 }
-#endif
 /* Draws from a density that goes linearly from a at 0 to b at 1. */
 MCSI_CORE mcs_f mcsi_warp_linear(mcs_f a, mcs_f b, mcs_f u) {
     return mcsi_min(u * (a + b) / (a + mcsi_sqrt((1.0f - u) * (a * a) + u * (b * b))), mcs_set(0.99999994f));
@@ -7010,25 +7022,45 @@ typedef struct {
 } mcsi_warp_block;
 #endif
 #ifdef MCSI_LOOPS
+MCSI_CORE mcsi_warp mcsi_warp_block_get(const mcsi_warp_block *b, size_t i) {
+    mcsi_warp_source s;
+    s.value = mcs_load(b->value + i);
+    s.evenness = mcs_load(b->evenness + i);
+    s.corner.v00 = mcs_load(b->v00 + i);
+    s.corner.v01 = mcs_load(b->v01 + i);
+    s.corner.v10 = mcs_load(b->v10 + i);
+    s.corner.v11 = mcs_load(b->v11 + i);
+    return mcsi_warp_make(&s);
+}
 MCSI_LOOP void mcsi_warps_loop(size_t n, mcsi_warp_block *b) {
     for (size_t i = 0; i < n; i += MCSI_W) {
-        mcsi_warp_source s;
-        s.value = mcs_load(b->value + i);
-        s.evenness = mcs_load(b->evenness + i);
-        s.corner.v00 = mcs_load(b->v00 + i);
-        s.corner.v01 = mcs_load(b->v01 + i);
-        s.corner.v10 = mcs_load(b->v10 + i);
-        s.corner.v11 = mcs_load(b->v11 + i);
-        const mcsi_warp w = mcsi_warp_make(&s);
+        const mcsi_warp w = mcsi_warp_block_get(b, i);
         const mcsi_warp_point p = mcsi_warp_draw(&w, mcs_load(b->u1 + i), mcs_load(b->u2 + i));
         mcs_store(b->t1 + i, p.t1);
         mcs_store(b->t2 + i, p.t2);
         mcs_store(b->density + i, p.density);
     }
 }
+/* The inverse: densities at given t1 and t2. */
+MCSI_LOOP void mcsi_warp_densities_loop(size_t n, mcsi_warp_block *b) {
+    for (size_t i = 0; i < n; i += MCSI_W) {
+        const mcsi_warp w = mcsi_warp_block_get(b, i);
+        mcs_store(b->density + i, mcsi_warp_density(&w, mcs_load(b->t1 + i), mcs_load(b->t2 + i)));
+    }
+}
 #endif
 #if MCSI_W == 1
-MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b); /* by the widest loop */
+/* By the widest loop. */
+MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b);
+MCS_FN void mcsi_warp_densities_n(size_t n, mcsi_warp_block *b);
+MCSI_CORE void mcsi_warp_block_put(mcsi_warp_block *b, size_t k, const mcsi_warp_source *s) {
+    b->value[k] = s->value;
+    b->evenness[k] = s->evenness;
+    b->v00[k] = s->corner.v00;
+    b->v01[k] = s->corner.v01;
+    b->v10[k] = s->corner.v10;
+    b->v11[k] = s->corner.v11;
+}
 
 MCSI_CORE mcsi_draw mcsi_draw_of(float u1, float u2) {
     return mcsi_draw_make((double)u1 * MCSI_ONE, (double)u2 * MCSI_ONE, 1.0);
@@ -7059,12 +7091,16 @@ MCSI_CORE mcsi_product_offsets mcsi_product_layout(uint32_t rows) {
     return o;
 }
 MCS_API size_t mcs_product_bytes(uint32_t rows) { return mcsi_tiles_ok(rows) ? mcsi_product_layout(rows).bytes : 0; }
+/* What lies before the lists that only a prepared product has. */
+MCS_API size_t mcs_product_table_bytes(uint32_t rows) {
+    return mcsi_tiles_ok(rows) ? mcsi_product_layout(rows).corner : 0;
+}
 
 /* A product while it is built: what is read of the tiles, and what is written. */
 typedef struct {
     size_t rows, cols;
-    const float *light, *evenness; /* of the tiles */
-    float *value, *corner, *row_weight;
+    const float *evenness; /* of the tiles */
+    float *light, *value, *corner, *row_weight;
     uint32_t *tile_sums;
     float *bound; /* [cols][rows]: what tiles may weigh; it lies where tile_sums will */
 } mcsi_product_lists;
@@ -7073,8 +7109,8 @@ MCSI_CORE mcsi_product_lists mcsi_product_lists_of(mcs_product *p, const mcs_til
     mcsi_product_lists l;
     l.rows = t->rows;
     l.cols = t->cols;
-    l.light = MCSI_READ(float, t, from.light);
     l.evenness = MCSI_READ(float, t, from.evenness);
+    l.light = MCSI_WRITE(float, p, p->at.light);
     l.value = MCSI_WRITE(float, p, p->at.value);
     l.corner = MCSI_WRITE(float, p, p->at.corner);
     l.row_weight = MCSI_WRITE(float, p, p->at.row_weight);
@@ -7134,25 +7170,16 @@ MCSI_LOOP void mcsi_tile_shares_loop(const mcsi_product_lists *l) {
 #if MCSI_W == 1
 MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l); /* by the widest loop */
 
-/* `source`: the reflection or the weights. */
-MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+/* `source`: what it is built from. `least`: how many bytes that takes. */
+MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, size_t least, const mcs_tiles *t, const mcs_env *e,
                                      const void *source) {
     if (!p || !t || !e || !source || ((uintptr_t)p & MCSI_ALIGN)) return MCS_ERR_ARG;
-    if (bytes < mcs_product_bytes(t->rows)) return MCS_ERR_MEMORY;
-    const mcsi_product_offsets o = mcsi_product_layout(t->rows);
-    MCSI_FILL(p, 0, sizeof *p);
+    if (bytes < least) return MCS_ERR_MEMORY;
+    MCSI_FILL(p, 0, least);
     p->rows = t->rows;
     p->cols = t->cols;
-    p->at = o;
-    MCSI_WRITE(uint32_t, p, o.row_sums)[t->rows + 1] = 0; /* it only aligns what follows */
-    MCSI_FILL(MCSI_WRITE(uint8_t, p, o.grid_of), 0, mcsi_tiles_count(t));
+    p->at = mcsi_product_layout(t->rows);
     return MCS_OK;
-}
-/* Memory keeps nothing of what it held before: the grids that no tile uses become zeros. */
-MCSI_CORE void mcsi_product_clear_grids(mcs_product *p, uint32_t used) {
-    const size_t grid = MCSI_GRID + MCSI_NODES;
-    float *unused = MCSI_WRITE(float, p, p->at.grid) + used * grid;
-    MCSI_FILL(unused, 0, (MCSI_GRIDS - used) * grid * sizeof *unused);
 }
 /* From values to shares. */
 MCS_FN void mcsi_product_finish(mcs_product *p, const mcs_tiles *t) {
@@ -7270,8 +7297,8 @@ MCS_FN float mcsi_grid_build(const mcsi_surface *s, const float *node, float *gr
     for (uint32_t k = 0; k < MCSI_NODES; k++) grid[MCSI_GRID + k] = sum[k] + (MCSI_NODES - 1) * least;
     return mean + least;
 }
-/* Gives grids to the tiles that need them. Returns how many they are. */
-MCS_FN uint32_t mcsi_product_refine(mcs_product *p, const mcs_tiles *t, const mcsi_surface *s) {
+/* Gives grids to the tiles that need them. */
+MCS_FN void mcsi_product_refine(mcs_product *p, const mcs_tiles *t, const mcsi_surface *s) {
     const mcsi_product_lists l = mcsi_product_lists_of(p, t);
     const float *node = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).node);
     float *grid = MCSI_WRITE(float, p, p->at.grid);
@@ -7283,7 +7310,6 @@ MCS_FN uint32_t mcsi_product_refine(mcs_product *p, const mcs_tiles *t, const mc
             mcsi_grid_build(s, node + 3 * (size_t)MCSI_GRID * tile[i], grid + i * (size_t)(MCSI_GRID + MCSI_NODES));
         grid_of[tile[i]] = (uint8_t)(i + 1);
     }
-    return count;
 }
 /* ---- [product] narrow lobes: drawing from a grid ---- */
 
@@ -7355,12 +7381,9 @@ MCS_FN float mcsi_lobe_share(const mcsi_surface *s, size_t n, float threshold) {
     const float m = (s->profile == MCS_PROFILE_GGX ? 1.0f : 3.0f) / mcsi_lobe_in_cells(s, n) - threshold;
     return m > 0.0f ? (1.0f - s->matte) * mcsi_min(m / (1.0f + m), 0.95f) : 0.0f;
 }
-/* Of the prepared form, where 14 stands for the cells of a tile, and of the one-shot form. */
+/* Of the prepared form, where 14 stands for the cells of a tile. */
 MCSI_CORE float mcsi_product_lobe_share(const mcsi_surface *s, const mcs_tiles *t) {
     return mcsi_lobe_share(s, 14 * mcsi_tiles_count(t), 0.03f);
-}
-MCSI_CORE float mcsi_oneshot_lobe_share(const mcsi_surface *s, const mcs_tiles *t) {
-    return mcsi_lobe_share(s, mcsi_tiles_count(t), 0.3f);
 }
 MCSI_CORE mcsi_lobe mcsi_lobe_make(const mcs_reflection *r, const mcsi_surface *s) {
     const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-7f, 1e4f);
@@ -7386,7 +7409,7 @@ MCSI_CORE mcs_vec3 mcsi_lobe_draw(const mcsi_lobe *l, float u1, float u2, int32_
     default: b = mcs_ggx_vndf_sample(&l->ggx, l->wo, u1, u2);
     }
     *kept &= b.pdf > 0.0f;
-    return mcs_to_world(&l->frame, b.wi);
+    return mcsi_sane_direction(mcs_to_world(&l->frame, b.wi), kept);
 }
 /* Not inlined, so that sample and pdf run the same instructions: two copies may be contracted differently, which shows
  * in lobes as narrow as a float's rounding. */
@@ -7411,35 +7434,142 @@ MCSI_CORE float mcsi_tiles_u(float share, float u1) {
 }
 #endif
 
-/* ---- [product] the prepared form: building ---- */
+/* ---- [region] bodies ----
+ * Behind an mcs_region lie three lists: the sum of squared reflections towards each tile, the rays that were sent, and
+ * those of them that came through. */
 
 #if MCSI_W == 1
+typedef struct {
+    size_t n;
+    float *square, *rays, *through;
+} mcsi_region_lists;
+MCSI_CORE mcsi_region_lists mcsi_region_lists_of(mcs_region *g) {
+    mcsi_region_lists l;
+    l.n = (size_t)g->rows * g->cols;
+    l.square = MCSI_WRITE(float, g, sizeof *g);
+    l.rays = l.square + l.n;
+    l.through = l.rays + l.n;
+    return l;
+}
+#endif
+/* V of tiles: their rays, and V of the region above. */
+MCSI_CORE mcs_f mcsi_visibility(mcs_f rays, mcs_f through, mcs_f above) {
+    const float prior = 4.0f; /* rays */
+    return mcsi_max((through + prior * above) / (rays + prior), mcs_set(0.05f));
+}
+#ifdef MCSI_LOOPS
+/* Adds the squares of reflections towards n tiles. Not above 1e15, so that a thousand of them and more can be added. */
+MCSI_LOOP void mcsi_region_points_loop(const mcsi_surface *s, size_t n, const float *tile, float *square) {
+    const mcs_frame axes = mcsi_spread_frame(&s->axes);
+    for (size_t i = 0; i < n; i += MCSI_W) {
+        const mcsi_tile_light l = mcsi_tile_light_load(tile + i, n);
+        const mcs_f value = mcsi_min(mcsi_tile_value(&axes, s, &l), mcs_set(1e15f));
+        mcs_store(square + i, mcs_load(square + i) + value * value);
+    }
+}
+/* light times V^(3/4). */
+MCSI_LOOP void mcsi_seen_light_loop(const float *above, size_t n, const float *rays, const float *light, float *seen) {
+    const mcs_f one = mcs_set(1.0f);
+    for (size_t i = 0; i < n; i += MCSI_W) {
+        const mcs_f v = mcsi_visibility(mcs_load(rays + i), mcs_load(rays + n + i), above ? mcs_load(above + i) : one);
+        const mcs_f root = mcsi_sqrt(v);
+        mcs_store(seen + i, mcs_load(light + i) * (root * mcsi_sqrt(root)));
+    }
+}
+/* Root mean squares. */
+MCSI_LOOP void mcsi_region_values_loop(float points, size_t n, const float *square, float *value) {
+    const mcs_f scale = mcs_set(1.0f / points);
+    for (size_t i = 0; i < n; i += MCSI_W) mcs_store(value + i, mcsi_sqrt(mcs_load(square + i) * scale));
+}
+#endif
+#if MCSI_W == 1
+MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square);
+MCS_FN void mcsi_seen_light_n(const float *above, size_t n, const float *rays, const float *light, float *seen);
+MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value);
+
+MCS_API size_t mcs_region_bytes(uint32_t rows) {
+    return mcsi_tiles_ok(rows) ? sizeof(mcs_region) + 3 * sizeof(float) * 2 * rows * rows : 0;
+}
+MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles *t) {
+    if (!g || !t || ((uintptr_t)g & MCSI_ALIGN)) return MCS_ERR_ARG;
+    const size_t least = mcs_region_bytes(t->rows);
+    if (bytes < least) return MCS_ERR_MEMORY;
+    MCSI_FILL(g, 0, least);
+    g->rows = t->rows;
+    g->cols = t->cols;
+    return MCS_OK;
+}
+MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
+    MCS_ASSERT(g->rows == t->rows);
+    const mcsi_surface s = mcsi_surface_make(e, r);
+    if (!s.reflects) return;
+    const mcsi_region_lists l = mcsi_region_lists_of(g);
+    mcsi_region_points_n(&s, l.n, MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light), l.square);
+    g->points += 1.0f;
+}
+MCS_API void mcs_region_add_ray(mcs_region *g, uint32_t k, int through) {
+    const mcsi_region_lists l = mcsi_region_lists_of(g);
+    if (k >= l.n) return;
+    l.rays[k] += 1.0f;
+    if (through) l.through[k] += 1.0f;
+}
+MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other) {
+    MCS_ASSERT(g->rows == other->rows);
+    const mcsi_region_lists l = mcsi_region_lists_of(g);
+    const float *add = MCSI_READ(float, other, sizeof *other);
+    g->points += other->points;
+    for (size_t k = 0; k < 3 * l.n; k++) l.square[k] += add[k];
+}
+MCS_API void mcs_region_decay(mcs_region *g, float keep) {
+    const mcsi_region_lists l = mcsi_region_lists_of(g);
+    const float factor = mcsi_sane_parameter(keep >= 0.0f, keep, 0.0f, 1.0f);
+    g->points *= factor;
+    for (size_t k = 0; k < 3 * l.n; k++) l.square[k] *= factor;
+}
+MCS_API float mcs_region_visibility(const mcs_region *g, const mcs_region *up, uint32_t k) {
+    const size_t n = (size_t)g->rows * g->cols;
+    if (k >= n) return 0.0f;
+    const float *rays = MCSI_READ(float, g, sizeof *g) + n + k;
+    return mcsi_visibility(rays[0], rays[n], up ? mcs_region_visibility(up, NULL, k) : 1.0f);
+}
+
+/* ---- [product] building ---- */
+
+/* The light of the tiles, as far as it comes through to the region. */
+MCS_FN void mcsi_product_see(mcs_product *p, const mcs_tiles *t, const mcs_region *g, const mcs_region *up) {
+    const size_t n = mcsi_tiles_count(t);
+    const float *light = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light);
+    float *seen = MCSI_WRITE(float, p, p->at.light);
+    if (!g) {
+        MCSI_COPY(seen, light, n * sizeof *seen);
+        return;
+    }
+    float *above = MCSI_WRITE(float, p, p->at.value); /* which is written later */
+    for (size_t k = 0; up && k < n; k++) above[k] = mcs_region_visibility(up, NULL, (uint32_t)k);
+    mcsi_seen_light_n(up ? above : NULL, n, MCSI_READ(float, g, sizeof *g) + n, light, seen);
+}
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                     const mcs_reflection *r) {
-    const mcs_status status = mcsi_product_start(p, bytes, t, e, r);
+                                     const mcs_reflection *r, const mcs_region *g) {
+    const mcs_status status = mcsi_product_start(p, bytes, t ? mcs_product_bytes(t->rows) : 0, t, e, r);
     if (status) return status;
     const mcsi_surface s = mcsi_surface_make(e, r);
-    if (!s.reflects) {
-        MCSI_FILL(MCSI_WRITE(char, p, sizeof *p), 0, mcs_product_bytes(t->rows) - sizeof *p);
-        p->dark = 1;
-        return MCS_OK;
-    }
+    p->dark = !s.reflects;
+    if (p->dark) return MCS_OK;
     const size_t n = mcsi_tiles_count(t);
-    const size_t corners = n + t->cols;
     const mcsi_tiles_offsets from = mcsi_tiles_offsets_of(t);
     p->lobe = mcsi_lobe_make(r, &s);
     p->brdf_share = mcsi_product_lobe_share(&s, t);
     p->warped = 1;
+    mcsi_product_see(p, t, g, NULL);
     mcsi_tile_values_n(&s, n, MCSI_READ(float, t, from.light), MCSI_WRITE(float, p, p->at.value));
-    mcsi_corner_values_n(&s, corners, MCSI_READ(float, t, from.corner), MCSI_WRITE(float, p, p->at.corner));
-    const int narrow = s.matte < 1.0f && mcsi_lobe_in_cells(&s, n) < MCSI_GRIDS_BELOW;
-    mcsi_product_clear_grids(p, narrow ? mcsi_product_refine(p, t, &s) : 0);
+    mcsi_corner_values_n(&s, n + t->cols, MCSI_READ(float, t, from.corner), MCSI_WRITE(float, p, p->at.corner));
+    if (s.matte < 1.0f && mcsi_lobe_in_cells(&s, n) < MCSI_GRIDS_BELOW) mcsi_product_refine(p, t, &s);
     mcsi_product_finish(p, t);
     return MCS_OK;
 }
 MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                              const float *weight) {
-    const mcs_status status = mcsi_product_start(p, bytes, t, e, weight);
+    const mcs_status status = mcsi_product_start(p, bytes, t ? mcs_product_table_bytes(t->rows) : 0, t, e, weight);
     if (status) return status;
     const size_t n = mcsi_tiles_count(t);
     float *value = MCSI_WRITE(float, p, p->at.value);
@@ -7451,8 +7581,25 @@ MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const
     }
     for (size_t k = 0; k < n; k++) /* of the size of reflections, and none lost to underflow */
         value[k] = value[k] > 0.0f ? mcsi_max((float)((double)value[k] / (double)top), 1e-18f) : 0.0f;
-    MCSI_FILL(MCSI_WRITE(float, p, p->at.corner), 0, (n + t->cols) * sizeof(float));
-    mcsi_product_clear_grids(p, 0);
+    mcsi_product_see(p, t, NULL, NULL);
+    mcsi_product_finish(p, t);
+    return MCS_OK;
+}
+/* No tile has less than this part of the mean value. */
+#define MCSI_REGION_LEAST 0.01f
+MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+                                            const mcs_region *g, const mcs_region *up) {
+    const mcs_status status = mcsi_product_start(p, bytes, t ? mcs_product_table_bytes(t->rows) : 0, t, e, g);
+    if (status) return status;
+    MCS_ASSERT(g->rows == t->rows && (!up || up->rows == t->rows));
+    const size_t n = mcsi_tiles_count(t);
+    float *value = MCSI_WRITE(float, p, p->at.value);
+    mcsi_product_see(p, t, g, up);
+    if (g->points > 0.0f) mcsi_region_values_n(g->points, n, MCSI_READ(float, g, sizeof *g), value);
+    float sum = 0.0f;
+    for (size_t k = 0; k < n; k++) sum += value[k];
+    const float least = sum > 0.0f ? MCSI_REGION_LEAST / (float)n * sum : 1.0f;
+    for (size_t k = 0; k < n; k++) value[k] = mcsi_max(value[k], least);
     mcsi_product_finish(p, t);
     return MCS_OK;
 }
@@ -7477,6 +7624,10 @@ MCSI_CORE const uint32_t *mcsi_product_tile_sums(const mcs_product *p, uint32_t 
 MCSI_CORE double mcsi_product_probability(const mcs_product *p, uint32_t row, uint32_t share) {
     return MCSI_READ(double, p, p->at.per_share)[row] * (int32_t)share;
 }
+MCSI_CORE double mcsi_product_tile_probability(const mcs_product *p, mcsi_tile tile) {
+    const uint32_t *sums = mcsi_product_tile_sums(p, tile.row) + tile.col * p->rows;
+    return mcsi_product_probability(p, tile.row, sums[p->rows] - sums[0]);
+}
 /* Chooses a tile of the row by u1. */
 MCSI_CORE mcsi_tile mcsi_product_draw_tile(const mcs_product *p, uint32_t row, mcsi_draw *d) {
     const uint32_t *sums = mcsi_product_tile_sums(p, row);
@@ -7495,6 +7646,7 @@ MCSI_CORE mcsi_tile mcsi_product_draw_tile(const mcs_product *p, uint32_t row, m
 
 /* The grid of a tile, or NULL. */
 MCSI_CORE const float *mcsi_product_grid(const mcs_product *p, mcsi_tile tile) {
+    if (!p->warped) return NULL;
     const uint32_t k = MCSI_READ(uint8_t, p, p->at.grid_of)[mcsi_tile_number(p->rows, tile)];
     return k ? MCSI_READ(float, p, p->at.grid) + (k - 1) * (size_t)(MCSI_GRID + MCSI_NODES) : NULL;
 }
@@ -7541,8 +7693,7 @@ MCSI_CORE double mcsi_product_point_density(const mcs_product *p, const mcs_tile
 MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcs_tiles *t, const mcs_env *e,
                                      const mcsi_spot *spot) {
     const mcsi_tile tile = mcsi_tile_of_spot(t, e, spot);
-    const uint32_t *sums = mcsi_product_tile_sums(p, tile.row) + tile.col * p->rows;
-    double density = mcsi_product_probability(p, tile.row, sums[p->rows] - sums[0]);
+    double density = mcsi_product_tile_probability(p, tile);
     if (!(density > 0.0)) return 0.0f;
     const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, tile));
     if (!mcsi_window_row_is_lit(&window, spot->row)) return 0.0f;
@@ -7597,39 +7748,46 @@ MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mc
     return mcsi_product_look_up(p, t, e, w).pdf;
 }
 
-/* ---- [product] the prepared form: arrays ----
- * A block of 32 draws goes through every step together, as each step is a long chain of operations. */
+/* ---- [product] arrays ----
+ * A block of 32 draws goes through every step together, as each step is a long chain of operations. So does a block of
+ * directions whose densities are asked for. */
 
 #ifndef MCS_NO_BATCH
 typedef struct {
     mcsi_draw draw[MCSI_ENV_BLOCK];
+    mcsi_spot spot[MCSI_ENV_BLOCK];
     const mcs_env_window *window[MCSI_ENV_BLOCK];
     const float *grid[MCSI_ENV_BLOCK];
     uint32_t tile_row[MCSI_ENV_BLOCK];
     mcsi_warp_block warps;
+    mcsi_env_block of_map;
 } mcsi_product_block;
 
-/* Whole vectors are computed: what n draws leave of a block must be numbers. */
+/* For n draws or directions in all. Whole vectors are computed: what they leave of a block must be numbers. */
 MCSI_CORE void mcsi_product_block_start(mcsi_product_block *b, size_t n) {
+    mcsi_block_start(&b->of_map, n);
     if (n < MCSI_ENV_BLOCK) MCSI_FILL(&b->warps, 0, sizeof b->warps);
     for (size_t k = n; k < MCSI_ENV_BLOCK; k++) b->warps.value[k] = 1.0f;
 }
+/* What is read of the tile of draw or direction k. */
+MCSI_CORE void mcsi_product_block_tile(const mcs_product *p, const mcs_tiles *t, mcsi_product_block *b, size_t k,
+                                       mcsi_tile tile) {
+    b->window[k] = mcsi_tiles_window(t, tile);
+    b->grid[k] = mcsi_product_grid(p, tile);
+    MCSI_PREFETCH(b->window[k]);
+    if (!p->warped) return;
+    const mcsi_warp_source s = mcsi_product_warp_source(p, t, tile);
+    mcsi_warp_block_put(&b->warps, k, &s);
+}
+
+/* -- draws -- */
+
 /* Chooses the tiles of n draws. */
 MCSI_CORE void mcsi_product_block_tiles(const mcs_product *p, const mcs_tiles *t, mcsi_product_block *b, size_t n) {
     for (size_t k = 0; k < n; k++) b->tile_row[k] = mcsi_product_draw_row(p, &b->draw[k]);
     for (size_t k = 0; k < n; k++) {
         const mcsi_tile tile = mcsi_product_draw_tile(p, b->tile_row[k], &b->draw[k]);
-        b->window[k] = mcsi_tiles_window(t, tile);
-        b->grid[k] = mcsi_product_grid(p, tile);
-        MCSI_PREFETCH(b->window[k]);
-        if (!p->warped) continue;
-        const mcsi_warp_source s = mcsi_product_warp_source(p, t, tile);
-        b->warps.value[k] = s.value;
-        b->warps.evenness[k] = s.evenness;
-        b->warps.v00[k] = s.corner.v00;
-        b->warps.v01[k] = s.corner.v01;
-        b->warps.v10[k] = s.corner.v10;
-        b->warps.v11[k] = s.corner.v11;
+        mcsi_product_block_tile(p, t, b, k, tile);
         b->warps.u1[k] = mcsi_part_of_one(b->draw[k].u1);
         b->warps.u2[k] = mcsi_part_of_one(b->draw[k].u2);
     }
@@ -7650,6 +7808,74 @@ MCSI_CORE void mcsi_product_block_points(const mcs_product *p, const mcs_env *e,
         mcsi_window_prefetch(&window, d->u2);
     }
 }
+/* All of n draws; results go to out->x[first] and so on. */
+MCS_FN void mcsi_product_block_draw(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcsi_product_block *b,
+                                    size_t n, const mcsi_texels *out, size_t first) {
+    mcsi_product_block_tiles(p, t, b, n);
+    mcsi_product_block_points(p, e, b, n);
+    for (size_t k = 0; k < n; k++) {
+        const mcsi_window window = mcsi_window_of(e, b->window[k]);
+        mcsi_block_row(e, &window, b->draw[k], &b->of_map, k);
+    }
+    mcsi_block_columns(e, &b->of_map, n, out, first);
+}
+
+/* -- densities -- */
+
+/* Where n directions lie, and the probability of each one's tile, which is 0 where nothing can be drawn. */
+MCSI_CORE void mcsi_product_block_find(const mcs_product *p, const mcs_tiles *t, const mcs_env *e,
+                                       mcsi_product_block *b, size_t n, const mcsi_angles_block *angles) {
+    for (size_t k = 0; k < n; k++) {
+        const mcsi_angles a = {angles->off_pole[k], angles->polar[k], angles->azimuth[k]};
+        const int bad = !(a.off_pole < 4.0f);
+        const mcsi_angles up = {0.0f, 0.0f, 0.0f};
+        b->spot[k] = mcsi_env_spot(e, bad ? up : a);
+        const mcsi_tile tile = mcsi_tile_of_spot(t, e, &b->spot[k]);
+        b->draw[k].density = bad ? 0.0 : mcsi_product_tile_probability(p, tile);
+        mcsi_product_block_tile(p, t, b, k, tile);
+        MCSI_PREFETCH(mcsi_env_sums(e, b->spot[k].row) + b->spot[k].col);
+    }
+}
+/* Densities of the tiles in n directions. */
+MCS_FN void mcsi_product_block_pdf(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcsi_product_block *b,
+                                   size_t n, const float *x, const float *y, const float *z, float *pdf) {
+    mcsi_angles_block angles;
+    mcsi_env_angles_n(&e->frame, n, x, y, z, &angles);
+    mcsi_product_block_find(p, t, e, b, n, &angles);
+    for (size_t k = 0; k < n; k++) {
+        if (!(b->draw[k].density > 0.0)) continue;
+        const mcsi_window window = mcsi_window_of(e, b->window[k]);
+        const mcsi_position at = mcsi_window_position(e, &window, &b->spot[k]);
+        b->warps.t1[k] = at.t1;
+        b->warps.t2[k] = at.t2;
+    }
+    if (p->warped) mcsi_warp_densities_n(n, &b->warps);
+    for (size_t k = 0; k < n; k++) {
+        pdf[k] = 0.0f;
+        if (!(b->draw[k].density > 0.0)) continue;
+        const mcsi_window window = mcsi_window_of(e, b->window[k]);
+        double density = b->draw[k].density;
+        if (b->grid[k]) density *= (double)mcsi_grid_density(b->grid[k], b->warps.t1[k], b->warps.t2[k]);
+        else if (p->warped) density *= (double)b->warps.density[k];
+        pdf[k] = mcsi_window_density_at(e, &window, &b->spot[k], density);
+    }
+}
+
+/* -- the lobe's share -- */
+
+/* Directions of a block, their densities and texels. */
+typedef struct {
+    float x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK], z[MCSI_ENV_BLOCK], pdf[MCSI_ENV_BLOCK];
+    uint32_t col[MCSI_ENV_BLOCK], row[MCSI_ENV_BLOCK];
+} mcsi_texel_block;
+MCSI_CORE mcs_texel mcsi_texel_block_get(const mcsi_texel_block *b, size_t k) {
+    mcs_texel x;
+    x.w = mcsi_vec3(b->x[k], b->y[k], b->z[k]);
+    x.pdf = b->pdf[k];
+    x.col = b->col[k];
+    x.row = b->row[k];
+    return x;
+}
 MCSI_CORE void mcsi_texels_put(const mcsi_texels *out, size_t i, mcs_texel x) {
     if (out->x) out->x[i] = x.w.x;
     if (out->y) out->y[i] = x.w.y;
@@ -7658,225 +7884,121 @@ MCSI_CORE void mcsi_texels_put(const mcsi_texels *out, size_t i, mcs_texel x) {
     if (out->col) out->col[i] = x.col;
     if (out->row) out->row[i] = x.row;
 }
+/* The first n become world directions of the lobe; *kept of those that are lost becomes 0. */
+MCSI_CORE void mcsi_lobe_draw_n(const mcsi_lobe *l, size_t n, const float *u1, const float *u2, mcsi_texel_block *b,
+                                int32_t *kept) {
+    switch (l->profile) {
+    case MCS_PROFILE_GAUSS: mcs_ward_sample_n(&l->gauss, l->wo, n, u1, u2, b->x, b->y, b->z, b->pdf, NULL); break;
+    case MCS_PROFILE_PHONG: mcs_phong_sample_n(&l->phong, l->wo, n, u1, u2, b->x, b->y, b->z, b->pdf, NULL); break;
+    default: mcs_ggx_vndf_sample_n(&l->ggx, l->wo, n, u1, u2, b->x, b->y, b->z, b->pdf, NULL);
+    }
+    for (size_t k = 0; k < n; k++) {
+        kept[k] &= b->pdf[k] > 0.0f;
+        const mcs_vec3 w = mcs_to_world(&l->frame, mcsi_vec3(b->x[k], b->y[k], b->z[k]));
+        const mcs_vec3 v = mcsi_sane_direction(w, &kept[k]);
+        b->x[k] = v.x;
+        b->y[k] = v.y;
+        b->z[k] = v.z;
+    }
+}
+/* Densities of n world directions, at most a block: those of the tiles become those of the mixture. */
+MCSI_CORE void mcsi_lobe_mix_n(const mcsi_lobe *l, float share, size_t n, const float *x, const float *y,
+                               const float *z, float *pdf) {
+    mcsi_texel_block local;
+    for (size_t k = 0; k < n; k++) {
+        const mcs_vec3 w = mcs_to_local(&l->frame, mcsi_vec3(x[k], y[k], z[k]));
+        local.x[k] = w.x;
+        local.y[k] = w.y;
+        local.z[k] = w.z;
+    }
+    switch (l->profile) {
+    case MCS_PROFILE_GAUSS: mcs_ward_pdf_n(&l->gauss, l->wo, n, local.x, local.y, local.z, local.pdf); break;
+    case MCS_PROFILE_PHONG: mcs_phong_pdf_n(&l->phong, l->wo, n, local.x, local.y, local.z, local.pdf); break;
+    default: mcs_ggx_vndf_pdf_n(&l->ggx, l->wo, n, local.x, local.y, local.z, local.pdf);
+    }
+    for (size_t k = 0; k < n; k++) pdf[k] = mcs_mix_pdf(share, local.pdf[k], pdf[k]);
+}
+/* A block of random numbers, rescaled for lobe and tiles: those of the lobe first, those of the tiles from the end. */
+typedef struct {
+    size_t lobes;
+    size_t place[MCSI_ENV_BLOCK]; /* where each one went */
+    float u1[MCSI_ENV_BLOCK], u2[MCSI_ENV_BLOCK];
+    int32_t ok[MCSI_ENV_BLOCK];
+} mcsi_split;
+MCSI_CORE void mcsi_split_make(mcsi_split *s, float share, size_t n, const float *u1, const float *u2) {
+    s->lobes = 0;
+    size_t tiles = n;
+    for (size_t k = 0; k < n; k++) {
+        int32_t ok = 1;
+        const float a = mcsi_sane_u(u1[k], &ok);
+        const float b = mcsi_sane_u(u2[k], &ok);
+        const int of_lobe = a < share;
+        const size_t at = of_lobe ? s->lobes++ : --tiles;
+        s->place[k] = at;
+        s->u1[at] = of_lobe ? mcsi_lobe_u(share, a) : mcsi_tiles_u(share, a);
+        s->u2[at] = b;
+        s->ok[at] = ok;
+    }
+}
+/* Draws of a product whose lobe has a share, or that is dark. */
+MCS_FN void mcsi_product_block_mix(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcsi_product_block *b,
+                                   mcsi_split *s, size_t n, mcsi_texel_block *r) {
+    const mcsi_texels into = {r->x, r->y, r->z, r->pdf, r->col, r->row};
+    if (s->lobes) {
+        mcsi_lobe_draw_n(&p->lobe, s->lobes, s->u1, s->u2, r, s->ok);
+        mcsi_product_block_pdf(p, t, e, b, s->lobes, r->x, r->y, r->z, r->pdf);
+    }
+    for (size_t k = 0; k < s->lobes; k++) {
+        r->row[k] = b->spot[k].row;
+        r->col[k] = b->spot[k].col;
+    }
+    for (size_t k = s->lobes; k < n; k++) {
+        if (p->dark) mcsi_texels_put(&into, k, mcsi_no_texel(e));
+        else b->draw[k - s->lobes] = mcsi_draw_of(s->u1[k], s->u2[k]);
+    }
+    if (!p->dark && s->lobes < n) mcsi_product_block_draw(p, t, e, b, n - s->lobes, &into, s->lobes);
+    if (p->brdf_share > 0.0f) mcsi_lobe_mix_n(&p->lobe, p->brdf_share, n, r->x, r->y, r->z, r->pdf);
+    for (size_t k = 0; k < n; k++) r->pdf[k] = s->ok[k] && !(p->dark && k >= s->lobes) ? r->pdf[k] : 0.0f;
+}
+
+/* -- the whole -- */
+
 MCS_API void mcs_product_sample_n(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t n, const float *u1,
                                   const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
                                   uint32_t *row) {
     MCS_ASSERT(p->rows == t->rows);
     const mcsi_texels out = {x, y, z, pdf, col, row};
-    if (p->brdf_share > 0.0f || p->dark) { /* a lobe with a share, or no light: one by one */
-        for (size_t i = 0; i < n; i++) mcsi_texels_put(&out, i, mcs_product_sample(p, t, e, u1[i], u2[i]));
-        return;
-    }
+    const int mixed = p->brdf_share > 0.0f || p->dark;
     mcsi_product_block b;
-    mcsi_product_block_start(&b, n);
-    mcsi_env_block of_map;
-    mcsi_block_start(&of_map, n);
+    mcsi_product_block_start(&b, mixed ? 0 : n);
     size_t m;
     for (size_t i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
-        for (size_t k = 0; k < m; k++) b.draw[k] = mcsi_draw_start(u1[i + k], u2[i + k]);
-        mcsi_product_block_tiles(p, t, &b, m);
-        mcsi_product_block_points(p, e, &b, m);
-        for (size_t k = 0; k < m; k++) {
-            const mcsi_window window = mcsi_window_of(e, b.window[k]);
-            mcsi_block_row(e, &window, b.draw[k], &of_map, k);
+        if (!mixed) {
+            for (size_t k = 0; k < m; k++) b.draw[k] = mcsi_draw_start(u1[i + k], u2[i + k]);
+            mcsi_product_block_draw(p, t, e, &b, m, &out, i);
+            continue;
         }
-        mcsi_block_columns(e, &of_map, m, &out, i);
+        mcsi_split s;
+        mcsi_texel_block r;
+        mcsi_split_make(&s, p->brdf_share, m, u1 + i, u2 + i);
+        mcsi_product_block_mix(p, t, e, &b, &s, m, &r);
+        for (size_t k = 0; k < m; k++) mcsi_texels_put(&out, i + k, mcsi_texel_block_get(&r, s.place[k]));
+    }
+}
+MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t n, const float *x,
+                               const float *y, const float *z, float *pdf) {
+    MCS_ASSERT(p->rows == t->rows);
+    mcsi_product_block b;
+    mcsi_product_block_start(&b, n);
+    size_t m;
+    for (size_t i = 0; i < n; i += m) {
+        m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
+        mcsi_product_block_pdf(p, t, e, &b, m, x + i, y + i, z + i, pdf + i);
+        if (p->brdf_share > 0.0f) mcsi_lobe_mix_n(&p->lobe, p->brdf_share, m, x + i, y + i, z + i, pdf + i);
     }
 }
 #endif
-#endif
-
-/* ---- [product] the one-shot form: the descent ----
- * No table: from one of the 4 x 8 patches to one of its parts, down to a tile. Weights are light times reflection at
- * every level. A density walks the same way down to a given tile. */
-
-#if MCSI_W == 1
-/* The way down. `given`: to this tile, and only the density changes; else the tile is chosen. It is a constant in every
- * call. */
-typedef struct {
-    mcsi_draw d;
-    mcsi_tile tile;
-    int given;
-} mcsi_descent;
-
-/* Chooses entry *k of n weights (n even) by *u, which becomes the position in the entry. Multiplies *density by the
- * entry's probability. With `given`, *k stays as it is. Returns 0 when there is nothing to choose from. In double: an
- * entry of 2^-30 of the total keeps 22 bits. */
-MCSI_CORE int mcsi_list_choose(const float *weight, uint32_t n, int given, double *u, uint32_t *k, double *density) {
-    double sums[MCSI_PATCH_COLS];
-    double total = 0.0;
-    MCSI_UNROLL
-    for (uint32_t i = 0; i < n; i += 2) { /* by pairs: half the latency */
-        const double a = (double)weight[i];
-        const double both = a + (double)weight[i + 1];
-        sums[i] = total;
-        sums[i + 1] = total + a;
-        total += both;
-    }
-    if (!(total > 0.0)) return 0;
-    if (!given) {
-        const double v = *u * (total * (1.0 / MCSI_ONE));
-        *k = 0;
-        MCSI_UNROLL
-        for (uint32_t i = 1; i < n; i++) *k += (uint32_t)(sums[i] <= v);
-        const double position = (v - sums[*k]) * (MCSI_ONE / (double)weight[*k]);
-        *u = position < 2147483647.5 ? position : 2147483647.5;
-    }
-    if (!(weight[*k] > 0.0f)) return 0;
-    *density *= (double)weight[*k] / total;
-    return 1;
-}
-/* Chooses one of rows x cols patches, column by column: the row by u2, then the column by u1. */
-MCSI_CORE int mcsi_patch_choose(const float *weight, uint32_t rows, uint32_t cols, mcsi_descent *way,
-                                mcsi_tile *patch) {
-    float sums[MCSI_PATCHES];
-    float *to = sums;
-    const float *from = weight;
-    MCSI_UNROLL
-    for (uint32_t n = rows * cols / 2; n >= rows; from = to, to += n, n /= 2) {
-        MCSI_UNROLL
-        for (uint32_t k = 0; k < n; k++) to[k] = from[k] + from[k + n];
-    }
-    if (!mcsi_list_choose(from, rows, way->given, &way->d.u2, &patch->row, &way->d.density)) return 0;
-    float of_row[MCSI_PATCH_COLS];
-    MCSI_UNROLL
-    for (uint32_t k = 0; k < cols; k++) of_row[k] = weight[k * rows + patch->row];
-    return mcsi_list_choose(of_row, cols, way->given, &way->d.u1, &patch->col, &way->d.density);
-}
-/* Chooses one of the side x side parts of a patch: by their light alone when all are below the horizon that crosses the
- * patch. */
-MCSI_CORE int mcsi_part_choose(const float *light, uint32_t side, float *value, float *weight, mcsi_descent *way,
-                               mcsi_tile *part) {
-    for (uint32_t attempt = 0; attempt < 2; attempt++) {
-        if (side == 4 ? mcsi_patch_choose(weight, 4, 4, way, part) : mcsi_patch_choose(weight, 2, 2, way, part))
-            return 1;
-        for (uint32_t k = 0; k < side * side; k++)
-            if (weight[k] > 0.0f) return 0;
-        for (uint32_t k = 0; k < side * side; k++) {
-            value[k] = MCSI_VALUE_LEAST;
-            weight[k] = light[k] * MCSI_VALUE_LEAST;
-        }
-    }
-    return 0;
-}
-/* Down to a tile, whose value is returned; 0 when it cannot be drawn. */
-MCSI_CORE float mcsi_oneshot_tile(const mcs_tiles *t, const mcsi_surface *s, mcsi_descent *way) {
-    const float *level = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).patch);
-    uint32_t rows = MCSI_PATCH_ROWS;            /* of patches */
-    uint32_t below = t->rows / MCSI_PATCH_ROWS; /* tiles along the side of a patch */
-    mcsi_tile at = {way->tile.row / below, way->tile.col / below};
-    float value[MCSI_PATCHES], weight[MCSI_PATCHES];
-    mcsi_patch_weights_n(s, MCSI_PATCHES, level, value, weight);
-    if (!mcsi_patch_choose(weight, MCSI_PATCH_ROWS, MCSI_PATCH_COLS, way, &at)) return 0.0f;
-    level += (int)MCSI_TILE_MEMBERS * MCSI_PATCHES;
-    uint32_t k;
-    do {
-        const uint32_t side = mcsi_patch_side(t, rows);
-        const uint32_t parts = side * side;
-        const float *part = level + MCSI_TILE_MEMBERS * (size_t)(at.col * rows + at.row) * parts;
-        below /= side;
-        mcsi_tile in = {way->tile.row / below % side, way->tile.col / below % side};
-        mcsi_patch_weights_n(s, parts, part, value, weight);
-        if (!mcsi_part_choose(part, side, value, weight, way, &in)) return 0.0f;
-        at.row = at.row * side + in.row;
-        at.col = at.col * side + in.col;
-        k = in.col * side + in.row;
-        level += mcsi_level_length(rows, parts);
-        rows *= side;
-    } while (below > 1);
-    way->tile = at;
-    return value[k];
-}
-MCSI_CORE mcsi_warp mcsi_oneshot_warp(const mcs_tiles *t, const mcsi_surface *s, mcsi_tile tile, float value) {
-    const mcsi_tiles_offsets o = mcsi_tiles_offsets_of(t);
-    const size_t k = mcsi_tile_number(t->rows, tile);
-    float corner[MCSI_PATCHES]; /* whole vectors are computed */
-    mcsi_corner_values_n(s, 4, MCSI_READ(float, t, o.around) + 3 * 4 * k, corner);
-    mcsi_warp_source source;
-    source.value = value;
-    source.evenness = MCSI_READ(float, t, o.evenness)[k];
-    source.corner.v00 = corner[0];
-    source.corner.v01 = corner[1];
-    source.corner.v10 = corner[2];
-    source.corner.v11 = corner[3];
-    return mcsi_warp_make(&source);
-}
-/* Density of the tiles at a spot, without the lobe's share. */
-MCS_FN float mcsi_oneshot_density(const mcs_tiles *t, const mcs_env *e, const mcsi_surface *s, const mcsi_spot *spot) {
-    mcsi_descent way;
-    way.d = mcsi_draw_make(0.0, 0.0, 1.0);
-    way.tile = mcsi_tile_of_spot(t, e, spot);
-    way.given = 1;
-    const float value = mcsi_oneshot_tile(t, s, &way);
-    if (!(value > 0.0f)) return 0.0f;
-    const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, way.tile));
-    if (!mcsi_window_row_is_lit(&window, spot->row)) return 0.0f;
-    const mcsi_warp warp = mcsi_oneshot_warp(t, s, way.tile, value);
-    const mcsi_position at = mcsi_window_position(e, &window, spot);
-    way.d.density *= (double)mcsi_warp_density(&warp, at.t1, at.t2);
-    return mcsi_window_density_at(e, &window, spot, way.d.density);
-}
-/* ---- [product] the one-shot form: samples and densities ---- */
-
-/* What a call prepares. `lobe` is set where it has a share. */
-typedef struct {
-    mcsi_surface surface;
-    float share;
-    mcsi_lobe lobe;
-} mcsi_oneshot;
-/* Returns 0 where nothing is reflected. */
-MCSI_CORE int mcsi_oneshot_start(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcsi_oneshot *o) {
-    o->surface = mcsi_surface_make(e, r);
-    if (!o->surface.reflects) return 0;
-    o->share = mcsi_oneshot_lobe_share(&o->surface, t);
-    if (o->share > 0.0f) o->lobe = mcsi_lobe_make(r, &o->surface);
-    else MCSI_FILL(&o->lobe, 0, sizeof o->lobe); /* gcc does not see that it is not read then */
-    return 1;
-}
-/* Texel and density of world direction w, the lobe's share included. */
-MCSI_CORE mcs_texel mcsi_oneshot_look_up(const mcs_tiles *t, const mcs_env *e, const mcsi_oneshot *o, mcs_vec3 w) {
-    mcsi_spot spot;
-    if (!mcsi_env_find(e, w, &spot)) return mcsi_no_texel(e);
-    mcs_texel x;
-    x.w = w;
-    x.row = spot.row;
-    x.col = spot.col;
-    x.pdf = mcsi_lobe_mix(&o->lobe, o->share, w, mcsi_oneshot_density(t, e, &o->surface, &spot));
-    return x;
-}
-MCSI_CORE mcs_texel mcsi_oneshot_draw(const mcs_tiles *t, const mcs_env *e, const mcsi_oneshot *o, mcsi_draw d) {
-    mcsi_descent way;
-    way.d = d;
-    way.tile.row = way.tile.col = 0;
-    way.given = 0;
-    const float value = mcsi_oneshot_tile(t, &o->surface, &way);
-    if (!(value > 0.0f)) return mcsi_no_texel(e);
-    const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, way.tile));
-    mcsi_window_prefetch(&window, way.d.u2);
-    const mcsi_warp warp = mcsi_oneshot_warp(t, &o->surface, way.tile, value);
-    mcsi_draw_warp(&warp, &way.d);
-    mcs_texel x = mcsi_window_draw(e, &window, way.d);
-    x.pdf = mcsi_lobe_mix(&o->lobe, o->share, x.w, x.pdf);
-    return x;
-}
-MCS_API mcs_texel mcs_oneshot_sample(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, float u1,
-                                     float u2) {
-    int32_t ok = 1;
-    u1 = mcsi_sane_u(u1, &ok);
-    u2 = mcsi_sane_u(u2, &ok);
-    mcsi_oneshot o;
-    if (!mcsi_oneshot_start(t, e, r, &o)) return mcsi_no_texel(e);
-    mcs_texel x;
-    if (u1 < o.share) x = mcsi_oneshot_look_up(t, e, &o, mcsi_lobe_draw(&o.lobe, mcsi_lobe_u(o.share, u1), u2, &ok));
-    else x = mcsi_oneshot_draw(t, e, &o, mcsi_draw_of(mcsi_tiles_u(o.share, u1), u2));
-    x.pdf = ok ? x.pdf : 0.0f;
-    return x;
-}
-MCS_API float mcs_oneshot_pdf(const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, mcs_vec3 w) {
-    mcsi_oneshot o;
-    return mcsi_oneshot_start(t, e, r, &o) ? mcsi_oneshot_look_up(t, e, &o, w).pdf : 0.0f;
-}
 #endif
 #endif
 
@@ -8232,7 +8354,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_out_dir MCSI_(out_dir)
 #define mcsi_out_sample1 MCSI_(out_sample1)
 #define mcsi_out_sample2 MCSI_(out_sample2)
-#define mcsi_patch_weights_loop MCSI_(patch_weights_loop)
 #define mcsi_philox_blocks MCSI_(philox_blocks)
 #define mcsi_philox_fill_loop MCSI_(philox_fill_loop)
 #define mcsi_philox_rounds MCSI_(philox_rounds)
@@ -8249,6 +8370,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_q MCSI_Q
 #define mcsi_quotient MCSI_(quotient)
 #define mcsi_rarely MCSI_(rarely)
+#define mcsi_region_points_loop MCSI_(region_points_loop)
+#define mcsi_region_values_loop MCSI_(region_values_loop)
 #define mcsi_reverse_bits MCSI_(reverse_bits)
 #define mcsi_root MCSI_(root)
 #define mcsi_sample1 MCSI_(sample1)
@@ -8261,6 +8384,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_scale_ok MCSI_(scale_ok)
 #define mcsi_scramble_reversed MCSI_(scramble_reversed)
 #define mcsi_secant2 MCSI_(secant2)
+#define mcsi_seen_light_loop MCSI_(seen_light_loop)
 #define mcsi_sel MCSI_(sel)
 #define mcsi_side MCSI_(side)
 #define mcsi_side_load MCSI_(side_load)
@@ -8311,6 +8435,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_uv MCSI_(uv)
 #define mcsi_vec2 MCSI_(vec2)
 #define mcsi_vec3 MCSI_(vec3)
+#define mcsi_visibility MCSI_(visibility)
 #define mcsi_ward_eval_loop MCSI_(ward_eval_loop)
 #define mcsi_ward_h_loop MCSI_(ward_h_loop)
 #define mcsi_ward_pdf_loop MCSI_(ward_pdf_loop)
@@ -8320,6 +8445,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_ward_value MCSI_(ward_value)
 #define mcsi_ward_weight MCSI_(ward_weight)
 #define mcsi_warp MCSI_(warp)
+#define mcsi_warp_block_get MCSI_(warp_block_get)
+#define mcsi_warp_densities_loop MCSI_(warp_densities_loop)
 #define mcsi_warp_density MCSI_(warp_density)
 #define mcsi_warp_draw MCSI_(warp_draw)
 #define mcsi_warp_linear MCSI_(warp_linear)
@@ -8712,7 +8839,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_out_dir
 #undef mcsi_out_sample1
 #undef mcsi_out_sample2
-#undef mcsi_patch_weights_loop
 #undef mcsi_philox_blocks
 #undef mcsi_philox_fill_loop
 #undef mcsi_philox_rounds
@@ -8729,6 +8855,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_q
 #undef mcsi_quotient
 #undef mcsi_rarely
+#undef mcsi_region_points_loop
+#undef mcsi_region_values_loop
 #undef mcsi_reverse_bits
 #undef mcsi_root
 #undef mcsi_sample1
@@ -8741,6 +8869,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_scale_ok
 #undef mcsi_scramble_reversed
 #undef mcsi_secant2
+#undef mcsi_seen_light_loop
 #undef mcsi_sel
 #undef mcsi_side
 #undef mcsi_side_load
@@ -8791,6 +8920,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_uv
 #undef mcsi_vec2
 #undef mcsi_vec3
+#undef mcsi_visibility
 #undef mcsi_ward_eval_loop
 #undef mcsi_ward_h_loop
 #undef mcsi_ward_pdf_loop
@@ -8800,6 +8930,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_ward_value
 #undef mcsi_ward_weight
 #undef mcsi_warp
+#undef mcsi_warp_block_get
+#undef mcsi_warp_densities_loop
 #undef mcsi_warp_density
 #undef mcsi_warp_draw
 #undef mcsi_warp_linear
@@ -8843,15 +8975,22 @@ MCS_FN void mcsi_env_angles_n(const mcs_frame *f, size_t n, const float *x, cons
 MCS_FN void mcsi_tile_values_n(const mcsi_surface *s, size_t n, const float *tile, float *value) {
     MCSI_WIDEST(tile_values_loop, (s, n, tile, value));
 }
-MCS_FN void mcsi_patch_weights_n(const mcsi_surface *s, size_t n, const float *patch, float *value, float *weight) {
-    MCSI_WIDEST(patch_weights_loop, (s, n, patch, value, weight));
-}
 MCS_FN void mcsi_corner_values_n(const mcsi_surface *s, size_t n, const float *corner, float *value) {
     MCSI_WIDEST(corner_values_loop, (s, n, corner, value));
 }
 MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b) { MCSI_WIDEST(warps_loop, (n, b)); }
+MCS_FN void mcsi_warp_densities_n(size_t n, mcsi_warp_block *b) { MCSI_WIDEST(warp_densities_loop, (n, b)); }
 MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l) { MCSI_WIDEST(tile_shares_loop, (l)); }
 MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l) { MCSI_WIDEST(tile_bounds_loop, (l)); }
+MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square) {
+    MCSI_WIDEST(region_points_loop, (s, n, tile, square));
+}
+MCS_FN void mcsi_seen_light_n(const float *above, size_t n, const float *rays, const float *light, float *seen) {
+    MCSI_WIDEST(seen_light_loop, (above, n, rays, light, seen));
+}
+MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value) {
+    MCSI_WIDEST(region_values_loop, (points, n, square, value));
+}
 #endif
 #endif
 MCS_API void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
