@@ -7843,9 +7843,13 @@ MCS_FN void mcsi_product_block_pdf(const mcs_product *p, const mcs_tiles *t, con
     mcsi_env_angles_n(&e->frame, n, x, y, z, &angles);
     mcsi_product_block_find(p, t, e, b, n, &angles);
     for (size_t k = 0; k < n; k++) {
-        if (!(b->draw[k].density > 0.0)) continue;
-        const mcsi_window window = mcsi_window_of(e, b->window[k]);
-        const mcsi_position at = mcsi_window_position(e, &window, &b->spot[k]);
+        mcsi_position at = {0.0f, 0.0f};
+        if (b->draw[k].density > 0.0) {
+            const mcsi_window window = mcsi_window_of(e, b->window[k]);
+            if (mcsi_window_row_is_lit(&window, b->spot[k].row)) at = mcsi_window_position(e, &window, &b->spot[k]);
+            else b->draw[k].density = 0.0;
+        }
+        if (!(b->draw[k].density > 0.0)) b->warps.value[k] = 1.0f; /* no warp is 0 at all corners */
         b->warps.t1[k] = at.t1;
         b->warps.t2[k] = at.t2;
     }
