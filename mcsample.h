@@ -7995,11 +7995,13 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
     MCS_ASSERT(p->rows == t->rows);
     mcsi_product_block b;
     mcsi_product_block_start(&b, n);
+    float density[MCSI_ENV_BLOCK]; /* pdf may be x, y or z */
     size_t m;
     for (size_t i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
-        mcsi_product_block_pdf(p, t, e, &b, m, x + i, y + i, z + i, pdf + i);
-        if (p->brdf_share > 0.0f) mcsi_lobe_mix_n(&p->lobe, p->brdf_share, m, x + i, y + i, z + i, pdf + i);
+        mcsi_product_block_pdf(p, t, e, &b, m, x + i, y + i, z + i, density);
+        if (p->brdf_share > 0.0f) mcsi_lobe_mix_n(&p->lobe, p->brdf_share, m, x + i, y + i, z + i, density);
+        MCSI_COPY(pdf + i, density, m * sizeof *pdf);
     }
 }
 #endif
