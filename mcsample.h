@@ -7585,6 +7585,8 @@ MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const
     mcsi_product_finish(p, t);
     return MCS_OK;
 }
+/* Fewer points, which have decayed, count as none: sums of their squares have lost digits. */
+#define MCSI_REGION_POINTS_LEAST 1e-20f
 /* No tile has less than this part of the mean value. */
 #define MCSI_REGION_LEAST 0.01f
 MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
@@ -7595,7 +7597,9 @@ MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const 
     const size_t n = mcsi_tiles_count(t);
     float *value = MCSI_WRITE(float, p, p->at.value);
     mcsi_product_see(p, t, g, up);
-    if (g->points > 0.0f) mcsi_region_values_n(g->points, n, MCSI_READ(float, g, sizeof *g), value);
+    const float *square = MCSI_READ(float, g, sizeof *g);
+    if (g->points > MCSI_REGION_POINTS_LEAST) mcsi_region_values_n(g->points, n, square, value);
+    else MCSI_FILL(value, 0, n * sizeof *value);
     float sum = 0.0f;
     for (size_t k = 0; k < n; k++) sum += value[k];
     const float least = sum > 0.0f ? MCSI_REGION_LEAST / (float)n * sum : 1.0f;
