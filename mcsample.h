@@ -7552,6 +7552,7 @@ MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_til
                                      const mcs_reflection *r, const mcs_region *g) {
     const mcs_status status = mcsi_product_start(p, bytes, t ? mcs_product_bytes(t->rows) : 0, t, e, r);
     if (status) return status;
+    MCS_ASSERT(!g || g->rows == t->rows);
     const mcsi_surface s = mcsi_surface_make(e, r);
     p->dark = !s.reflects;
     if (p->dark) return MCS_OK;
