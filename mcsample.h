@@ -1524,9 +1524,9 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * processor. What an object was built from goes to every call. The same arguments make the same bytes, all of them.
  *
  *   rows   tiles     bytes of a product   mcs_product_table_bytes   bytes of tiles: map 1024 x 512   4096 x 2048
- *   16     16 x 32   18,568               6,728                     0.67 MB                          1.3 MB
+ *   16     16 x 32   18,568               6,664                     0.67 MB                          1.4 MB
  *   32     32 x 64   45,128               25,416                    2.2 MB                           3.6 MB
- *   64     64 x 128  150,472              99,464                    8.0 MB                           10.7 MB
+ *   64     64 x 128  150,472              99,784                    8.0 MB                           10.7 MB
  *
  * 16 is enough for most: a tile then spans 11 degrees. More rows make products better and slower to build.
  *
