@@ -463,7 +463,7 @@ static vec3 sample_hemisphere(const scene *s, const environment *e, const surfac
 }
 
 /* What product sampling is told of a surface; Fresnel's factor as the mirror direction has it. */
-static mcs_reflection reflection_of(const surface *x) {
+static mcs_reflection reflection_of(const surface *x, uint32_t draws) {
     const material *m = x->m;
     const float base = m->p_lobe < 1 ? luminance(m->base) : 0;
     float lobe = 0;
@@ -475,6 +475,7 @@ static mcs_reflection reflection_of(const surface *x) {
     r.alpha_y = m->alpha_y;
     r.matte = base / (base + lobe);
     r.profile = m->profile;
+    r.draws = draws;
     return r;
 }
 
@@ -485,16 +486,16 @@ static vec3 product_value(const scene *s, const environment *e, const surface *x
     return scale(1 / l.pdf, mul(material_eval(x->m, x->wo, wi), radiance_at(e, l.col, l.row)));
 }
 
-/* Several samples: the prepared form, a block at a time. */
+/* A table for the point; then samples, a block at a time. */
 static vec3 sample_product(const scene *s, const environment *e, const surface *x, uint32_t lights, mcs_pcg32 *rng) {
     enum { BLOCK = 32 };
     union {
         mcs_product p;
         char room[MCS_PRODUCT_BYTES(TILES)];
     } point;
-    const mcs_reflection r = reflection_of(x);
+    const mcs_reflection r = reflection_of(x, lights);
     vec3 sum = {0, 0, 0};
-    if (mcs_product_build(&point.p, sizeof point, e->tiles, e->table, &r) != MCS_OK) return sum;
+    if (mcs_product_build(&point.p, sizeof point, e->tiles, e->table, &r, NULL) != MCS_OK) return sum;
     uint32_t n;
     for (; lights > 0; lights -= n) {
         n = lights < BLOCK ? lights : BLOCK;
@@ -517,25 +518,16 @@ static vec3 sample_product(const scene *s, const environment *e, const surface *
     return sum;
 }
 
-/* One sample: the one-shot form. */
-static vec3 sample_oneshot(const scene *s, const environment *e, const surface *x, mcs_pcg32 *rng) {
-    const mcs_reflection r = reflection_of(x);
-    const float u1 = mcs_pcg32_float(rng);
-    const float u2 = mcs_pcg32_float(rng);
-    return product_value(s, e, x, mcs_oneshot_sample(e->tiles, e->table, &r, u1, u2));
-}
-
 /* The mean of so many estimates; *drawn counts the light samples. */
 static vec3 direct(const scene *s, const environment *e, const surface *x, strategy how, uint32_t lights,
                    mcs_pcg32 *rng, uint32_t *drawn) {
     vec3 sum = {0, 0, 0};
     *drawn += lights;
-    if (how == PRODUCT && lights > 1) return scale(1 / (float)lights, sample_product(s, e, x, lights, rng));
+    if (how == PRODUCT) return scale(1 / (float)lights, sample_product(s, e, x, lights, rng));
     for (uint32_t i = 0; i < lights; i++) {
         switch (how) {
         case BRDF: sum = add(sum, sample_brdf(s, e, x, 0, rng)); break;
         case ENVIRONMENT: sum = add(sum, sample_environment(s, e, x, 0, rng)); break;
-        case PRODUCT: sum = add(sum, sample_oneshot(s, e, x, rng)); break;
         case MIS:
             if (x->m->share == 1 || mcs_pcg32_float(rng) < x->m->share) {
                 sum = add(sum, sample_brdf(s, e, x, 1, rng));

@@ -29,13 +29,15 @@
 #define BITS_MAPPED(X) \
     X(image_make) X(env_bytes) X(env_build) X(env_build_rows) X(env_finish) X(env_check) X(env_mean) X(env_sample) \
     X(env_sample_bits) X(env_pdf) X(env_invert) X(env_texel) X(env_weight) X(env_window_bytes) X(env_window_build) \
-    X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(product_bytes) \
-    X(product_sample) X(product_pdf) X(oneshot_sample) X(oneshot_pdf)
+    X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(tiles_of_texel) \
+    X(tiles_of_direction) X(product_bytes) X(product_table_bytes) X(product_sample) X(product_pdf) X(region_bytes) \
+    X(region_visibility)
 #define BITS_HOST(X) \
-    X(product_build) X(product_build_weights)
+    X(product_build) X(product_build_region) X(product_build_weights) X(region_start) X(region_add_point) \
+    X(region_add_ray) X(region_merge) X(region_decay)
 #define BITS_ARRAYS(X) \
     X(env_sample_n, BITS_MAPS) X(env_texel_n, BITS_MAPS) X(env_pdf_n, BITS_MAPS) X(env_window_sample_n, BITS_MAPS) \
-    X(product_sample_n, BITS_MAPS * BITS_SURFACES)
+    X(product_sample_n, BITS_MAPS * BITS_PRODUCTS) X(product_pdf_n, BITS_MAPS * BITS_PRODUCTS)
 #endif
 /* clang-format on */
 
@@ -425,6 +427,15 @@ MCST_HD static void bits_put_texel(float *out, int i, mcs_texel t) {
     bits1_put3(out, i, t.w), PUT(i + 3, t.pdf), PUT_WORD(i + 4, t.col), PUT_WORD(i + 5, t.row);
 }
 
+/* Shadow rays to anywhere, one of a thousand beyond the last tile. */
+static void bits_rays(mcs_region *g, uint32_t seed, uint32_t n) {
+    const uint32_t tiles = g->rows * g->cols;
+    uint32_t i;
+    for (i = 0; i < n; i++) {
+        const uint32_t h = mcs_hash(seed, i);
+        mcs_region_add_ray(g, h % (tiles + tiles / 1000 + 1), (int)(h >> 24 & 2));
+    }
+}
 static void bits_map_build(int kind, bits_map *m) {
     static const uint32_t size[BITS_MAPS][2] = {{40, 12}, {130, 33}, {24, 17}, {40, 12}, {130, 33}, {16, 16}, {7, 5}};
     /* Roughness, matte part, cosine of the direction to the eye. */
@@ -456,15 +467,21 @@ static void bits_map_build(int kind, bits_map *m) {
     m->status[1] = mcs_env_window_build(m->window, bytes, m->env, h / 4, h / 2 + 1, 3 * w / 4, w / 2);
     m->tile_bytes = mcs_tiles_bytes(m->env, rows), m->tiles = (mcs_tiles *)bits_memory(m->tile_bytes);
     m->status[2] = mcs_tiles_build(m->tiles, m->tile_bytes, m->env, rows);
+    bytes = mcs_region_bytes(rows), m->region = (mcs_region *)bits_memory(bytes);
+    if (mcs_region_start(m->region, bytes, m->tiles)) exit(2);
+    bits_rays(m->region, (uint32_t)kind, 4000);
     for (k = 0; k < BITS_SURFACES; k++) {
         const float *s = surface[k];
         mcs_reflection r;
         r.frame = mcs_frame_make(mcsi_vec3(0.6f, 0.48f, 0.64f));
         r.wo = mcsi_vec3(0.0f, mcsi_sqrt(1.0f - s[3] * s[3]), s[3]), r.alpha_x = s[0], r.alpha_y = s[1], r.matte = s[2];
-        r.profile = (mcs_profile)(k % 3);
+        r.profile = (mcs_profile)(k % 3), r.draws = 64;
         bytes = mcs_product_bytes(rows), m->product[k] = (mcs_product *)bits_memory(bytes);
-        m->status[3 + k] = mcs_product_build(m->product[k], bytes, m->tiles, m->env, &r);
+        m->status[3 + k] = mcs_product_build(m->product[k], bytes, m->tiles, m->env, &r, NULL);
+        mcs_region_add_point(m->region, m->tiles, m->env, &r);
     }
+    bytes = mcs_product_table_bytes(rows), m->product[k] = (mcs_product *)bits_memory(bytes);
+    m->status[3 + k] = mcs_product_build_region(m->product[k], bytes, m->tiles, m->env, m->region, NULL);
 }
 #ifdef __CUDACC__
 static __device__ bits_map bits_gpu_maps[BITS_MAPS]; /* copies of those below */
@@ -478,7 +495,7 @@ MCST_FN const bits_map *bits_map_at(int kind) {
     return &maps[kind];
 #endif
 }
-#define PRODUCT_OF(in) bits_kind_of(in, BITS_MAPS *BITS_SURFACES)
+#define PRODUCT_OF(in) bits_kind_of(in, BITS_MAPS *BITS_PRODUCTS)
 #define MAP const bits_map *const m = bits_map_at(bits_kind_of(in, BITS_MAPS))
 #define PRODUCT \
     MAP;        \
@@ -656,6 +673,7 @@ MCST_HD static mcs_reflection bits_reflection(const float *in) {
     mcs_reflection r;
     r.frame = mcs_frame_make(IN3(8)), r.wo = IN3(3), r.alpha_x = IN(0), r.alpha_y = IN(1);
     r.matte = WORD(12) % 4 ? mcs_u01(WORD(12)) : IN(6), r.profile = (mcs_profile)(WORD(11) >> 2 & 3);
+    r.draws = WORD(11) >> 4 & 31;
     return r;
 }
 FN(tiles_bytes) {
@@ -678,10 +696,24 @@ FN(tiles_direction) {
     bits1_put3(out, 0, mcs_tiles_direction(m->tiles, m->env, WORD(11) % 600));
     bits1_put3(out, 3, mcs_tiles_direction(m->tiles, m->env, WORD(12)));
 }
+FN(tiles_of_texel) {
+    MAP;
+    PUT_WORD(0, mcs_tiles_of_texel(m->tiles, m->env, WORD(11) % 140, WORD(12) % 35));
+    PUT_WORD(1, mcs_tiles_of_texel(m->tiles, m->env, WORD(11), WORD(12) % 35));
+}
+FN(tiles_of_direction) {
+    MAP;
+    PUT_WORD(0, mcs_tiles_of_direction(m->tiles, m->env, IN3(8)));
+}
 FN(product_bytes) { /* beyond the header */
     const size_t bytes = mcs_product_bytes(16u << (WORD(11) & 3));
     PUT_WORD(0, (uint32_t)(bytes ? bytes - sizeof(mcs_product) : 0)),
         PUT_WORD(1, (uint32_t)mcs_product_bytes(WORD(12)));
+}
+FN(product_table_bytes) {
+    const size_t bytes = mcs_product_table_bytes(16u << (WORD(11) & 3));
+    PUT_WORD(0, (uint32_t)(bytes ? bytes - sizeof(mcs_product) : 0)),
+        PUT_WORD(1, (uint32_t)mcs_product_table_bytes(WORD(12)));
 }
 static uint64_t bits_room[MCS_PRODUCT_BYTES(32) / 8 + 1];
 /* Its share of the lobe and a sample with its density show a product. */
@@ -699,8 +731,10 @@ HOST(product_build) {
     MAP;
     const mcs_reflection r = bits_reflection(in);
     const mcs_reflection *given_one = WORD(11) % 32 == 1 ? NULL : &r;
+    const mcs_region *region = WORD(12) % 4 == 1 ? m->region : NULL;
     const size_t bytes = mcs_product_bytes(m->tiles->rows) - (WORD(11) % 32 == 0);
-    bits_put_product(in, out, mcs_product_build((mcs_product *)(void *)bits_room, bytes, m->tiles, m->env, given_one));
+    bits_put_product(in, out,
+                     mcs_product_build((mcs_product *)(void *)bits_room, bytes, m->tiles, m->env, given_one, region));
 }
 HOST(product_build_weights) {
     MAP;
@@ -720,16 +754,74 @@ FN(product_pdf) {
     PUT(0, mcs_product_pdf(p, m->tiles, m->env, IN3(8))),
         PUT(1, mcs_product_pdf(p, m->tiles, m->env, mcs_product_sample(p, m->tiles, m->env, IN(6), IN(7)).w));
 }
-FN(oneshot_sample) {
-    MAP;
-    const mcs_reflection r = bits_reflection(in);
-    bits_put_texel(out, 0, mcs_oneshot_sample(m->tiles, m->env, &r, IN(6), IN(7)));
+
+/* --- regions ------------------------------------------------------------------------------------------------------ */
+
+FN(region_bytes) {
+    PUT_WORD(0, (uint32_t)mcs_region_bytes(16u << (WORD(11) & 3))), PUT_WORD(1, (uint32_t)mcs_region_bytes(WORD(12)));
 }
-FN(oneshot_pdf) {
+FN(region_visibility) {
     MAP;
+    PUT(0, mcs_region_visibility(m->region, NULL, WORD(11) % 600));
+    PUT(1, mcs_region_visibility(m->region, m->region, WORD(12) % 600));
+    PUT(2, mcs_region_visibility(m->region, NULL, WORD(12)));
+}
+static uint64_t bits_region_room[2][1 + (16 + 12 * 2048) / 8];
+/* One of two regions of a case: of one point and some rays. */
+static mcs_region *bits_region(const float *in, uint32_t which) {
+    MAP;
+    mcs_region *g = (mcs_region *)(void *)bits_region_room[which];
     const mcs_reflection r = bits_reflection(in);
-    PUT(0, mcs_oneshot_pdf(m->tiles, m->env, &r, IN3(8)));
-    PUT(1, mcs_oneshot_pdf(m->tiles, m->env, &r, mcs_oneshot_sample(m->tiles, m->env, &r, IN(6), IN(7)).w));
+    if (mcs_region_start(g, sizeof bits_region_room[which], m->tiles)) exit(2);
+    mcs_region_add_point(g, m->tiles, m->env, &r);
+    bits_rays(g, WORD(12) + which, 20);
+    return g;
+}
+/* All of it. */
+static void bits_put_region(float *out, int i, const mcs_region *g) {
+    bits_put_array(out, i, g, mcs_region_bytes(g->rows) / sizeof(float));
+}
+HOST(region_start) {
+    MAP;
+    mcs_region *g = (mcs_region *)(void *)bits_region_room[0];
+    const size_t bytes = mcs_region_bytes(m->tiles->rows);
+    PUT_WORD(0, (uint32_t)mcs_region_start(g, bytes - 1 - WORD(11) % bytes, m->tiles));
+    PUT_WORD(1, (uint32_t)mcs_region_start(NULL, bytes, m->tiles)),
+        PUT_WORD(2, (uint32_t)mcs_region_start(g, bytes, NULL));
+    PUT_WORD(3, (uint32_t)mcs_region_start(g, bytes, m->tiles)), bits_put_region(out, 4, g);
+}
+HOST(region_add_point) {
+    MAP;
+    mcs_region *g = bits_region(in, 0);
+    mcs_reflection r = bits_reflection(in);
+    bits_put_region(out, 0, g);
+    r.alpha_x = r.alpha_y = 0.3f, r.wo = mcsi_vec3(0.6f, 0.0f, 0.8f);
+    mcs_region_add_point(g, m->tiles, m->env, &r);
+    bits_put_region(out, 2, g);
+}
+HOST(region_add_ray) {
+    mcs_region *g = bits_region(in, 0);
+    mcs_region_add_ray(g, WORD(11) % 520, (int)(WORD(13) & 1)), mcs_region_add_ray(g, WORD(12), 1);
+    bits_put_region(out, 0, g);
+}
+HOST(region_merge) {
+    mcs_region *g = bits_region(in, 0);
+    mcs_region_merge(g, bits_region(in, 1));
+    bits_put_region(out, 0, g);
+    mcs_region_merge(g, g);
+    bits_put_region(out, 2, g);
+}
+HOST(region_decay) {
+    mcs_region *g = bits_region(in, 0);
+    mcs_region_decay(g, IN(6));
+    bits_put_region(out, 0, g);
+}
+HOST(product_build_region) {
+    MAP;
+    const mcs_region *g = WORD(11) % 32 == 1 ? NULL : bits_region(in, 0);
+    const size_t bytes = mcs_product_table_bytes(m->tiles->rows) - (WORD(11) % 32 == 0);
+    mcs_product *const p = (mcs_product *)(void *)bits_room;
+    bits_put_product(in, out, mcs_product_build_region(p, bytes, m->tiles, m->env, g, WORD(12) & 1 ? m->region : NULL));
 }
 
 /* --- array forms -------------------------------------------------------------------------------------------------- */
@@ -771,6 +863,14 @@ HOST(product_sample_n) {
 }
 DRAW(product_sample_n, bits_map_at(k % BITS_MAPS)->product[k / BITS_MAPS], bits_map_at(k % BITS_MAPS)->tiles,
      bits_map_at(k % BITS_MAPS)->env)
+HOST(product_pdf_n) {
+    PRODUCT;
+    PUT(0, mcs_product_pdf(p, m->tiles, m->env, IN3(8)));
+}
+ARRAY(product_pdf_n) {
+    const bits_map *m = bits_map_at(k % BITS_MAPS);
+    mcs_product_pdf_n(m->product[k / BITS_MAPS], m->tiles, m->env, n, in[2], in[3], in[4], out[0]);
+}
 #undef ARRAY
 #undef DRAW
 #undef HOST

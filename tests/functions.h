@@ -44,8 +44,8 @@ MCST_HD static inline float from_bits(uint32_t bits) {
     return x;
 }
 
-/* Built once and kept until the end: maps, for each of them a window across the seam, tiles, and a product for each of
- * some surfaces. Building one per case as for the tables above would take an emulator minutes. */
+/* Built once and kept until the end: maps, for each of them a window across the seam, tiles, a region, and a product for
+ * each of some surfaces. Building one per case as for the tables above would take an emulator minutes. */
 enum {
     BITS_RANDOM,
     BITS_SUN,
@@ -55,14 +55,16 @@ enum {
     BITS_CONSTANT,
     BITS_BLACK,
     BITS_MAPS,
-    BITS_SURFACES = 4
+    BITS_SURFACES = 4,
+    BITS_PRODUCTS = BITS_SURFACES + 1 /* that of the region last */
 };
 typedef struct {
     mcs_env *env;
     mcs_env_window *window;
     mcs_tiles *tiles;
-    mcs_product *product[BITS_SURFACES];
-    mcs_status status[3 + BITS_SURFACES];
+    mcs_product *product[BITS_PRODUCTS];
+    mcs_region *region;
+    mcs_status status[3 + BITS_PRODUCTS];
     size_t tile_bytes;
 } bits_map;
 /* The map or product of a case, of so many. */

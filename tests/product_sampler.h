@@ -1,5 +1,5 @@
-/* What the tests of products share: the prepared and the one-shot form behind one interface; their density over a
- * tile's light, which is piecewise bilinear, measured and known within bounds; what holds of every draw. */
+/* What the tests of products share: a product with what it was built from; its density over a tile's light, which is
+ * piecewise bilinear, measured and known within bounds; what holds of every draw. */
 #ifndef MCST_PRODUCT_SAMPLER_H
 #define MCST_PRODUCT_SAMPLER_H
 #include "product_scene.h"
@@ -105,7 +105,7 @@ static inline double direction_at(const scene *m, box b, double t1, double t2, m
     return light;
 }
 
-/* ---- both forms under one roof ---- */
+/* ---- a product ---- */
 
 /* Density over light within a tile, as a function of the places (t1, t2): continuous, and bilinear in each of `parts`
  * by `parts` equal cells. Its nodes are at k / parts, those of one t1 together; `blur`: by how much a value may be
@@ -121,16 +121,13 @@ typedef struct {
 typedef struct {
     const scene *m;
     const surface *s;
-    mcs_product *p;     /* NULL: one-shot */
-    mcs_product *alone; /* the prepared form with no share for the lobe */
+    mcs_product *p;
+    mcs_product *alone; /* the same with no share for the lobe */
     arena mem, mem_alone;
-    double share, share_off; /* of the lobe, and what that may be wrong by */
-    mcs_ggx own;             /* by the profile: one of these three */
-    mcs_ward gauss;
-    mcs_phong phong;
+    double share;  /* of the lobe */
     int most_fine; /* so many tiles may have more than one part */
     mcs_status status;
-    int dark; /* what the prepared form says */
+    int dark; /* what the product says */
 } sampler;
 
 static inline void sampler_start(sampler *d, const scene *m, const surface *s) {
@@ -139,6 +136,7 @@ static inline void sampler_start(sampler *d, const scene *m, const surface *s) {
     d->s = s;
     d->mem = arena_make(mcs_product_bytes(m->rows));
     d->mem_alone = arena_make(mcs_product_bytes(m->rows));
+    d->p = (mcs_product *)(void *)d->mem.at;
     d->alone = (mcs_product *)(void *)d->mem_alone.at;
 }
 static inline void sampler_ready(sampler *d) {
@@ -148,37 +146,14 @@ static inline void sampler_ready(sampler *d) {
     d->dark = d->alone->dark != 0;
     CHECK(arena_intact(&d->mem), "wrote outside its %zu bytes", d->mem.bytes);
 }
-static inline double within(double x, double least, double most) { return x > least ? fmin(x, most) : least; }
-/* The lobe in the one-shot form: its share as documented, of a reflection within the limits that the library keeps. To
- * x belong 6 roundings of x + 0.3, to the share 4. */
-static inline void oneshot_share(sampler *d, const mcs_reflection *r) {
-    const double ax = within((double)r->alpha_x, 1e-4, 1e4);
-    const double ay = within((double)r->alpha_y, 1e-4, 1e4);
-    const double x =
-        (r->profile == MCS_PROFILE_GGX ? 1 : 3) / (2.0 * d->m->rows * d->m->rows * ax * ay * (double)r->wo.z) - 0.3;
-    const double rest = 1 - within((double)r->matte, 0, 1);
-    d->share = d->share_off = 0;
-    if (!(x > 0)) return;
-    d->share = rest * fmin(x / (1 + x), 0.95);
-    d->share_off = rest * 6 * eps * (x + 0.3) / ((1 + x) * (1 + x)) + 4 * eps * d->share;
-}
-static inline sampler sampler_make(const scene *m, const surface *s, int prepared) {
+static inline sampler sampler_make(const scene *m, const surface *s) {
     sampler d;
     sampler_start(&d, m, s);
-    d.status = mcs_product_build((mcs_product *)(void *)d.mem.at, d.mem.bytes, tiles_of(m), env_of(m), &s->r);
+    d.status = mcs_product_build(d.p, d.mem.bytes, tiles_of(m), env_of(m), &s->r, NULL);
     sampler_ready(&d);
     CHECK(d.status == MCS_OK, "build returns %d", (int)d.status);
     CHECK(d.share >= 0 && d.share <= 0.95f && (!(s->r.matte >= 1) || !(d.share > 0)), "share %g", d.share);
-    if (prepared) d.p = (mcs_product *)(void *)d.mem.at;
-    else oneshot_share(&d, &s->r);
-    if (prepared && !(s->r.matte >= 1)) d.most_fine = FINE_TILES; /* not a number counts as 0 */
-    if (d.share > 0) {
-        const float ax = (float)within((double)s->r.alpha_x, 1e-7, 1e4);
-        const float ay = (float)within((double)s->r.alpha_y, 1e-7, 1e4);
-        if (s->r.profile == MCS_PROFILE_GAUSS) d.gauss = mcs_ward_make(ax, ay, MCS_WARD_GMD);
-        else if (s->r.profile == MCS_PROFILE_PHONG) d.phong = mcs_phong_make(fmaxf(0.5f / ax / ay - 2, 0));
-        else d.own = mcs_ggx_make(ax, ay);
-    }
+    if (!(s->r.matte >= 1)) d.most_fine = FINE_TILES; /* not a number counts as 0 */
     return d;
 }
 static inline void sampler_free(sampler *d) {
@@ -186,31 +161,14 @@ static inline void sampler_free(sampler *d) {
     arena_free(&d->mem_alone);
 }
 static inline mcs_texel draw(const sampler *d, float u1, float u2) {
-    return d->p ? mcs_product_sample(d->p, tiles_of(d->m), env_of(d->m), u1, u2)
-                : mcs_oneshot_sample(tiles_of(d->m), env_of(d->m), &d->s->r, u1, u2);
+    return mcs_product_sample(d->p, tiles_of(d->m), env_of(d->m), u1, u2);
 }
 static inline double density(const sampler *d, mcs_vec3 w) {
-    return (double)(d->p ? mcs_product_pdf(d->p, tiles_of(d->m), env_of(d->m), w)
-                         : mcs_oneshot_pdf(tiles_of(d->m), env_of(d->m), &d->s->r, w));
+    return (double)mcs_product_pdf(d->p, tiles_of(d->m), env_of(d->m), w);
 }
-static inline double own_density(const sampler *d, mcs_vec3 w) {
-    const mcs_reflection *r = &d->s->r;
-    w = mcs_to_local(&r->frame, w);
-    if (r->profile == MCS_PROFILE_GAUSS) return (double)mcs_ward_pdf(&d->gauss, r->wo, w);
-    if (r->profile == MCS_PROFILE_PHONG) return (double)mcs_phong_pdf(&d->phong, r->wo, w);
-    return (double)mcs_ggx_vndf_pdf(&d->own, r->wo, w);
-}
-/* What the tiles have of the density. The prepared form can be asked for it; from the one-shot form the lobe is taken
- * off, which leaves the rounding of three operations and of the share; below FLT_MIN to 2^-149. `all`: with the lobe.
- */
-static inline double tile_density(const sampler *d, mcs_vec3 w, double *blur, double *all) {
-    *blur = 0;
-    *all = density(d, w);
-    if (!(d->share > 0)) return *all;
-    if (d->p) return (1 - d->share) * (double)mcs_product_pdf(d->alone, tiles_of(d->m), env_of(d->m), w);
-    const double peak = own_density(d, w);
-    *blur = 0x1p-148 + 4 * eps * *all + d->share_off * peak;
-    return *all - d->share * peak;
+/* What the tiles have of the density. */
+static inline double tile_density(const sampler *d, mcs_vec3 w) {
+    return (1 - d->share) * (double)mcs_product_pdf(d->alone, tiles_of(d->m), env_of(d->m), w);
 }
 static inline const node *fit_node(const fit *f, int k1, int k2) { return f->at + k1 * (f->parts + 1) + k2; }
 static inline int cell_of(int parts, double t) { return t > 0 ? (int)fmin(t * parts, parts - 1) : 0; }
@@ -292,21 +250,19 @@ static inline int look_at(const sampler *d, box b, double row_slack, double t1, 
     span s;
     const double light = direction_at(m, b, t1, t2, &w, &r, &s);
     if (!(light > 0)) return 0;
-    double all;
-    l->q = tile_density(d, w, &l->blur, &all) / light;
+    l->q = tile_density(d, w) / light;
     l->off = places_off(m, &s, r, row_slack);
-    l->blur = l->blur / light + l->q * (slack_of_row(m, r) + slack_of(m, light, r) + row_slack);
+    l->blur = l->q * (slack_of_row(m, r) + slack_of(m, light, r) + row_slack);
     if (!surely_in(m, (t1 - s.t1) / s.part1, (t2 - s.t2) / s.part2)) l->blur = INFINITY;
     return 1;
 }
 /* The nodes v of a cell, in the order of a fit, from four points at `in` and 1 - in of either side; of three choices
- * the least blurred where a lobe is taken off, else the first that is good. 0: no light. */
+ * the first that is good. 0: no light. */
 static inline int look_at_cell(const sampler *d, box b, double row_slack, int parts, int k1, int k2, double *v,
                                double *blur) {
     static const double inset[] = {0.1, 0.2, 0.3};
-    const int first = d->p || !(d->share > 0);
     *blur = INFINITY;
-    for (int i = 0; i < 3 && !(first && *blur < INFINITY); i++) {
+    for (int i = 0; i < 3 && !(*blur < INFINITY); i++) {
         const double in = inset[i];
         const double x = in / (1 - 2 * in); /* out to the node, in units of what is between the points */
         double wrong = 0;
@@ -325,11 +281,8 @@ static inline int look_at_cell(const sampler *d, box b, double row_slack, int pa
         for (int k = 0; k < 4; k++)
             u[k] = (1 + x) * ((1 + x) * l[k].q - x * l[k ^ 1].q) - x * ((1 + x) * l[k ^ 2].q - x * l[k ^ 3].q);
         doubt_add(&o, u, 0, parts);
-        wrong = (1 + 2 * x) * (1 + 2 * x) * (wrong + varies(&o, far));
-        if (i == 0 || !(wrong >= *blur)) {
-            *blur = wrong;
-            memcpy(v, u, sizeof u);
-        }
+        *blur = (1 + 2 * x) * (1 + 2 * x) * (wrong + varies(&o, far));
+        memcpy(v, u, sizeof u);
     }
     return 1;
 }
@@ -432,7 +385,6 @@ static inline void fill(mcs_pcg32 *rng, size_t n, float *u1, float *u2) {
 static inline sampler sampler_weights(const scene *m, const surface *s, const float *weight) {
     sampler d;
     sampler_start(&d, m, s);
-    d.p = (mcs_product *)(void *)d.mem.at;
     d.status = mcs_product_build_weights(d.p, d.mem.bytes, tiles_of(m), env_of(m), weight);
     sampler_ready(&d);
     CHECK(!(d.share > 0), "share %g", d.share);

@@ -528,7 +528,7 @@ static int tiles_build(void *to, size_t bytes, const void *from) {
 static int product_builds(void *to, size_t bytes, const void *from) {
     const source *s = (const source *)from;
     return s->weight ? mcs_product_build_weights((mcs_product *)to, bytes, s->t, s->e, s->weight)
-                     : mcs_product_build((mcs_product *)to, bytes, s->t, s->e, s->r);
+                     : mcs_product_build((mcs_product *)to, bytes, s->t, s->e, s->r, NULL);
 }
 
 static void test_same_maps(void) {
@@ -600,7 +600,7 @@ static void test_same_products(void) {
             }
             for (size_t i = 0; i < 2 * rows * rows; i++) weight[i] = i % 3 ? hash01((uint32_t)i) : 0;
             s.weight = weight;
-            check_same(mcs_product_bytes(rows), product_builds, &s, "product of weights", p.w, rows);
+            check_same(mcs_product_table_bytes(rows), product_builds, &s, "product of weights", p.w, rows);
             arena_free(&a);
             arena_free(&b);
             free(p.lum);

@@ -219,13 +219,12 @@ static void check_products(void) {
     mcs_tiles *other = (mcs_tiles *)malloc(bytes);
     static double p_room[MCS_PRODUCT_BYTES(16) / 8 + 1];
     mcs_product *p = (mcs_product *)(void *)p_room;
-    const mcs_reflection r = {mcs_frame_make(unit), unit, 0.5f, 0.5f, 0.5f, MCS_PROFILE_GGX};
+    const mcs_reflection r = {mcs_frame_make(unit), unit, 0.5f, 0.5f, 0.5f, MCS_PROFILE_GGX, 1};
     CHECK(t && other && !mcs_tiles_build(t, bytes, e, 16) && !mcs_tiles_build(other, bytes, e, 32), "tiles");
-    CHECK(!mcs_product_build(p, sizeof p_room, t, e, &r), "product");
+    CHECK(!mcs_product_build(p, sizeof p_room, t, e, &r, NULL), "product");
     TELLS_U("mcs_product_sample", mcs_product_sample(p, t, e, u, u));
-    TELLS_U("mcs_oneshot_sample", mcs_oneshot_sample(t, e, &r, u, u));
     TELLS("mcs_product_pdf", mcs_product_pdf(p, t, e, w));
-    TELLS("mcs_oneshot_pdf", mcs_oneshot_pdf(t, e, &r, w));
+    TELLS("mcs_tiles_of_direction", mcs_tiles_of_direction(t, e, w));
     asserted = 0;
     mcs_product_sample(p, other, e, 0.5f, 0.5f);
     CHECK(asserted > 0, "a sample by other tiles");

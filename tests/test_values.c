@@ -652,7 +652,7 @@ static void share_of_the_lobe(void) {
                 r.alpha_y = alphas[i][1];
                 r.matte = mattes[j];
                 r.profile = k == 0 ? MCS_PROFILE_GGX : k == 1 ? MCS_PROFILE_GAUSS : MCS_PROFILE_PHONG;
-                CHECK(mcs_product_build(p, memory.bytes, t, e, &r) == MCS_OK, "product");
+                CHECK(mcs_product_build(p, memory.bytes, t, e, &r, NULL) == MCS_OK, "product");
                 const ld m = (k ? 3 : 1) / (14 * 512.0L * (ld)alphas[i][0] * (ld)alphas[i][1] * 0.8L) - 0.03L;
                 const ld want = m > 0 ? (1 - (ld)mattes[j]) * fminl(m / (1 + m), 0.95L) : 0;
                 CHECK(fabsl((ld)p->brdf_share - want) <= 16 * EPS, "alphas %g %g, matte %g, profile %d: %g, not %Lg",
@@ -763,7 +763,7 @@ static lit_surface surface_under(const float *light, uint32_t w, uint32_t h, flo
     s.p = (mcs_product *)(void *)s.memory.at;
     s.r = glossy(alpha);
     CHECK(mcs_tiles_build(s.t, s.tiles.bytes, s.e, 16) == MCS_OK, "tiles");
-    CHECK(mcs_product_build(s.p, s.memory.bytes, s.t, s.e, &s.r) == MCS_OK && !(s.p->brdf_share > 0), "product");
+    CHECK(mcs_product_build(s.p, s.memory.bytes, s.t, s.e, &s.r, NULL) == MCS_OK && !(s.p->brdf_share > 0), "product");
     return s;
 }
 
@@ -790,12 +790,8 @@ static void mirrored(float alpha) {
         b.w.y = -b.w.y;
         const double p = (double)mcs_product_pdf(s.p, s.t, s.e, a.w);
         const double q = (double)mcs_product_pdf(s.p, s.t, s.e, b.w);
-        const double f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, a.w);
-        const double g = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, b.w);
         CHECK(fabs(p - q) <= 1e-4 * p, "(%g, %g, %g): %g, mirrored %g", (double)a.w.x, (double)a.w.y, (double)a.w.z, p,
               q);
-        CHECK(fabs(f - g) <= 1e-4 * f, "(%g, %g, %g): one-shot %g, mirrored %g", (double)a.w.x, (double)a.w.y,
-              (double)a.w.z, f, g);
     }
     surface_free(&s);
 }
@@ -814,35 +810,10 @@ static void black_rows(void) {
         const mcs_vec3 w = mcs_sphere_sample(u1, u2).w;
         const int black = mcs_env_texel(s.e, w).row % 2 == 0;
         const double p = (double)mcs_product_pdf(s.p, s.t, s.e, w);
-        const double f = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, w);
-        CHECK(black ? p == 0 && f == 0 : p >= 0 && f >= 0, "(%g, %g, %g): %g, one-shot %g", (double)w.x, (double)w.y,
-              (double)w.z, p, f);
+        CHECK(black ? p == 0 : p >= 0, "(%g, %g, %g): %g", (double)w.x, (double)w.y, (double)w.z, p);
         lit += p > 0;
     }
     CHECK(lit > 500, "%d of 3000 directions", lit);
-    surface_free(&s);
-}
-
-/* Draws of the one-shot form over scattered light: none is lost while there is light above the horizon, and the density
- * of a draw is that of its direction, to the rounding of its place as above. */
-static void one_shot_draws(void) {
-    enum { W = 64, H = 32 };
-    uint64_t seed = mcst_seed_for("product", "one-shot", 0);
-    int lost = 0;
-    float light[W * H];
-    for (int i = 0; i < W * H; i++) light[i] = mcst_mix(&seed) % 40 ? 0.0f : (float)(1 + mcst_mix(&seed) % 100);
-    lit_surface s = surface_under(light, W, H, 0.5f);
-    for (int i = 0; i < 20000; i++) {
-        float u[4];
-        mcst_uniform(&seed, 2, u, u + 2);
-        if (i % 100 == 0) s.r.frame = mcs_frame_make(mcs_sphere_sample(u[0], u[2]).w);
-        const mcs_texel x = mcs_oneshot_sample(s.t, s.e, &s.r, u[1], u[3]);
-        const double p = (double)mcs_oneshot_pdf(s.t, s.e, &s.r, x.w);
-        lost += !(x.pdf > 0);
-        CHECK(fabs(p - (double)x.pdf) <= 1e-4 * (double)x.pdf, "u %a %a: density %g, of its direction %g", (double)u[1],
-              (double)u[3], (double)x.pdf, p);
-    }
-    CHECK(lost == 0, "%d draws are lost", lost);
     surface_free(&s);
 }
 
@@ -902,6 +873,5 @@ int main(int argc, char **argv) {
     if (mcst_case("mirrored, alpha 0.5")) mirrored(0.5f);
     if (mcst_case("mirrored, alpha 0.1")) mirrored(0.1f);
     if (mcst_case("black rows")) black_rows();
-    if (mcst_case("one-shot draws")) one_shot_draws();
     return mcst_finish();
 }

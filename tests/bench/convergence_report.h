@@ -191,10 +191,10 @@ static double variance_of(const result *r, int how) {
 }
 
 static void print_variances(const map *maps, int count, const result *all) {
-    static const strategy rival[] = {COSINE, BRDF, ENVIRONMENT, MIS_BALANCE, MIS_POWER, ONE_SHOT};
+    static const strategy rival[] = {COSINE, BRDF, ENVIRONMENT, MIS_BALANCE, MIS_POWER};
     enum { RIVALS = sizeof rival / sizeof *rival };
-    printf("\nVariance per sample over that of product sampling (prepared), with independent points\n%-18s %-10s",
-           "material", "map");
+    printf("\nVariance per sample over that of product sampling, with independent points\n%-18s %-10s", "material",
+           "map");
     for (int k = 0; k < RIVALS; k++) printf(" %-11s", strategy_name[rival[k]]);
     printf("\n");
     for (int m = 0; m < MATERIALS; m++) {
@@ -214,7 +214,7 @@ static double seconds_per_sample(const result *r, int how) {
 
 /* A shading point as a renderer meets it: one set-up, then the few samples that the point is given. */
 static void print_points(const map *maps, int count, const result *all) {
-    static const strategy shown[] = {PRODUCT_1, PRODUCT_4, PRODUCT_16, PRODUCT_64, ONE_SHOT};
+    static const strategy shown[] = {PRODUCT_1, PRODUCT_4, PRODUCT_16, PRODUCT_64};
     enum { SHOWN = sizeof shown / sizeof *shown };
     printf("\nProduct sampling by samples per shading point, independent: microseconds a point, set-up counted; rms "
            "relative error "
@@ -222,7 +222,7 @@ static void print_points(const map *maps, int count, const result *all) {
     printf("its estimate; mean squared error of MIS (the best of balance, power, one-sample) in the same time, over "
            "its own\n%-29s",
            "");
-    for (int k = 0; k < SHOWN; k++) printf(" %-21s", k < SHOWN - 1 ? strategy_name[shown[k]] : "one-shot, 1 sample");
+    for (int k = 0; k < SHOWN; k++) printf(" %-21s", strategy_name[shown[k]]);
     printf("\n%-18s %-10s", "material", "map");
     for (int k = 0; k < SHOWN; k++) printf(" us    error %%  MIS/it");
     printf("\n");
@@ -235,7 +235,7 @@ static void print_points(const map *maps, int count, const result *all) {
             printf("%-18s %-10s", materials[m].name, maps[e].name);
             for (int k = 0; k < SHOWN; k++) {
                 const int how = (int)shown[k];
-                const double samples = k < SHOWN - 1 ? pow(4, k) : 1;
+                const double samples = pow(4, k);
                 const double t = seconds_per_sample(r, how);
                 const double v = variance_of(r, how);
                 printf(" %-5.3g %-8.3g %-6.3g", 1e6 * samples * t, 100 * sqrt(v / samples), mis / (v * t));
@@ -306,13 +306,13 @@ static void print_doubts(int count, const result *all) {
            BLOCK, BLOCK);
 }
 
-/* The quadrature against the means of MIS and of both forms of product sampling with Sobol points and the most samples:
+/* The quadrature against the means of MIS and of product sampling with Sobol points and the most samples:
  * integrals over the lobe and the map's table that share no code with it. 8 runs a point: were their means normal, t
  * would have 7 degrees of freedom and exceed 9 by chance once in 2e4. They are not where few samples are very bright:
  * all 8 runs may miss those. So a difference must also exceed 5 standard errors that take no luck into account: the
  * variance of a scrambled Sobol net in two dimensions is at most twice that of independent points (Owen 1997). */
 static int print_references(int count, const result *all) {
-    static const strategy checked[] = {MIS_POWER, PRODUCT_64, ONE_SHOT};
+    static const strategy checked[] = {MIS_POWER, PRODUCT_64};
     double quadrature = 0;
     int all_bad = 0;
     for (int i = 0; i < MATERIALS * count; i++) quadrature = fmax(quadrature, all[i].reference_error);

@@ -294,12 +294,11 @@ typedef enum {
     PRODUCT_4,
     PRODUCT_16,
     PRODUCT_64,
-    ONE_SHOT,
     STRATEGIES
 } strategy;
 static const char *const strategy_name[STRATEGIES] = {"uniform",     "cosine",     "BRDF",       "map",
                                                       "MIS balance", "MIS power",  "one-sample", "product 1",
-                                                      "product 4",   "product 16", "product 64", "one-shot"};
+                                                      "product 4",   "product 16", "product 64"};
 
 static float heuristic(strategy how, float pf, float pg) {
     return how == MIS_BALANCE ? mcs_mis_balance(pf, pg) : how == MIS_POWER ? mcs_mis_power(pf, pg) : 1;
@@ -364,13 +363,13 @@ static int like_product_64(int how) { return how >= PRODUCT_1 && how < PRODUCT_6
 
 static mcs_product *prepared; /* at the shading point whose turn it is */
 
-/* A set-up for every `run` samples; none: the one-shot form. */
-static void by_product(const scene *s, block *b, size_t n, size_t run) {
+/* A set-up for every `run` samples. */
+static void by_product(const scene *s, block *b, size_t n, uint32_t run) {
+    mcs_reflection like = s->like;
+    like.draws = run;
     for (size_t i = 0; i < n; i++) {
-        if (run && i % run == 0)
-            mcs_product_build(prepared, mcs_product_bytes(TILES), s->e->tiles, s->e->table, &s->like);
-        const mcs_texel t = run ? mcs_product_sample(prepared, s->e->tiles, s->e->table, b->u1[i], b->u2[i])
-                                : mcs_oneshot_sample(s->e->tiles, s->e->table, &s->like, b->u1[i], b->u2[i]);
+        if (i % run == 0) mcs_product_build(prepared, mcs_product_bytes(TILES), s->e->tiles, s->e->table, &like, NULL);
+        const mcs_texel t = mcs_product_sample(prepared, s->e->tiles, s->e->table, b->u1[i], b->u2[i]);
         const mcs_vec3 w = mcs_to_local(&s->frame, t.w);
         b->x[i] = w.x;
         b->y[i] = w.y;
@@ -400,8 +399,7 @@ static void estimate(const scene *s, strategy how, generator kind, uint32_t seed
             source_points(&g, &b, at, size);
             if (how == UNIFORM || how == COSINE) by_hemisphere(s, &b, size, how);
             else if (how == ONE_SAMPLE) by_one(s, &b, size);
-            else if (how == ONE_SHOT) by_product(s, &b, size, 0);
-            else if (how >= PRODUCT_1) by_product(s, &b, size, (size_t)1 << 2 * (how - PRODUCT_1));
+            else if (how >= PRODUCT_1) by_product(s, &b, size, 1u << 2 * (how - PRODUCT_1));
             else if (how == ENVIRONMENT || half) by_map(s, &b, size, how);
             else by_brdf(s, &b, size, how);
             for (uint32_t i = 0; i < size; i += step) {
