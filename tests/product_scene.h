@@ -22,9 +22,44 @@ static inline double scale(void) {
     return f > 0 ? f : 1;
 }
 static inline float hash01(uint32_t i, uint32_t stream) { return mcs_u01(mcs_philox(mcst.seed, i, stream).v[0]); }
+static inline void *memory(size_t bytes) {
+    void *p = malloc(bytes);
+    if (!p) {
+        fprintf(stderr, "out of memory\n");
+        exit(2);
+    }
+    return p;
+}
 
-/* ---- pictures and surfaces ---- */
+/* ---- pictures ---- */
 
+typedef enum { SMOOTH, SUN, NOISE, ONE_TEXEL, HALF, CONSTANT, BLACK_MAP, SPARSE, POLES, ROOM, OTHER } picture;
+static const char *const picture_name[] = {"smooth", "sun",    "noise", "one texel", "half", "constant",
+                                           "black",  "sparse", "poles", "room",      "other"};
+
+/* Room: dim, with four windows and a lamp. */
+static inline float light_at(picture kind, uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
+    const double up = cos(pi * (r + 0.5) / h);
+    const double x = 8.0 * (c + 0.5) / w;
+    const double y = (r + 0.5) / h;
+    const uint32_t k = r * w + c;
+    const double smooth = 1 + 0.6 * up + 0.3 * sin(pi / 4 * x) * (1 - up * up);
+    switch (kind) {
+    case SMOOTH: return (float)smooth;
+    case SUN: return c == w / 5 && r == h / 4 ? 3000.0f : r < h / 2 ? (float)smooth : 0.1f;
+    case NOISE: return hash01(k, 3);
+    case ONE_TEXEL: return c == w / 3 && r == h / 3 ? 5.0f : 0.0f;
+    case HALF: return c < w / 2 ? (float)smooth : 0.0f;
+    case CONSTANT: return 2.0f;
+    case SPARSE: return hash01(k, 4) < 0.1f ? 1.0f / (0.001f + hash01(k, 5)) : 0.0f;
+    case POLES: return r == 0 || r == h - 1 ? 1.0f + (float)(c % 3) / (float)w : 0.0f;
+    case ROOM:
+        return y > 0.35 && y < 0.45 && fmod(x, 2) < 0.6 ? 30 : y < 0.08 ? 80 : 0.3f + 0.2f * hash01(k, 6) * (float)y;
+    default: return 0;
+    }
+}
+
+/* A picture with its map and tiles. */
 typedef struct {
     const char *name;
     uint32_t w, h;
@@ -33,7 +68,6 @@ typedef struct {
     uint32_t rows;
     int black;
     double *area, *row_sum, total; /* solid angle of a texel and light, by row; all light */
-    double *line;                  /* of every column of tiles, by row: what its texels there add up to */
 } scene;
 
 static inline const mcs_env *env_of(const scene *m) { return (const mcs_env *)(const void *)m->env.at; }
@@ -43,14 +77,19 @@ static inline const mcs_tiles *tiles_of(const scene *m) { return (const mcs_tile
 static inline double weight_of(const scene *m, uint32_t c, uint32_t r) {
     return m->black ? 1 : m->light[(size_t)r * m->w + c];
 }
-
-static inline void *memory(size_t bytes) {
-    void *p = malloc(bytes);
-    if (!p) {
-        fprintf(stderr, "out of memory\n");
-        exit(2);
-    }
-    return p;
+/* The tile of a texel as the block comment has it: rows x 2 rows of them, column by column; and its texels. */
+static inline uint32_t tile_at(const scene *m, uint32_t c, uint32_t r) {
+    return (uint32_t)(((c + 1.0) * 2 * m->rows - 1) / m->w) * m->rows + (uint32_t)(((r + 1.0) * m->rows - 1) / m->h);
+}
+typedef struct {
+    uint32_t r0, r1, c0, c1;
+} box;
+static inline box tile_box(const scene *m, uint32_t tile) {
+    const uint32_t i = tile % m->rows;
+    const uint32_t j = tile / m->rows;
+    const box b = {i * m->h / m->rows, (i + 1) * m->h / m->rows, j * m->w / (2 * m->rows),
+                   (j + 1) * m->w / (2 * m->rows)};
+    return b;
 }
 /* Takes the memory of `light`. */
 static inline scene scene_from(const char *name, uint32_t w, uint32_t h, float *light, uint32_t rows) {
@@ -66,18 +105,11 @@ static inline scene scene_from(const char *name, uint32_t w, uint32_t h, float *
     m.area = (double *)memory(h * sizeof *m.area);
     m.row_sum = (double *)memory(h * sizeof *m.row_sum);
     m.total = 0;
-    for (size_t k = 0; k < h; k++) {
-        m.area[k] = (double)solid_angle((uint32_t)k, w, h);
-        m.row_sum[k] = 0;
-        for (uint32_t c = 0; c < w; c++) m.row_sum[k] += weight_of(&m, c, (uint32_t)k) * m.area[k];
-        m.total += m.row_sum[k];
-    }
-    m.line = (double *)memory(2 * (size_t)rows * h * sizeof *m.line);
-    for (size_t k = 0; k < 2 * (size_t)rows * h; k++) {
-        const uint32_t j = (uint32_t)(k / h);
-        const uint32_t end = (j + 1) * w / (2 * rows);
-        m.line[k] = 0;
-        for (uint32_t c = j * w / (2 * rows); c < end; c++) m.line[k] += weight_of(&m, c, (uint32_t)(k % h));
+    for (uint32_t r = 0; r < h; r++) {
+        m.area[r] = (double)solid_angle(r, w, h);
+        m.row_sum[r] = 0;
+        for (uint32_t c = 0; c < w; c++) m.row_sum[r] += weight_of(&m, c, r) * m.area[r];
+        m.total += m.row_sum[r];
     }
     m.env = arena_make(mcs_env_bytes(w, h));
     const mcs_status a = mcs_env_build((mcs_env *)(void *)m.env.at, m.env.bytes, &image);
@@ -87,81 +119,20 @@ static inline scene scene_from(const char *name, uint32_t w, uint32_t h, float *
     CHECK(arena_intact(&m.tiles), "%s: tiles wrote outside their %zu bytes", name, m.tiles.bytes);
     return m;
 }
+static inline scene scene_make(picture kind, uint32_t w, uint32_t h, uint32_t rows) {
+    float *light = (float *)memory((size_t)w * h * sizeof *light);
+    for (uint32_t k = 0; k < w * h; k++) light[k] = light_at(kind, k % w, k / w, w, h);
+    return scene_from(picture_name[kind], w, h, light, rows);
+}
 static inline void scene_free(scene *m) {
     arena_free(&m->env);
     arena_free(&m->tiles);
     free(m->light);
     free(m->area);
     free(m->row_sum);
-    free(m->line);
 }
 
-typedef float (*light_fn)(uint32_t col, uint32_t row, uint32_t w, uint32_t h);
-
-static inline float up_of(uint32_t r, uint32_t h) { return (float)cos(pi * (r + 0.5) / h); }
-static inline float v_smooth(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return 1.0f + 0.6f * up_of(r, h) + 0.3f * (float)sin(2 * pi * (c + 0.5) / w) * (1 - up_of(r, h) * up_of(r, h));
-}
-static inline float v_sun(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return c == w / 5 && r == h / 4 ? 3000.0f : r < h / 2 ? v_smooth(c, r, w, h) : 0.1f;
-}
-static inline float v_noise(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    (void)h;
-    return hash01(r * w + c, 3);
-}
-static inline float v_one_texel(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return c == w / 3 && r == h / 3 ? 5.0f : 0.0f;
-}
-static inline float v_spark(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return c == w / 3 && r == h / 3 ? 1e3f : 1.0f;
-}
-static inline float v_half(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return c < w / 2 ? v_smooth(c, r, w, h) : 0.0f;
-}
-static inline float v_constant(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    (void)c;
-    (void)r;
-    (void)w;
-    (void)h;
-    return 2.0f;
-}
-static inline float v_black(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    (void)c;
-    (void)r;
-    (void)w;
-    (void)h;
-    return 0.0f;
-}
-static inline float v_sparse(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    (void)h;
-    return hash01(r * w + c, 4) < 0.1f ? 1.0f / (0.001f + hash01(r * w + c, 5)) : 0.0f;
-}
-static inline float v_poles(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    return r == 0 || r == h - 1 ? 1.0f + (float)(c % 3) / (float)w : 0.0f;
-}
-/* Lights of a room: a dim room with four windows and a lamp. */
-static inline float v_room(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    const double x = 8.0 * (c + 0.5) / w;
-    const double y = (r + 0.5) / h;
-    if (y > 0.35 && y < 0.45 && fmod(x, 2) < 0.6) return 30.0f;
-    if (y < 0.08) return 80.0f;
-    return 0.3f + 0.2f * hash01(r * w + c, 6) * (float)y;
-}
-
-/* Light from directions low over the horizon of the fifth normal below. */
-static inline float v_rim(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    const double t = pi * (r + 0.5) / h;
-    const double p = 2 * pi * (c + 0.5) / w;
-    const double z = 0.6 * sin(t) * cos(p) + 0.48 * sin(t) * sin(p) + 0.64 * cos(t);
-    return fabs(z) < 0.2 ? 0.5f + hash01(r * w + c, 18) : 0.0f;
-}
-
-static inline scene scene_make(const char *name, uint32_t w, uint32_t h, light_fn value, uint32_t rows) {
-    float *light = (float *)memory((size_t)w * h * sizeof *light);
-    for (uint32_t r = 0; r < h; r++)
-        for (uint32_t c = 0; c < w; c++) light[(size_t)r * w + c] = value(c, r, w, h);
-    return scene_from(name, w, h, light, rows);
-}
+/* ---- surfaces ---- */
 
 typedef struct {
     const char *name;
@@ -191,8 +162,7 @@ enum { LOBES = (int)(sizeof lobes / sizeof *lobes), FIRST_GAUSS = 10 }; /* from 
 
 typedef struct {
     mcs_reflection r;
-    double s[3], t[3], n[3], wo[3], mirror[3], ax, ay, matte, width, power;
-    mcs_profile profile;
+    double s[3], t[3], n[3], wo[3], mirror[3], ax, ay, width, power;
 } surface;
 
 static inline double dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -215,17 +185,12 @@ static inline mcs_vec3 local_wo(double cosine, double turn) {
     return vec(s * cos(2 * pi * turn), s * sin(2 * pi * turn), cosine);
 }
 static inline surface surface_make(mcs_vec3 normal, mcs_vec3 wo, lobe l) {
-    mcs_frame f = mcs_frame_make(normal);
-    const float c = 0.8f;
-    const float d = 0.6f; /* another tangent than the library's own */
-    const mcs_vec3 a = f.s;
-    const mcs_vec3 b = f.t;
-    f.s.x = c * a.x + d * b.x;
-    f.s.y = c * a.y + d * b.y;
-    f.s.z = c * a.z + d * b.z;
-    f.t.x = c * b.x - d * a.x;
-    f.t.y = c * b.y - d * a.y;
-    f.t.z = c * b.z - d * a.z;
+    const mcs_frame own = mcs_frame_make(normal);
+    const mcs_vec3 along = {0.8f, 0.6f, 0}; /* another tangent than the library's own */
+    const mcs_vec3 across = {-0.6f, 0.8f, 0};
+    mcs_frame f = own;
+    f.s = mcs_to_world(&own, along);
+    f.t = mcs_to_world(&own, across);
     surface s;
     s.r.frame = f;
     s.r.wo = wo;
@@ -240,8 +205,6 @@ static inline surface surface_make(mcs_vec3 normal, mcs_vec3 wo, lobe l) {
     to3(s.wo, wo);
     s.ax = l.ax;
     s.ay = l.ay;
-    s.matte = l.matte;
-    s.profile = l.profile;
     s.power = fmax(1 / (2 * s.ax * s.ay) - 2, 0);
     for (int k = 0; k < 3; k++) s.mirror[k] = -s.s[k] * s.wo[0] - s.t[k] * s.wo[1] + s.n[k] * s.wo[2];
     s.width = 2 * (s.ax < s.ay ? s.ax : s.ay) * (s.wo[2] > 0.05 ? s.wo[2] : 0.05);
@@ -263,16 +226,16 @@ static inline double reflect_as(const surface *s, const double *w, int of_tiles,
     const double hh = hx * hx + hy * hy + hz * hz;
     *visible = 0;
     if (!(z > 0)) return 0;
-    if (s->matte >= 1) return z / pi;
+    if (s->r.matte >= 1) return z / pi;
     double q, d, f;
-    if (s->profile == MCS_PROFILE_GAUSS) {
+    if (s->r.profile == MCS_PROFILE_GAUSS) {
         const double c = hz / sqrt(hh);
         const double along = (o[0] * hx + o[1] * hy + o[2] * hz) / sqrt(hh); /* of the unit half-vector */
         d = falloff((hx * hx / (s->ax * s->ax) + hy * hy / (s->ay * s->ay)) / (hz * hz), of_tiles) /
             (pi * s->ax * s->ay);
         *visible = d / (c * c * c) / (4 * along);
         f = d * hh / (hz * hz * hz * hz);
-    } else if (s->profile == MCS_PROFILE_PHONG) {
+    } else if (s->r.profile == MCS_PROFILE_PHONG) {
         const double away = hx * hx + hy * hy + (z - o[2]) * (z - o[2]);
         q = (z * o[2] - x * o[0] - y * o[1]) / sqrt((x * x + y * y + z * z) * dot3(o, o));
         d = of_tiles ? falloff(0.5 * s->power * away, 1) : q > 0 ? pow(q, s->power) : 0;
@@ -286,15 +249,12 @@ static inline double reflect_as(const surface *s, const double *w, int of_tiles,
         *visible = d / (2 * (o[2] + to));
         f = d / (2 * (o[2] * ti + z * to));
     }
-    return s->matte * z / pi + (1 - s->matte) * f * z;
+    return (double)s->r.matte * z / pi + (1 - (double)s->r.matte) * f * z;
 }
-static inline double reflect(const surface *s, const double *w, double *visible) {
-    return reflect_as(s, w, 0, visible);
-}
-static inline double reflect_f(const surface *s, mcs_vec3 w, double *visible) {
+static inline double reflect(const surface *s, mcs_vec3 w, double *visible) {
     double d[3];
     to3(d, w);
-    return reflect(s, d, visible);
+    return reflect_as(s, d, 0, visible);
 }
 /* Of a Gaussian or Phong's lobe: it has fallen to exp(-root^2) of its peak, or below; in steps of `scale` the root
  * changes by 1 at most. With slopes h.xy / h.z = m the gradient of |m / alpha| is at most sqrt(1 + |m|^2) / (alpha
@@ -310,7 +270,7 @@ static inline fall fall_at(const surface *s, const double *w) {
     const double mx = hx / hz;
     const double my = hy / hz;
     fall f;
-    if (s->profile == MCS_PROFILE_PHONG) {
+    if (s->r.profile == MCS_PROFILE_PHONG) {
         f.root = sqrt(0.5 * s->power * (hx * hx + hy * hy + (z - s->wo[2]) * (z - s->wo[2])));
         f.scale = sqrt(2 / s->power);
     } else {
@@ -323,7 +283,7 @@ static inline fall fall_at(const surface *s, const double *w) {
  * others: the logarithm is -root^2 but for factors of less than e^19 here, a local direction is rounded by 8 eps, and
  * exp(-87) may be 0. */
 static inline double lobe_off(const surface *s, mcs_vec3 w, double visible) {
-    if (s->profile == MCS_PROFILE_GGX) return 2e-5 * visible;
+    if (s->r.profile == MCS_PROFILE_GGX) return 2e-5 * visible;
     double d[3];
     to3(d, w);
     const fall f = fall_at(s, d);
@@ -334,16 +294,19 @@ static const mcs_vec3 normals[] = {
     {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {0.6f, 0.48f, 0.64f}, {-0.8f, 0.6f, 0}, {0.36f, -0.48f, -0.8f}};
 enum { NORMALS = (int)(sizeof normals / sizeof *normals) };
 
+static inline void direction_to(double *w, double polar, double azimuth) {
+    w[0] = sin(polar) * cos(azimuth);
+    w[1] = sin(polar) * sin(azimuth);
+    w[2] = cos(polar);
+}
 /* The highest of `sub` + 1 by `sub` + 1 points of a texel over the horizon. */
 static inline double highest(const scene *m, const double *n, uint32_t c, uint32_t r, int sub) {
     double top = -1;
-    for (int i = 0; i <= sub; i++) {
-        const double t = pi * (r + (double)i / sub) / m->h;
-        for (int j = 0; j <= sub; j++) {
-            const double p = 2 * pi * (c + (double)j / sub) / m->w;
-            const double z = n[0] * sin(t) * cos(p) + n[1] * sin(t) * sin(p) + n[2] * cos(t);
-            if (z > top) top = z;
-        }
+    for (int i = 0; i < (sub + 1) * (sub + 1); i++) {
+        double w[3];
+        direction_to(w, pi * (r + (double)(i / (sub + 1)) / sub) / m->h,
+                     2 * pi * (c + (double)(i % (sub + 1)) / sub) / m->w);
+        top = fmax(top, dot3(n, w));
     }
     return top;
 }
@@ -360,15 +323,15 @@ typedef struct {
  * the little that is there. */
 static inline int shapely(const surface *s, const double *w, double size) {
     double away = 0;
-    if (s->matte >= 1) return 0;
-    if (s->profile == MCS_PROFILE_GGX) {
+    if (s->r.matte >= 1) return 0;
+    if (s->r.profile == MCS_PROFILE_GGX) {
         for (int i = 0; i < 3; i++) away += (w[i] - s->mirror[i]) * (w[i] - s->mirror[i]);
         away = sqrt(away) > size ? sqrt(away) - size : 0;
         return size > 0.5 * sqrt(s->width * s->width + away * away);
     }
     const fall f = fall_at(s, w);
     return (size > 0.5 * f.scale && f.root - 2 * size / f.scale < 6) ||
-           (s->profile == MCS_PROFILE_PHONG && size > 0.05 && fabs(dot3(s->mirror, w)) < size);
+           (s->r.profile == MCS_PROFILE_PHONG && size > 0.05 && fabs(dot3(s->mirror, w)) < size);
 }
 /* Over a cell of azimuth and polar angle: three Gauss points each way; at the horizon, where there is a kink, in cells
  * of 0.005, each wrong by less than 0.005^3 / 10: 1256 of them, with both signs, by some 5e-7 together. */
@@ -381,9 +344,7 @@ static inline void add_cell(const surface *s, double p0, double p1, double t0, d
     const double broad = (p1 - p0) * sin(t) + 1e-9;
     const double size = high > broad ? high : broad;
     double w[3];
-    w[0] = sin(t) * cos(p);
-    w[1] = sin(t) * sin(p);
-    w[2] = cos(t);
+    direction_to(w, t, p);
     const double up = dot3(s->n, w);
     if (up < -size) return;
     if (size > 0.2 || shapely(s, w, size) || (up < size && size > 0.005)) {
@@ -399,11 +360,9 @@ static inline void add_cell(const surface *s, double p0, double p1, double t0, d
             const double a = t0 + high * node[i];
             const double b = p0 + (p1 - p0) * node[j];
             const double area = sin(a) * high * (p1 - p0);
-            w[0] = sin(a) * cos(b);
-            w[1] = sin(a) * sin(b);
-            w[2] = cos(a);
+            direction_to(w, a, b);
             double visible;
-            sum->reflected += weight[i] * weight[j] * area * reflect(s, w, &visible);
+            sum->reflected += weight[i] * weight[j] * area * reflect_as(s, w, 0, &visible);
             sum->visible += weight[i] * weight[j] * area * visible;
         }
 }
@@ -414,11 +373,8 @@ static inline mass texel_mass(const scene *m, const surface *s, uint32_t c, uint
 }
 static inline double true_light(const scene *m, const surface *s) {
     double sum = 0;
-    for (uint32_t r = 0; r < m->h; r++)
-        for (uint32_t c = 0; c < m->w; c++) {
-            const double light = m->light[(size_t)r * m->w + c];
-            if (light > 0) sum += light * texel_mass(m, s, c, r).reflected;
-        }
+    for (uint32_t k = 0; k < m->w * m->h; k++)
+        if (m->light[k] > 0) sum += m->light[k] * texel_mass(m, s, k % m->w, k / m->w).reflected;
     return sum;
 }
 #endif
