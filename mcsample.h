@@ -7761,6 +7761,7 @@ MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mc
 typedef struct {
     mcsi_draw draw[MCSI_ENV_BLOCK];
     mcsi_spot spot[MCSI_ENV_BLOCK];
+    int32_t found[MCSI_ENV_BLOCK]; /* 0: a bad direction */
     const mcs_env_window *window[MCSI_ENV_BLOCK];
     const float *grid[MCSI_ENV_BLOCK];
     uint32_t tile_row[MCSI_ENV_BLOCK];
@@ -7832,11 +7833,11 @@ MCSI_CORE void mcsi_product_block_find(const mcs_product *p, const mcs_tiles *t,
                                        mcsi_product_block *b, size_t n, const mcsi_angles_block *angles) {
     for (size_t k = 0; k < n; k++) {
         const mcsi_angles a = {angles->off_pole[k], angles->polar[k], angles->azimuth[k]};
-        const int bad = !(a.off_pole < 4.0f);
         const mcsi_angles up = {0.0f, 0.0f, 0.0f};
-        b->spot[k] = mcsi_env_spot(e, bad ? up : a);
+        b->found[k] = a.off_pole < 4.0f;
+        b->spot[k] = mcsi_env_spot(e, b->found[k] ? a : up);
         const mcsi_tile tile = mcsi_tile_of_spot(t, e, &b->spot[k]);
-        b->draw[k].density = bad ? 0.0 : mcsi_product_tile_probability(p, tile);
+        b->draw[k].density = b->found[k] ? mcsi_product_tile_probability(p, tile) : 0.0;
         mcsi_product_block_tile(p, t, b, k, tile);
         MCSI_PREFETCH(mcsi_env_sums(e, b->spot[k].row) + b->spot[k].col);
     }
@@ -7960,6 +7961,7 @@ MCS_FN void mcsi_product_block_mix(const mcs_product *p, const mcs_tiles *t, con
     for (size_t k = 0; k < s->lobes; k++) {
         r->row[k] = b->spot[k].row;
         r->col[k] = b->spot[k].col;
+        s->ok[k] &= b->found[k];
     }
     for (size_t k = s->lobes; k < n; k++) {
         if (p->dark) mcsi_texels_put(&into, k, mcsi_no_texel(e));
@@ -8006,7 +8008,7 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         mcsi_product_block_pdf(p, t, e, &b, m, x + i, y + i, z + i, density);
         if (p->brdf_share > 0.0f) mcsi_lobe_mix_n(&p->lobe, p->brdf_share, m, x + i, y + i, z + i, density);
-        MCSI_COPY(pdf + i, density, m * sizeof *pdf);
+        for (size_t k = 0; k < m; k++) pdf[i + k] = b.found[k] ? density[k] : 0.0f;
     }
 }
 #endif
