@@ -1504,11 +1504,11 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  *   tiles       mcs_tiles_build, once per map.
  *   prepared    mcs_product_build, once per shading point. For several draws at a point, and for one in the open.
  *   of a region mcs_product_build_region, for a part of a scene in whose points one table is drawn from. It knows which
- *               light is hidden there. For one draw at a point: it costs no more than a draw from the map. See [region].
+ *               light is hidden there. For one draw at a point: it costs no more than one from the map. See [region].
  *   of weights  mcs_product_build_weights, for anything else: one weight per tile.
  *
- * All are drawn from by mcs_product_sample. Pair the last two with one sample of the BRDF (mcs_mis_balance): they do not
- * know the point's own lobe.
+ * All are drawn from by mcs_product_sample. Pair the last two with one sample of the BRDF (mcs_mis_balance): they do
+ * not know the point's own lobe.
  *
  *   t           tiles of the map
  *   e           the map
@@ -1652,8 +1652,8 @@ MCS_API mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e,
 /* The world direction in which the light of tile k lies, k < rows cols; any larger k counts as the last. It is the
  * middle of a tile that has no light. */
 MCS_API mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k);
-/* The tile of a texel, and of a world direction. rows cols, which is no tile, for what lies outside the map and for a
- * bad direction. */
+/* The tile of a texel, and with mcs_tiles_of_direction of a world direction. rows cols, which is no tile, for what lies
+ * outside the map and for a bad direction. */
 MCS_API uint32_t mcs_tiles_of_texel(const mcs_tiles *t, const mcs_env *e, uint32_t col, uint32_t row);
 MCS_API uint32_t mcs_tiles_of_direction(const mcs_tiles *t, const mcs_env *e, mcs_vec3 w);
 
