@@ -145,7 +145,6 @@ typedef struct {
     uint32_t w, h;
     mcs_profile profile;
 } extreme_map;
-
 static void check_extreme_surfaces(const extreme_map *map, uint32_t rows) {
     static const float alphas[] = {1e-6f, 1e-4f, 1e-3f, 0.0f, 1e4f, 1e10f, INFINITY, NAN, -1.0f, 0.3f};
     static const float mattes[] = {0.0f, 1.0f, 0.5f, NAN, -1.0f, 2.0f};
@@ -320,15 +319,6 @@ static void test_memory(void) {
 
 /* ---- arrays ---- */
 
-/* A draw by array is that of sample. Where a*b + c is contracted the places of both differ by rounding, and with them
- * perhaps the texel: there its density has to be that of its direction. */
-static int same_draw(const sampler *d, mcs_texel t, mcs_texel by_array) {
-    if (!mcst_arrays_contract()) return !memcmp(&t, &by_array, sizeof t);
-    const uint32_t k = texel_number(d->m, by_array.w);
-    by_array.col = k % d->m->w;
-    by_array.row = k / d->m->w;
-    return (t.pdf > 0) == (by_array.pdf > 0) && (!(t.pdf > 0) || agrees(d, by_array));
-}
 /* The outputs of an array of draws. */
 enum { MOST = 150 };
 typedef struct {
@@ -336,15 +326,16 @@ typedef struct {
     uint32_t k[2][MOST + 1];
 } outputs;
 /* n draws from entry `off` on into those outputs that are wanted: x, y, z, pdf, col, row. */
-static void draw_array(const sampler *d, int n, int off, const float *u1, const float *u2, int wanted, outputs *out) {
+static void draw_array(const sampler *d, int n, int off, const float *const u[2], int wanted, outputs *out) {
     float *f[4];
     for (int k = 0; k < 4; k++) f[k] = wanted >> k & 1 ? out->f[k] + off : NULL;
-    mcs_product_sample_n(d->p, tiles_of(d->m), env_of(d->m), (size_t)n, u1 + off, u2 + off, f[0], f[1], f[2], f[3],
+    mcs_product_sample_n(d->p, tiles_of(d->m), env_of(d->m), (size_t)n, u[0] + off, u[1] + off, f[0], f[1], f[2], f[3],
                          wanted & 16 ? out->k[0] + off : NULL, wanted & 32 ? out->k[1] + off : NULL);
 }
 /* Bad numbers are among them. Where x and y are wanted they go over u1 and u2, or the other way. */
 static void check_array(const sampler *d, mcs_pcg32 *rng, int n, int off) {
     float u1[MOST + 1], u2[MOST + 1];
+    const float *const own[2] = {u1, u2};
     outputs all, some;
     fill(rng, MOST + 1, u1, u2);
     if (n > 4) {
@@ -352,7 +343,7 @@ static void check_array(const sampler *d, mcs_pcg32 *rng, int n, int off) {
         u2[off + 3] = 1.0f;
         u1[off + 4] = 0.0f;
     }
-    draw_array(d, n, off, u1, u2, 63, &all);
+    draw_array(d, n, off, own, 63, &all);
     for (int i = off; i < n + off; i++) {
         const mcs_texel t = {{all.f[0][i], all.f[1][i], all.f[2][i]}, all.f[3][i], all.k[0][i], all.k[1][i]};
         CHECK(same_draw(d, draw(d, u1[i], u2[i]), t), "n = %d, entry %d: not that of sample(%a, %a)", n, i,
@@ -362,7 +353,8 @@ static void check_array(const sampler *d, mcs_pcg32 *rng, int n, int off) {
         const int swap = wanted >> 2 & 1;
         memcpy(some.f[swap], u1, sizeof u1);
         memcpy(some.f[!swap], u2, sizeof u2);
-        draw_array(d, n, off, wanted % 4 == 3 ? some.f[swap] : u1, wanted % 4 == 3 ? some.f[!swap] : u2, wanted, &some);
+        const float *const over[2] = {some.f[swap], some.f[!swap]};
+        draw_array(d, n, off, wanted % 4 == 3 ? over : own, wanted, &some);
         for (int k = 0; k < 6; k++)
             CHECK(!(wanted >> k & 1) ||
                       !memcmp(k < 4 ? (void *)(all.f[k] + off) : (void *)(all.k[k - 4] + off),
@@ -400,7 +392,6 @@ static void test_arrays(void) {
 }
 
 /* ---- a turned map ---- */
-
 static void test_turned(void) {
     const mcs_frame f = mcs_frame_make(vec(0.48, -0.6, 0.64));
     mcst_group("product, turned map");

@@ -306,6 +306,15 @@ static inline int unsupported(const sampler *d, int sub, uint32_t *first) {
     return n;
 }
 
+/* A draw by array is that of sample. Where a*b + c is contracted the places of both differ by rounding, and with them
+ * perhaps the texel: there its density has to be that of its direction. */
+static inline int same_draw(const sampler *d, mcs_texel t, mcs_texel by_array) {
+    if (!mcst_arrays_contract()) return !memcmp(&t, &by_array, sizeof t);
+    const uint32_t k = texel_number(d->m, by_array.w);
+    by_array.col = k % d->m->w;
+    by_array.row = k / d->m->w;
+    return (t.pdf > 0) == (by_array.pdf > 0) && (!(t.pdf > 0) || agrees(d, by_array));
+}
 static const float hard_u[] = {0.0f, 1.4e-45f, FLT_MIN, 0x1p-32f, 0x1p-24f, 0.25f, 0.5f, 0x0.fffffep0f, 0x0.ffffffp0f};
 static const float bad_u[] = {-1.0f, -1e-9f, 1.0f, 2.0f, INFINITY, -INFINITY, NAN};
 static const mcs_vec3 bad_w[] = {{0, 0, 0},        {NAN, 0, 1},       {0, NAN, 1}, {0, 0, NAN},

@@ -204,6 +204,39 @@ static void check_tables(void) {
     TELLS("mcs_env_window_pdf", mcs_env_window_pdf(window, e, w));
 }
 
+/* A region, or the one above it, has another size than what it is used with; it is larger, so that nothing is read
+ * behind it. */
+static void check_regions(const mcs_tiles *t, const mcs_tiles *larger, const mcs_env *e, const mcs_reflection *r) {
+    const size_t bytes = mcs_region_bytes(32);
+    mcs_region *g = (mcs_region *)malloc(bytes);
+    mcs_region *big = (mcs_region *)malloc(bytes);
+    static double room[MCS_PRODUCT_BYTES(32) / 8 + 1];
+    mcs_product *p = (mcs_product *)(void *)room;
+    asserted = 0;
+    CHECK(g && big && !mcs_region_start(g, bytes, t) && !mcs_region_start(big, bytes, larger), "regions");
+    mcs_region_add_point(g, t, e, r);
+    mcs_region_merge(g, g);
+    CHECK(!mcs_product_build_region(p, sizeof room, t, e, g, g) && !mcs_product_build(p, sizeof room, t, e, r, g) &&
+              !asserted,
+          "asserts of a region of the right size");
+    mcs_region_merge(g, big);
+    CHECK(asserted > 0, "merged with another size");
+    asserted = 0;
+    mcs_region_add_point(big, t, e, r);
+    CHECK(asserted > 0, "a point by other tiles");
+    asserted = 0;
+    mcs_product_build_region(p, sizeof room, t, e, big, NULL);
+    CHECK(asserted > 0, "a table by other tiles");
+    asserted = 0;
+    mcs_product_build_region(p, sizeof room, t, e, g, big);
+    CHECK(asserted > 0, "a table with another size above");
+    asserted = 0;
+    mcs_product_build(p, sizeof room, t, e, r, big);
+    CHECK(asserted > 0, "a product with another size");
+    free(g);
+    free(big);
+}
+
 /* A product is sampled with tiles of another size than it was built from. Every tile has light, so that draws end
  * somewhere. */
 static void check_products(void) {
@@ -234,6 +267,10 @@ static void check_products(void) {
     asserted = 0;
     mcs_product_sample_n(p, other, e, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL);
     CHECK(asserted > 0, "an array by other tiles");
+    asserted = 0;
+    mcs_product_pdf_n(p, other, e, 0, NULL, NULL, NULL, NULL);
+    CHECK(asserted > 0, "densities by other tiles");
+    check_regions(t, other, e, &r);
     free(t);
     free(other);
     free(e);

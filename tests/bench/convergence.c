@@ -2,7 +2,8 @@
  * every kind of points; root-mean-square (rms) error over the number of samples and over seconds. Writes
  * convergence.csv and a plot per material, prints the time to reach 1 %, the slopes, the variances over that of product
  * sampling, product sampling with 1, 4, 16 and 64 samples per shading point against MIS, which targets are met, and how
- * far errors and references can be trusted. "product 4" is product sampling with a set-up for every 4 samples, as if the shading point were another one then: the time is that of the set-ups too.
+ * far errors and references can be trusted. "product 4" is product sampling with a set-up for every 4 samples, as if
+ * the shading point were another one then: the time is that of the set-ups too.
  *
  *     convergence [--quick] [map.hdr ...]
  *

@@ -385,15 +385,57 @@ static void draw_env(const mcs_env *e, const mcs_env_window *m, int axes, bytes 
     free(u);
 }
 
+/* A region that learns whatever comes. */
+static void fuzz_region(mcs_region *g, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r, bytes *b) {
+    const size_t size = mcs_region_bytes(16);
+    MUST(mcs_region_start(g, size - 1, t) == MCS_ERR_MEMORY && mcs_region_start(g, size, t) == MCS_OK);
+    for (uint32_t left = take_u8(b) % 40; left > 0; left--) {
+        const uint32_t k = take_u32(b);
+        switch (k >> 28) {
+        case 0: mcs_region_add_point(g, t, e, r); break;
+        case 1: mcs_region_decay(g, take_float(b)); break;
+        case 2: mcs_region_merge(g, g); break;
+        case 3: mcs_region_add_ray(g, k, 1); break;
+        default: mcs_region_add_ray(g, k % 512, (int)(k >> 27 & 1));
+        }
+        const float v = mcs_region_visibility(g, k & 1024 ? g : NULL, k % 600);
+        MUST(v >= 0 && v <= 1 && mcs_tiles_of_direction(t, e, take_direction(b, k & 1)) <= 512 &&
+             mcs_tiles_of_texel(t, e, k % 80, k >> 16) <= 512);
+    }
+}
+/* Draws of a product, and densities. */
+static void draw_product(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t count, bytes *b) {
+    float *u = floats(2 * count);
+    float *to[4];
+    for (int i = 0; i < 4; i++) to[i] = floats(count);
+    for (size_t k = 0; k < count; k++) {
+        const float u1 = u[k] = take_u(b, k & 1);
+        const float u2 = u[count + k] = take_u(b, k & 1);
+        const mcs_vec3 w = take_direction(b, k & 1);
+        const mcs_texel a = mcs_product_sample(p, t, e, u1, u2);
+        const int good = below_one(u1) && below_one(u2);
+        MUST(finite3(a.w) && proper(a.pdf) && (good || a.pdf == 0) && a.row < e->h && a.col < e->w);
+        MUST(proper(mcs_product_pdf(p, t, e, w)));
+        MUST(!(a.pdf > 0) || (mcs_product_pdf(p, t, e, a.w) > 0 && mcs_product_pdf(p, t, e, a.w) <= FLT_MAX));
+    }
+    mcs_product_sample_n(p, t, e, count, u, u + count, to[0], to[1], to[2], to[3], NULL, NULL);
+    for (size_t k = 0; k < count; k++) {
+        MUST(finite(to[0][k]) && finite(to[1][k]) && finite(to[2][k]) && proper(to[3][k]));
+        if (k & 1) to[0][k] = take_float(b);
+    }
+    mcs_product_pdf_n(p, t, e, count, to[0], to[1], to[2], to[count & 3]);
+    for (size_t k = 0; k < count; k++) MUST(proper(to[count & 3][k]));
+    for (int i = 0; i < 4; i++) free(to[i]);
+    free(u);
+}
 static void fuzz_product(const mcs_env *e, bytes *b) {
     const size_t size = mcs_tiles_bytes(e, 16);
     const size_t product_size = mcs_product_bytes(16);
-    const size_t count = take_u8(b) % 40;
     const int tame = take_u8(b) & 1;
-    const int weights = take_u8(b) % 4 == 0;
+    const int kind = take_u8(b) % 4;
     mcs_tiles *t = (mcs_tiles *)room(size);
+    mcs_region *g = (mcs_region *)room(mcs_region_bytes(16));
     mcs_product *p = (mcs_product *)room(product_size);
-    float *u = floats(2 * count);
     MUST(mcs_tiles_build(t, size - 1, e, 16) == MCS_ERR_MEMORY &&
          mcs_tiles_build(t, size, e, take_u8(b) | 1u) == MCS_ERR_SIZE);
     mcs_status s = mcs_tiles_build(t, size, e, 16);
@@ -420,26 +462,13 @@ static void fuzz_product(const mcs_env *e, bytes *b) {
     float weight[512];
     for (size_t k = 0; k < 512; k++) weight[k] = k < 64 ? take_float(b) : weight[k / 8];
     for (size_t k = 0; k < 512; k++) MUST(finite3(mcs_tiles_direction(t, e, (uint32_t)k)));
-    s = weights ? mcs_product_build_weights(p, product_size, t, e, weight)
-                : mcs_product_build(p, product_size, t, e, &r, NULL);
-    MUST(s == MCS_OK);
-    float *to[4];
-    for (int i = 0; i < 4; i++) to[i] = floats(count);
-    for (size_t k = 0; k < count; k++) {
-        const float u1 = u[k] = take_u(b, k & 1);
-        const float u2 = u[count + k] = take_u(b, k & 1);
-        const mcs_vec3 w = take_direction(b, k & 1);
-        const mcs_texel a = mcs_product_sample(p, t, e, u1, u2);
-        const int good = below_one(u1) && below_one(u2);
-        MUST(finite3(a.w) && proper(a.pdf) && (good || a.pdf == 0) && a.row < e->h && a.col < e->w);
-        MUST(proper(mcs_product_pdf(p, t, e, w)));
-        MUST(!(a.pdf > 0) || (mcs_product_pdf(p, t, e, a.w) > 0 && mcs_product_pdf(p, t, e, a.w) <= FLT_MAX));
-    }
-    mcs_product_sample_n(p, t, e, count, u, u + count, to[0], to[1], to[2], to[3], NULL, NULL);
-    for (size_t k = 0; k < count; k++)
-        MUST(finite(to[0][k]) && finite(to[1][k]) && finite(to[2][k]) && proper(to[3][k]));
-    for (int i = 0; i < 4; i++) free(to[i]);
-    free(u);
+    fuzz_region(g, t, e, &r, b);
+    s = kind == 0   ? mcs_product_build_weights(p, product_size, t, e, weight)
+        : kind == 1 ? mcs_product_build_region(p, mcs_product_table_bytes(16), t, e, g, take_u8(b) & 1 ? g : NULL)
+                    : mcs_product_build(p, product_size, t, e, &r, kind == 2 ? g : NULL);
+    MUST(s == MCS_OK && (kind != 1 || !p->dark));
+    draw_product(p, t, e, take_u8(b) % 40, b);
+    free(g);
     free(p);
     free(t);
 }

@@ -342,19 +342,53 @@ static void check_arrays_of_product(const part_of *q, const mcs_product *p, cons
         CHECK((pdf[k] > 0) == (one.pdf > 0), "array: u %a %a, pdf %a, not %a", (double)u[k], (double)u[count + k],
               (double)pdf[k], (double)one.pdf);
     }
+    for (size_t k = 0; k < count; k++)
+        if (mcst_mix(state) & 1) x[k] = st_hostile(mcst_mix(state));
+    mcs_product_pdf_n(p, tiles, q->e, count, x, y, z, pdf);
+    for (size_t k = 0; k < count; k++) {
+        const mcs_vec3 w = {x[k], y[k], z[k]};
+        CHECK(proper(t, pdf[k]) && (pdf[k] > 0) == (mcs_product_pdf(p, tiles, q->e, w) > 0),
+              "array: density %a of %a %a %a, not %a", (double)pdf[k], (double)w.x, (double)w.y, (double)w.z,
+              (double)mcs_product_pdf(p, tiles, q->e, w));
+    }
     CHECK(arena_intact(&in) && arena_intact(&out), "product, arrays: written outside");
     arena_free(&in);
     arena_free(&out);
 }
 
-/* Draws of a product, of a reflection or of weights. */
+/* A region that has learned of hostile surfaces and rays, and V of it. */
+static void teach_region(const part_of *q, const mcs_tiles *tiles, mcs_region *g, uint64_t *state, tally *t) {
+    int sane;
+    for (int i = 0; i < 40; i++) {
+        const uint64_t z = mcst_mix(state);
+        if (z % 8 == 0) {
+            const mcs_reflection r = make_reflection(state, &sane);
+            mcs_region_add_point(g, tiles, q->e, &r);
+        } else if (z % 64 == 1) {
+            mcs_region_decay(g, st_hostile(mcst_mix(state)));
+        } else if (z % 64 == 2) {
+            mcs_region_merge(g, g);
+        } else {
+            mcs_region_add_ray(g, (uint32_t)(z >> 32), (int)(z >> 8 & 1));
+            mcs_region_add_ray(g, (uint32_t)(z >> 32) % 512, (int)(z >> 8 & 1));
+        }
+        const float v = mcs_region_visibility(g, z & 256 ? g : NULL, (uint32_t)(z >> 40) % 600);
+        CHECK(finite(t, v) && v >= 0 && v <= 1, "V %a", (double)v);
+        const uint32_t k = mcs_tiles_of_direction(tiles, q->e, hostile_direction(state));
+        CHECK(k <= 512, "tile %u", (unsigned)k);
+    }
+}
+
+/* Draws of a product, of a reflection, a region or weights. */
 static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *state, tally *t) {
     const size_t bytes = mcs_product_bytes(tiles->rows);
     const size_t n = (size_t)tiles->rows * tiles->cols;
     const size_t count = mcst_mix(state) % 70;
-    const int weights = mcst_mix(state) % 4 == 0;
+    const int kind = (int)(mcst_mix(state) % 4);
     arena m = arena_make(bytes);
     arena list = arena_make(n * sizeof(float));
+    arena region = arena_make(mcs_region_bytes(tiles->rows));
+    mcs_region *g = (mcs_region *)(void *)region.at;
     float *weight = (float *)(void *)list.at;
     mcs_product *p = (mcs_product *)(void *)m.at;
     int sane;
@@ -367,15 +401,19 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
               (double)w.x, (double)w.y, (double)w.z);
         weight[k] = st_hostile(mcst_mix(state));
     }
-    s = weights ? mcs_product_build_weights(p, bytes, tiles, q->e, weight)
-                : mcs_product_build(p, bytes, tiles, q->e, &r, NULL);
-    CHECK(s == MCS_OK && arena_intact(&m), "product: status %d", (int)s);
+    CHECK(mcs_region_start(g, region.bytes, tiles) == MCS_OK, "region");
+    teach_region(q, tiles, g, state, t);
+    s = kind == 0   ? mcs_product_build_weights(p, bytes, tiles, q->e, weight)
+        : kind == 1 ? mcs_product_build_region(p, bytes, tiles, q->e, g, mcst_mix(state) & 1 ? g : NULL)
+                    : mcs_product_build(p, bytes, tiles, q->e, &r, kind == 2 ? g : NULL);
+    CHECK(s == MCS_OK && arena_intact(&m) && (kind != 1 || !p->dark), "product: status %d", (int)s);
     if (mcst_mix(state) % 4 == 0) p->brdf_share = 0; /* as the header allows */
     for (size_t k = 0; k < DRAWS; k++) check_draw_of_product(q, p, tiles, sane, state, t);
     check_arrays_of_product(q, p, tiles, state, count, t);
-    CHECK(arena_intact(&m) && arena_intact(&list), "product: written outside");
+    CHECK(arena_intact(&m) && arena_intact(&list) && arena_intact(&region), "product: written outside");
     arena_free(&m);
     arena_free(&list);
+    arena_free(&region);
     t->evaluations += DRAWS * 3 + (double)count * 2 + (double)n;
 }
 
