@@ -7759,6 +7759,9 @@ MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mc
 
 #ifndef MCS_NO_BATCH
 typedef struct {
+    const mcs_product *p;
+    const mcs_tiles *t;
+    const mcs_env *e;
     mcsi_draw draw[MCSI_ENV_BLOCK];
     mcsi_spot spot[MCSI_ENV_BLOCK];
     int32_t found[MCSI_ENV_BLOCK]; /* 0: a bad direction */
@@ -7770,104 +7773,106 @@ typedef struct {
 } mcsi_product_block;
 
 /* For n draws or directions in all. Whole vectors are computed: what they leave of a block must be numbers. */
-MCSI_CORE void mcsi_product_block_start(mcsi_product_block *b, size_t n) {
+MCSI_CORE void mcsi_product_block_start(mcsi_product_block *b, const mcs_product *p, const mcs_tiles *t,
+                                        const mcs_env *e, size_t n) {
+    MCS_ASSERT(p->rows == t->rows);
+    b->p = p;
+    b->t = t;
+    b->e = e;
     mcsi_block_start(&b->of_map, n);
     if (n < MCSI_ENV_BLOCK) MCSI_FILL(&b->warps, 0, sizeof b->warps);
     for (size_t k = n; k < MCSI_ENV_BLOCK; k++) b->warps.value[k] = 1.0f;
 }
 /* What is read of the tile of draw or direction k. */
-MCSI_CORE void mcsi_product_block_tile(const mcs_product *p, const mcs_tiles *t, mcsi_product_block *b, size_t k,
-                                       mcsi_tile tile) {
-    b->window[k] = mcsi_tiles_window(t, tile);
-    b->grid[k] = mcsi_product_grid(p, tile);
+MCSI_CORE void mcsi_product_block_tile(mcsi_product_block *b, size_t k, mcsi_tile tile) {
+    b->window[k] = mcsi_tiles_window(b->t, tile);
+    b->grid[k] = mcsi_product_grid(b->p, tile);
     MCSI_PREFETCH(b->window[k]);
-    if (!p->warped) return;
-    const mcsi_warp_source s = mcsi_product_warp_source(p, t, tile);
+    if (!b->p->warped) return;
+    const mcsi_warp_source s = mcsi_product_warp_source(b->p, b->t, tile);
     mcsi_warp_block_put(&b->warps, k, &s);
 }
 
 /* -- draws -- */
 
 /* Chooses the tiles of n draws. */
-MCSI_CORE void mcsi_product_block_tiles(const mcs_product *p, const mcs_tiles *t, mcsi_product_block *b, size_t n) {
-    for (size_t k = 0; k < n; k++) b->tile_row[k] = mcsi_product_draw_row(p, &b->draw[k]);
+MCSI_CORE void mcsi_product_block_tiles(mcsi_product_block *b, size_t n) {
+    for (size_t k = 0; k < n; k++) b->tile_row[k] = mcsi_product_draw_row(b->p, &b->draw[k]);
     for (size_t k = 0; k < n; k++) {
-        const mcsi_tile tile = mcsi_product_draw_tile(p, b->tile_row[k], &b->draw[k]);
-        mcsi_product_block_tile(p, t, b, k, tile);
+        const mcsi_tile tile = mcsi_product_draw_tile(b->p, b->tile_row[k], &b->draw[k]);
+        mcsi_product_block_tile(b, k, tile);
         b->warps.u1[k] = mcsi_part_of_one(b->draw[k].u1);
         b->warps.u2[k] = mcsi_part_of_one(b->draw[k].u2);
     }
 }
 /* Chooses the points in the tiles. */
-MCSI_CORE void mcsi_product_block_points(const mcs_product *p, const mcs_env *e, mcsi_product_block *b, size_t n) {
-    if (p->warped) mcsi_warps_n(n, &b->warps);
+MCSI_CORE void mcsi_product_block_points(mcsi_product_block *b, size_t n) {
+    if (b->p->warped) mcsi_warps_n(n, &b->warps);
     for (size_t k = 0; k < n; k++) {
         mcsi_draw *d = &b->draw[k];
         if (b->grid[k]) {
             mcsi_draw_grid(b->grid[k], d);
-        } else if (p->warped) {
+        } else if (b->p->warped) {
             d->density *= (double)b->warps.density[k];
             d->u1 = (double)b->warps.t1[k] * MCSI_ONE;
             d->u2 = (double)b->warps.t2[k] * MCSI_ONE;
         }
-        const mcsi_window window = mcsi_window_of(e, b->window[k]);
+        const mcsi_window window = mcsi_window_of(b->e, b->window[k]);
         mcsi_window_prefetch(&window, d->u2);
     }
 }
 /* All of n draws; results go to out->x[first] and so on. */
-MCS_FN void mcsi_product_block_draw(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcsi_product_block *b,
-                                    size_t n, const mcsi_texels *out, size_t first) {
-    mcsi_product_block_tiles(p, t, b, n);
-    mcsi_product_block_points(p, e, b, n);
+MCS_FN void mcsi_product_block_draw(mcsi_product_block *b, size_t n, const mcsi_texels *out, size_t first) {
+    mcsi_product_block_tiles(b, n);
+    mcsi_product_block_points(b, n);
     for (size_t k = 0; k < n; k++) {
-        const mcsi_window window = mcsi_window_of(e, b->window[k]);
-        mcsi_block_row(e, &window, b->draw[k], &b->of_map, k);
+        const mcsi_window window = mcsi_window_of(b->e, b->window[k]);
+        mcsi_block_row(b->e, &window, b->draw[k], &b->of_map, k);
     }
-    mcsi_block_columns(e, &b->of_map, n, out, first);
+    mcsi_block_columns(b->e, &b->of_map, n, out, first);
 }
 
 /* -- densities -- */
 
 /* Where n directions lie, and the probability of each one's tile, which is 0 where nothing can be drawn. */
-MCSI_CORE void mcsi_product_block_find(const mcs_product *p, const mcs_tiles *t, const mcs_env *e,
-                                       mcsi_product_block *b, size_t n, const mcsi_angles_block *angles) {
+MCSI_CORE void mcsi_product_block_find(mcsi_product_block *b, size_t n, const mcsi_angles_block *angles) {
     for (size_t k = 0; k < n; k++) {
         const mcsi_angles a = {angles->off_pole[k], angles->polar[k], angles->azimuth[k]};
         const mcsi_angles up = {0.0f, 0.0f, 0.0f};
         b->found[k] = a.off_pole < 4.0f;
-        b->spot[k] = mcsi_env_spot(e, b->found[k] ? a : up);
-        const mcsi_tile tile = mcsi_tile_of_spot(t, e, &b->spot[k]);
-        b->draw[k].density = b->found[k] ? mcsi_product_tile_probability(p, tile) : 0.0;
-        mcsi_product_block_tile(p, t, b, k, tile);
-        MCSI_PREFETCH(mcsi_env_sums(e, b->spot[k].row) + b->spot[k].col);
+        b->spot[k] = mcsi_env_spot(b->e, b->found[k] ? a : up);
+        const mcsi_tile tile = mcsi_tile_of_spot(b->t, b->e, &b->spot[k]);
+        b->draw[k].density = b->found[k] ? mcsi_product_tile_probability(b->p, tile) : 0.0;
+        mcsi_product_block_tile(b, k, tile);
+        MCSI_PREFETCH(mcsi_env_sums(b->e, b->spot[k].row) + b->spot[k].col);
     }
 }
 /* Densities of the tiles in n directions. */
-MCS_FN void mcsi_product_block_pdf(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcsi_product_block *b,
-                                   size_t n, const float *x, const float *y, const float *z, float *pdf) {
+MCS_FN void mcsi_product_block_pdf(mcsi_product_block *b, size_t n, const float *x, const float *y, const float *z,
+                                   float *pdf) {
     mcsi_angles_block angles;
-    mcsi_env_angles_n(&e->frame, n, x, y, z, &angles);
-    mcsi_product_block_find(p, t, e, b, n, &angles);
+    mcsi_env_angles_n(&b->e->frame, n, x, y, z, &angles);
+    mcsi_product_block_find(b, n, &angles);
     for (size_t k = 0; k < n; k++) {
         mcsi_position at = {0.0f, 0.0f};
         if (b->draw[k].density > 0.0) {
-            const mcsi_window window = mcsi_window_of(e, b->window[k]);
-            if (mcsi_window_row_is_lit(&window, b->spot[k].row)) at = mcsi_window_position(e, &window, &b->spot[k]);
+            const mcsi_window window = mcsi_window_of(b->e, b->window[k]);
+            if (mcsi_window_row_is_lit(&window, b->spot[k].row)) at = mcsi_window_position(b->e, &window, &b->spot[k]);
             else b->draw[k].density = 0.0;
         }
         if (!(b->draw[k].density > 0.0)) b->warps.value[k] = 1.0f; /* no warp is 0 at all corners */
         b->warps.t1[k] = at.t1;
         b->warps.t2[k] = at.t2;
     }
-    if (p->warped) mcsi_warp_densities_n(n, &b->warps);
+    if (b->p->warped) mcsi_warp_densities_n(n, &b->warps);
     for (size_t k = 0; k < n; k++) {
         pdf[k] = 0.0f;
         if (!(b->draw[k].density > 0.0)) continue;
-        const mcsi_window window = mcsi_window_of(e, b->window[k]);
+        const mcsi_window window = mcsi_window_of(b->e, b->window[k]);
         double density = b->draw[k].density;
         if (b->grid[k]) density *= (double)mcsi_grid_density(b->grid[k], b->warps.t1[k], b->warps.t2[k]);
-        else if (p->warped) density *= (double)b->warps.density[k];
-        pdf[k] = mcsi_window_density_at(e, &window, &b->spot[k], density);
+        else if (b->p->warped) density *= (double)b->warps.density[k];
+        pdf[k] = mcsi_window_density_at(b->e, &window, &b->spot[k], density);
     }
 }
 
@@ -7951,12 +7956,12 @@ MCSI_CORE void mcsi_split_make(mcsi_split *s, float share, size_t n, const float
     }
 }
 /* Draws of a product whose lobe has a share, or that is dark. */
-MCS_FN void mcsi_product_block_mix(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcsi_product_block *b,
-                                   mcsi_split *s, size_t n, mcsi_texel_block *r) {
+MCS_FN void mcsi_product_block_mix(mcsi_product_block *b, mcsi_split *s, size_t n, mcsi_texel_block *r) {
+    const mcs_product *p = b->p;
     const mcsi_texels into = {r->x, r->y, r->z, r->pdf, r->col, r->row};
     if (s->lobes) {
         mcsi_lobe_draw_n(&p->lobe, s->lobes, s->u1, s->u2, r, s->ok);
-        mcsi_product_block_pdf(p, t, e, b, s->lobes, r->x, r->y, r->z, r->pdf);
+        mcsi_product_block_pdf(b, s->lobes, r->x, r->y, r->z, r->pdf);
     }
     for (size_t k = 0; k < s->lobes; k++) {
         r->row[k] = b->spot[k].row;
@@ -7964,10 +7969,10 @@ MCS_FN void mcsi_product_block_mix(const mcs_product *p, const mcs_tiles *t, con
         s->ok[k] &= b->found[k];
     }
     for (size_t k = s->lobes; k < n; k++) {
-        if (p->dark) mcsi_texels_put(&into, k, mcsi_no_texel(e));
+        if (p->dark) mcsi_texels_put(&into, k, mcsi_no_texel(b->e));
         else b->draw[k - s->lobes] = mcsi_draw_of(s->u1[k], s->u2[k]);
     }
-    if (!p->dark && s->lobes < n) mcsi_product_block_draw(p, t, e, b, n - s->lobes, &into, s->lobes);
+    if (!p->dark && s->lobes < n) mcsi_product_block_draw(b, n - s->lobes, &into, s->lobes);
     if (p->brdf_share > 0.0f) mcsi_lobe_mix_n(&p->lobe, p->brdf_share, n, r->x, r->y, r->z, r->pdf);
     for (size_t k = 0; k < n; k++) r->pdf[k] = s->ok[k] && !(p->dark && k >= s->lobes) ? r->pdf[k] : 0.0f;
 }
@@ -7977,36 +7982,34 @@ MCS_FN void mcsi_product_block_mix(const mcs_product *p, const mcs_tiles *t, con
 MCS_API void mcs_product_sample_n(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t n, const float *u1,
                                   const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
                                   uint32_t *row) {
-    MCS_ASSERT(p->rows == t->rows);
     const mcsi_texels out = {x, y, z, pdf, col, row};
     const int mixed = p->brdf_share > 0.0f || p->dark;
     mcsi_product_block b;
-    mcsi_product_block_start(&b, mixed ? 0 : n);
+    mcsi_product_block_start(&b, p, t, e, mixed ? 0 : n);
     size_t m;
     for (size_t i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         if (!mixed) {
             for (size_t k = 0; k < m; k++) b.draw[k] = mcsi_draw_start(u1[i + k], u2[i + k]);
-            mcsi_product_block_draw(p, t, e, &b, m, &out, i);
+            mcsi_product_block_draw(&b, m, &out, i);
             continue;
         }
         mcsi_split s;
         mcsi_texel_block r;
         mcsi_split_make(&s, p->brdf_share, m, u1 + i, u2 + i);
-        mcsi_product_block_mix(p, t, e, &b, &s, m, &r);
+        mcsi_product_block_mix(&b, &s, m, &r);
         for (size_t k = 0; k < m; k++) mcsi_texels_put(&out, i + k, mcsi_texel_block_get(&r, s.place[k]));
     }
 }
 MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t n, const float *x,
                                const float *y, const float *z, float *pdf) {
-    MCS_ASSERT(p->rows == t->rows);
     mcsi_product_block b;
-    mcsi_product_block_start(&b, n);
+    mcsi_product_block_start(&b, p, t, e, n);
     float density[MCSI_ENV_BLOCK]; /* pdf may be x, y or z */
     size_t m;
     for (size_t i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
-        mcsi_product_block_pdf(p, t, e, &b, m, x + i, y + i, z + i, density);
+        mcsi_product_block_pdf(&b, m, x + i, y + i, z + i, density);
         if (p->brdf_share > 0.0f) mcsi_lobe_mix_n(&p->lobe, p->brdf_share, m, x + i, y + i, z + i, density);
         for (size_t k = 0; k < m; k++) pdf[i + k] = b.found[k] ? density[k] : 0.0f;
     }
