@@ -59,7 +59,7 @@ OPENMP = $(shell mkdir -p $(BUILD) && printf '\043include <omp.h>\nint main(void
 QUADMATH = $(shell mkdir -p $(BUILD) && printf '\043include <quadmath.h>\nint main(void) { return sqrtq(4) != 2; }\n' | \
 	$(CC) -x c - -o $(BUILD)/quadmath.probe -lquadmath 2>/dev/null && echo -lquadmath)
 
-test: ## build and run every tests/test_*.c (the default); FILTER=text and SEED=number narrow it down
+test: ## build and run every tests/test_*.c (the default); FILTER=text and SEED=number narrow the run
 	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS) $(EXACT)'
 	+@$(SUBMAKE) test-binaries
 	@$(if $(STRESS_CUT),$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath'))

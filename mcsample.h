@@ -48,9 +48,9 @@
  *
  * weight        It is f cos(theta_i) / pdf in closed form, for a reflectance and a Fresnel factor of 1: multiply by
  *               mcs_schlick or by your own. X_weight belongs to the float wi that it is given. The weight of a sample
- *               takes the half-vector of the exact point and the cosines of its float wi, and its accuracy is stated
- *               for that. The weight of the exact point differs by the rounding of wi, which is much of a cosine near
- *               the horizon.
+ *               is computed from the half-vector of the exact point and from the cosine of the rounded wi, and what is
+ *               stated of its accuracy compares it with that. Near the horizon the exact point itself has another
+ *               weight, as the rounding of wi is a large part of so small a cosine.
  *
  * Lost samples  A lobe around a half-vector or around the mirror direction may reflect below the surface. Such a sample
  *               has pdf 0 and weight 0: add 0 to the estimate and count the sample. The density over the upper
@@ -77,10 +77,10 @@
  *
  * Lanes         mcs4_X, mcs8_X and mcs16_X do for 4, 8 and 16 points what mcs_X does for one. MCS_PACKETS asks for
  *               them: 8 gives those of 4 and of 8 lanes. They exist for mcs_u01, mcs_u01_open, mcs_sobol,
- *               mcs_sobol_bits, mcs_r2, mcs_hash, mcs_set, mcs_load, mcs_store, and for every function of [1d] to [mis]
- *               that has no _n. float becomes mcs8_f, bits and indices become mcs8_u, int32_t
- *               becomes mcs8_i, where true is -1, and a struct mcs_T becomes mcs8_T. The dimension and the seed of a
- *               point stay scalar. One example stands for all:
+ *               mcs_sobol_bits, mcs_r2, mcs_hash, mcs_set, mcs_load, mcs_store, and for all functions of [1d] to [mis]
+ *               but those whose name ends in _n. float becomes mcs8_f, bits and indices become mcs8_u, int32_t becomes
+ *               mcs8_i, where true is -1, and a struct mcs_T becomes mcs8_T. The dimension and the seed of a point stay
+ *               scalar. One example stands for all:
  *
  *                   mcs_brdf  mcs_ggx_bounded_sample (const mcs_ggx  *m, mcs_vec3  wo, float  u1, float  u2);
  *                   mcs8_brdf mcs8_ggx_bounded_sample(const mcs8_ggx *m, mcs8_vec3 wo, mcs8_f u1, mcs8_f u2);
@@ -97,6 +97,8 @@
  * Rounding      It must be to nearest. In another mode results are finite at best. Flush to zero and denormals-are-zero
  *               may be on. Subnormal numbers then count as 0, and so may densities below 2^-100 of the peak; cosines
  *               have to be 0, or 1e-7 and more.
+ *
+ * slide 9       and the like are slides of the lecture "Monte Carlo Integration" (A. Ghosh, Imperial College, 2024).
  *
  * State         There is none: no globals, no allocation, no input and output. Threads may call everything at once that
  *               does not share an object of the caller.
@@ -133,7 +135,10 @@
  *   [sane]        bad input made harmless
  *   [loops]       what array functions consist of
  *   PART III      the bodies of [rng] to [mis], and why each formula is written so
- *   PART IV       the bodies of [tables] to [estimator] */
+ *   PART IV       the bodies of [tables] to [estimator]
+ *   PART V        the passes for 4, 8 and 16 lanes: this file includes itself
+ *   [names]       what the names of the body are called in a pass
+ *   [arrays]      array functions, which call the widest loop */
 #if defined(MCS_IMPLEMENTATION) && defined(MCSI_DECLARED)
 #error "define MCS_IMPLEMENTATION before anything includes mcsample.h"
 #endif
@@ -352,7 +357,6 @@ typedef float mcs4_f __attribute__((vector_size(16)));
 typedef int32_t mcs4_i __attribute__((vector_size(16)));
 typedef uint32_t mcs4_u __attribute__((vector_size(16)));
 #endif
-/* 16-byte alignment: no vector needs an over-aligned place in the caller's structs or on the stack. */
 #if MCSI_PACKETS >= 8
 typedef float mcs8_f __attribute__((vector_size(32), aligned(16)));
 typedef int32_t mcs8_i __attribute__((vector_size(32), aligned(16)));
@@ -1205,13 +1209,26 @@ MCS_API void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n,
 #endif
 
 /* ==== [mis] multiple importance sampling ==========================================================================
- * Combines two samplers f and g of one integral, for example of the map and of the lobe. A sample drawn from f adds its
- * weight times value/pf to the estimate, and a sample drawn from g likewise, where
+ * Combines two samplers f and g of one integral, for example of the map and of the lobe. Draw from both. A point drawn
+ * from f adds mcs_mis_power(pf, pg) value/pf to the estimate, and one from g adds mcs_mis_power(pg, pf) value/pg, where
  *
  *   pf, pg    are the densities of the same point under f and under g. Multiply them by the sample counts where those
  *             differ.
  *
- * The weights are in [0,1] and add up to 1. They are computed from pg/pf, so that 1e30, 1e-30 and infinity are fine.
+ * For a BRDF value/pf is the weight of its sample times the light. So, with the map e and the surface's frame,
+ *
+ *     const mcs_brdf  b = mcs_ggx_bounded_sample(&m, wo, u1, u2);
+ *     const mcs_texel t = mcs_env_texel(e, mcs_to_world(&frame, b.wi));
+ *     if (b.pdf > 0) sum += mcs_mis_power(b.pdf, t.pdf) * b.weight * light(t.col, t.row);
+ *
+ *     const mcs_texel s = mcs_env_sample(e, u3, u4);
+ *     const mcs_vec3  wi = mcs_to_local(&frame, s.w);
+ *     if (s.pdf > 0 && wi.z > 0)
+ *         sum += mcs_mis_power(s.pdf, mcs_ggx_bounded_pdf(&m, wo, wi)) * mcs_ggx_eval(&m, wo, wi) * wi.z / s.pdf *
+ *                light(s.col, s.row);
+ *
+ * These heuristics are in [0,1]; those of f and of g add up to 1. They are computed from pg/pf, so that 1e30, 1e-30 and
+ * infinity are fine.
  *
  * cost      1 or 2 divisions
  * source    Veach and Guibas 1995, "Optimally combining sampling techniques" */
@@ -1247,10 +1264,11 @@ MCS_FN float mcs_mix_pdf(float c, float pf, float pg);
  *                or too large, MCS_ERR_MEMORY where bytes are too few, in this order, and otherwise MCS_OK. After an
  *                error nothing was written.
  * monotone       All but alias increase with u. mcs_x_invert is the inverse.
- * bits           The 24 bits of a float u find both the entry and the position in it (x, or the u to reuse):
- *                frequencies are off by up to n 2^-24 of 1/n, and 4 bits are left for the position in one of a million
- *                entries. Beyond some thousand entries use mcs_x_sample_bits(t, b1, b2) with 64 random bits, b1 the
- *                upper 32: at least 33 are left for the position (alias: 32 in a column).
+ * bits           The 24 bits of a float u find both the entry and the position in it (x, or the u to reuse). So the
+ *                frequency of an entry is off by up to 2^-24, which is much of the 1/n that entries of a large table
+ *                have on average, and in a table of a million entries 4 bits are left for the position. Beyond some
+ *                thousand entries use mcs_x_sample_bits(t, b1, b2) with 64 random bits, b1 the upper 32: at least 33
+ *                are left for the position (alias: 32 in a column).
  * cost           Constant expected time by a guide table (Chen and Asau 1974, "On generating random variates from an
  *                empirical distribution"), at most log2(n) steps. Alias: Walker 1977, Vose 1991. */
 #ifndef MCS_NO_TABLES
@@ -1351,9 +1369,8 @@ MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float 
  *   if (!e || mcs_env_build(e, bytes, &im) != MCS_OK) return 0;
  *   const mcs_texel s = mcs_env_sample(e, u1, u2);            // s.w, s.pdf, s.col, s.row
  *
- * To join it with another strategy, a BRDF say, weigh this sample by mcs_mis_balance(s.pdf, BRDF's pdf of s.w), and the
- * BRDF's sample w by mcs_mis_balance(its pdf, mcs_env_pdf(e, w)). Both densities are per solid angle; directions are in
- * world space here and local there (mcs_to_local, mcs_to_world).
+ * [mis] shows how to join it with a BRDF. Directions are in world space here and local there (mcs_to_local,
+ * mcs_to_world). mcs_env_texel gives both the density and the texel of a direction.
  *
  * memory         The caller's, 8-byte aligned, mcs_env_bytes(w, h) bytes: 4.3 bytes a texel from 1024 x 512 on (2.3 MB;
  *                4096 x 2048: 36 MB), 5.3 at 64 x 32. A map holds no pointers: it may be written to a file, mapped into
@@ -1363,10 +1380,10 @@ MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float 
  *                2 pi/w (cos t0 - cos t1). It is constant within a texel, because there cos(theta), not theta, is
  *                linear in u2; no division by sin(theta) is left (slide 23). Probabilities of rows, and of columns
  *                within a row, are integers over 2^31, exact as in [tables]. A texel that is not black can be drawn,
- *                black ones never are. Texel and pdf of the returned float direction are those of the sample, as
- *                samples keep a rounding error off the borders of their texel (with the axes as frame; the rounding of
- *                another frame takes up to 2 % of the samples near the poles of a map of 4096 columns to the next
- *                texel).
+ *                black ones never are. Samples stay away from the borders of their texel by more than a direction is
+ *                rounded: mcs_env_texel of a sampled direction gives back the texel and the density of the sample.
+ *                That is so while the frame is the axes. Turning by another frame rounds once more: near the poles of
+ *                a map of 4096 columns this takes up to 2 % of the samples to the next texel.
  * monotone       Rows increase with u2, columns with u1: stratified u stay stratified.
  * bad texels     Channels are bad one by one, and e->bad counts the texels that have any. A negative channel, as
  *                colours outside the gamut have, counts as 0, and so does NaN; the luminance is that of the others, so
@@ -1533,10 +1550,10 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * Builders return MCS_OK, also where all is black; MCS_ERR_ARG for NULL or memory that is not aligned; MCS_ERR_SIZE for
  * a number of rows other than 16, 32 and 64; MCS_ERR_MEMORY for too few bytes. After an error nothing was written.
  *
- * Support: every direction above the surface from which light comes can be drawn. Tiles that the horizon may cross, by
- * the distance of their corners from the mean direction of their light, weigh at least a ten-thousandth of what a white
- * matte surface would make of them. Directions below the horizon are drawn only in tiles that it crosses. A black map
- * counts as even light, as in [env].
+ * Support: every direction above the surface from which light comes can be drawn. A tile that may reach above the
+ * horizon, by the distance of its corners from the mean direction of its light, weighs at least a ten-thousandth of
+ * what it would weigh on a white matte surface that faces it. Directions below the horizon are drawn only in tiles that
+ * it crosses. A black map counts as even light, as in [env].
  *
  * Narrow lobes. A lobe is narrow when its solid angle, A = 4 pi alpha_x alpha_y cos(theta_o), is below 8 mean tiles.
  * The prepared form then evaluates the reflection on a grid of 8 x 8 points in each heavy tile: at most 32 tiles, those
@@ -2040,7 +2057,7 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
 
 /* ==== the body: one text for every width ==========================================================================
  * From here to "#endif" of MCSI_W the text is compiled once per width. It is written in scalar names. In the passes for
- * 4, 8 and 16 lanes the table near the end of the file makes each of these names that of the width:
+ * 4, 8 and 16 lanes the table of [names] makes each of these names that of the width:
  *
  *   mcs_f, mcs_i, mcs_u    lanes of float, int32_t, uint32_t
  *   mcsi_d, mcsi_q         as many lanes of double; as many bytes of uint64_t as mcs_u has
@@ -2051,7 +2068,19 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
  * MCSI_CORE stands before private functions. They must be inlined, because compilers would return their structs through
  * memory. MCSI_SAMPLE stands before public functions that draw and must be inlined for the same reason, MCSI_FN before
  * the other public functions. A pass without MCSI_PUBLIC makes nothing but loops: its functions are private, and those
- * that no loop calls are left out. MCSI_LOOPS says that a pass makes loops; MCSI_LOOP stands before them. */
+ * that no loop calls are left out. MCSI_LOOPS says that a pass makes loops; MCSI_LOOP stands before them.
+ *
+ * To add a sampler X:
+ *
+ *   part I     its paragraph and prototypes, X_sample_n within #ifndef MCS_NO_BATCH; the map of the file and the head of
+ *              its block name it.
+ *   part III   MCSI_SAMPLE before X_sample. MCSI_FN before X_pdf and X_invert, within #ifdef MCSI_PUBLIC. MCSI_LOOP
+ *              before its loop, within #ifdef MCSI_LOOPS. MCSI_CORE before what is private. MCSI_REQUIRE tells bad
+ *              parameters; [sane] makes bad input harmless.
+ *   part V     a #define and an #undef in [names] for each of its names, private ones too; X_sample_n in [arrays].
+ *   tests      a row in registry.h, its truth in oracle.h, its hashes in bits.txt: what is missing fails by name.
+ *              Nothing asks for a sentence in claims.h, radii in stress/floats.c, a text in bench/throughput.c, slips
+ *              in mutants.txt, and its line in README.md; stress/exact.h says SKIPPED. */
 #if MCSI_W == MCSI_BASE_W && !defined(MCSI_LOOPS)
 #define MCSI_LOOPS
 #endif
@@ -4979,7 +5008,8 @@ MCSI_CORE uint32_t mcsi_cdf_search(const uint32_t *sums, uint32_t n, uint32_t lo
     for (; left > 1; left -= left / 2) lo += (left / 2) * (uint32_t)(sums[lo + left / 2] <= U);
     return lo;
 }
-/* The entry that holds U, U < 2^31. */
+/* The entry that holds U, U < 2^31: of a table, or the row of a map or window (mcsi_window_draw_row). Columns are found
+ * by mcsi_find_column, tiles by mcsi_shares_find. A search that returns the same entry leaves all bits as they are. */
 MCSI_CORE uint32_t mcsi_cdf_find(const mcsi_cdf *c, uint32_t U) {
     const size_t g = U >> c->shift;
     const uint32_t lo = mcsi_guide_get(c->guide, c->guide_bytes, g);
@@ -6056,7 +6086,9 @@ MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const m
     return MCS_OK;
 }
 
-/* ---- window: draws, in steps ----
+/* ---- map and window: draws, in steps ----
+ * A map is drawn from as the window of all its rows and columns (mcsi_env_whole).
+ *
  * Every draw is a descent: row, column, point in the texel (products begin above it, with a tile). It carries what is
  * left of the two random numbers, from 0 to 2^31 within the last choice, and the density of the path so far. That is
  * relative to a uniform draw at first and per solid angle from the row on. A bad random number makes it 0 at the start.
@@ -6513,7 +6545,7 @@ MCSI_CORE mcsi_position mcsi_window_position(const mcs_env *e, const mcsi_window
     t.t2 = mcsi_min(mcsi_max(t.t2, 0.0f), 1.0f);
     return t;
 }
-/* Fetches what a draw will read of the window's rows. */
+/* Fetches what a draw will read of the window's rows, as mcsi_cdf_find reads it: its guide has about an entry a row. */
 MCSI_CORE void mcsi_window_prefetch(const mcsi_window *r, double u2) {
     const uint32_t row = (uint32_t)(u2 * r->rows.n * (1.0 / MCSI_ONE));
     MCSI_PREFETCH((const uint16_t *)r->rows.guide + row);
@@ -8098,9 +8130,13 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_AVX512
 #endif /* the body */
 
-/* ==== the passes for more than one lane
- * ================================================================================== This file includes itself once for
- * each of them. */
+/* ================================================================================================================== */
+/* PART V: THE PASSES FOR 4, 8 AND 16 LANES                                                                           */
+/* ================================================================================================================== */
+
+/* ==== [names] what the names of the body are called in a pass =====================================================
+ * This file includes itself once for each pass. A name that parts II to IV define outside of MCSI_W == 1, be it public
+ * or private, stands twice in this table: it is defined before the passes and undefined behind them. */
 #ifndef MCSI_PASSES
 #define MCSI_PASSES
 #if MCSI_PACKETS >= 4 || MCSI_BASE_W >= 4
@@ -8959,9 +8995,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_with_sign
 #endif
 
-/* ==== array functions
- * ===================================================================================================== Each calls the
- * loop of the widest pass that this processor runs. */
+/* ==== [arrays] array functions ====================================================================================
+ * Each calls the loop of the widest pass that this processor runs. */
 #ifndef MCSI_DECLARED
 #if defined(MCSI_PICK_AVX512)
 #define MCSI_TRY_AVX512(loop, args)                   \

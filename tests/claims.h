@@ -38,8 +38,8 @@ static inline double mcst_claim_of(const mcst_row *row, int what, const float *p
     for (size_t i = 0; i < row->claims_size; i++) {
         const mcst_claim *c = &row->claims[i];
         if (c->claim[what] == 0) continue;
-        if ((double)p[0] < c->least[0] && row->coord == MCST_COSPOWER) continue;
-        if (row->params > 1 && (double)p[1] < c->least[1] && row->coord == MCST_COSPOWER) continue;
+        if ((double)p[0] < c->least[0]) continue;
+        if (row->params > 1 && (double)p[1] < c->least[1]) continue;
         return c->claim[what];
     }
     return 1;

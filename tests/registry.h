@@ -36,10 +36,10 @@
     MCST_LINES(M, X)                                                                             \
     M(X, PLANE, disk, disk, 1, -, DISK, radius, disk, 0, 0)                                      \
     M(X, PLANE, concentric, concentric, 1, -, DISK, radius, disk, 0, MCST_SQUARE)                \
-    M(X, DIR, sphere, sphere, 0, -, SPHERE, none, direction, 0, 0)                               \
+    M(X, DIR, sphere, sphere, 0, -, SPHERE, none, direction, 0, MCST_WHOLE)                      \
     M(X, DIR, hemisphere, hemisphere, 0, -, HEMISPHERE, none, direction, 0, 0)                   \
     M(X, DIR, cosine, cosine, 0, -, HEMISPHERE, none, direction, 0, 0)                           \
-    M(X, DIR, cone, cone, 1, -, CONE, cone, cone, 0, 0)                                          \
+    M(X, DIR, cone, cone, 1, -, CONE, cone, cone, 0, MCST_WHOLE)                                 \
     M(X, LOBE, phong_lobe, phong_lobe, phong, -, COSPOWER, phong, phong_lobe, 1, 0)              \
     M(X, BRDF, phong, phong, phong, phong, COSPOWER, phong, phong, 1, MCST_ABOUT_R)              \
     M(X, LOBE, ward_h, ward_h, ward, -, SLOPES, alpha, gauss_h, 3, MCST_GAUSS)                   \
@@ -67,6 +67,7 @@ static const char *const mcst_exempt[] = {"pwc", "pwl", "discrete", "alias", "en
 enum { MCST_P = 6 }; /* numbers in a parameter set: p[0..2] of the sampler, p[3..5] = wo */
 
 enum mcst_measure { MCST_LENGTH, MCST_AREA, MCST_SOLID_ANGLE, MCST_SOLID_ANGLE_OF_H };
+/* Of DIR every coordinate is held to 2^-23, of BRDF to 16 roundings, of others to 8: test_oracle.c. */
 enum mcst_shape { MCST_IS_LINE, MCST_IS_PLANE, MCST_IS_DIR, MCST_IS_LOBE, MCST_IS_VLOBE, MCST_IS_BRDF };
 /* The coordinates (s, t) in [0,1]^2 in which a lobe has a comparable mass everywhere: see bins.h. */
 enum mcst_coord {
@@ -123,7 +124,8 @@ enum {
     MCST_SQUARE = 2,   /* no random number is an azimuth */
     MCST_ABOUT_R = 4,  /* a lobe about the mirrored direction, not of half-vectors */
     MCST_GAUSS = 8,    /* Gaussian half-vectors: the error of a density grows with their exponent */
-    MCST_VISIBLE = 16  /* visible normals */
+    MCST_VISIBLE = 16, /* visible normals */
+    MCST_WHOLE = 32    /* directions of the whole sphere: one below the horizon is as good */
 };
 
 /* The figures of accuracy that mcsample.h states, as numbers: test_oracle.c holds the header to them on its grids, and

@@ -157,7 +157,7 @@ else
     echo "SKIPPED: no clang-format 14 here: nothing says whether sources are formatted"
 fi
 long=$(awk 'length > 120 { print FILENAME ":" FNR }' mcsample.h)
-check "$([ -z "$long" ]; echo $?)" "no line of the header has more than 120 characters" "$(echo "$long" | wc -l) of them:" $(echo "$long" | head -n 5)
+check "$([ -z "$long" ]; echo $?)" "no line of the header has more than 120 characters" $(echo "$long" | head -n 5)
 # shellcheck disable=SC2086
 long=$(awk 'length > 132 { print FILENAME ":" FNR }' $others)
 check "$([ -z "$long" ]; echo $?)" "no line of other sources has more than 132" $long

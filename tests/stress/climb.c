@@ -225,7 +225,7 @@ static double score_of(const mcst_row *row, int figure, const point *t, double l
     if (figure == CLAIM_PDF_U) {
         exact_map(row, &s, t->u[0], t->u[1], &x);
         if (row->shape == MCST_IS_BRDF && !(out[3] > 0) && x.z <= 40 * (qd)EPS) return 0; /* lost, or nearly */
-        if (row->coord != MCST_SPHERE && row->coord != MCST_CONE && x.z < (qd)1e-15) return 0;
+        if (!(row->traits & MCST_WHOLE) && x.z < (qd)1e-15) return 0;
         pdf = exact_pdf(row, &s, x);
         return in_units(row, t->p, out[3], pdf, pdf, least);
     }

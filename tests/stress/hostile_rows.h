@@ -55,7 +55,7 @@ static int u_bad(const mcst_row *row, const float *u) {
 }
 static int point_bad(const mcst_row *row, const float *x) {
     if (row->dim < 3) return isnan(x[0]) || (row->dim > 1 && isnan(x[1]));
-    if (row->coord == MCST_SPHERE || row->coord == MCST_CONE) return st_direction_bad(x[0], x[1], x[2]);
+    if (row->traits & MCST_WHOLE) return st_direction_bad(x[0], x[1], x[2]);
     return st_above_bad(x[0], x[1], x[2]);
 }
 
