@@ -1613,7 +1613,7 @@ typedef struct {
     uint32_t rows, cols; /* of tiles */
     float points;        /* reflections that were added */
     uint32_t unused;     /* private */
-} mcs_region;            /* more lies behind it: float[n] each of sums of squared reflections, rays, and rays through */
+} mcs_region;            /* more lies behind it: see mcsi_region_lists */
 
 /* A lobe to draw from. Private. */
 typedef struct {
@@ -1681,13 +1681,15 @@ MCS_API uint32_t mcs_tiles_of_direction(const mcs_tiles *t, const mcs_env *e, mc
 MCS_API size_t mcs_product_bytes(uint32_t rows);
 MCS_API size_t mcs_product_table_bytes(uint32_t rows);
 /* Builds the product of a map and a reflection. It holds for the orientation (e->frame) that the map has now. g: the
- * region that the point belongs to, whose visibility then dims the light; or NULL. */
+ * region that the point belongs to, or NULL. The light is then that which comes through to the region, and at least a
+ * tenth of the samples comes from the lobe. Where less than a tenth of the reflected light comes through, tiles are
+ * weighed as in mcs_product_build_region, and half of the samples come from the lobe. A surface that is all matte has no
+ * lobe. */
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r, const mcs_region *g);
-/* Builds the product of a map and a region: one table for all its points. up: a region that this one is a part of,
- * whose visibility counts until this one has rays of its own; or NULL. */
+/* Builds the product of a map and a region: one table for all its points. */
 MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                            const mcs_region *g, const mcs_region *up);
+                                            const mcs_region *g);
 /* Builds the product of a map and any reflection. weight has rows cols entries, one per tile: the reflection times the
  * cosine about mcs_tiles_direction(t, e, k), in any unit. It must be > 0 wherever the reflection may be. Negative
  * entries and NaN count as 0, +infinity as FLT_MAX. The lobe gets no share. */
@@ -1716,27 +1718,33 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  * mcs_product_build_region makes one table for all its points, from which a draw costs as much as from the map.
  *
  *     mcs_region_start(g, bytes, t);
- *     for a dozen points: mcs_region_add_point(g, t, e, &reflection);
- *     mcs_product_build_region(p, size, t, e, g, NULL);            and again when the number of its rays has doubled
+ *     for a dozen points or more: mcs_region_add_point(g, t, e, &reflection);
+ *     mcs_product_build_region(p, size, t, e, g);                  and again when the number of its rays has doubled
  *     for each sample: mcs_region_add_ray(g, mcs_tiles_of_texel(t, e, s.col, s.row), through);
  *
- * A tile of the table weighs its light times the root mean square of the reflections towards it times V^(3/4), where V
- * is the share of rays that came through:
+ * A tile of the table weighs
  *
- *   V = (through + 4 V0)/(rays + 4), and at least 0.05
+ *   L V (f + m/5),    V = (through + 2 V0)/(rays + 2), at least 1e-4
  *
- * with V0 that of the region above it, 1 where there is none. No reflection counts less than a hundredth of the mean of
- * all tiles: whatever has light can be drawn, and nothing is biased.
+ *   L       its light
+ *   f       root mean square of the reflections towards it, times cosine, over the points that were added. Lobes count
+ *           as if alpha^2 were larger by 0.01.
+ *   m       mean of f over the light that comes through: sum of L V f over sum of L V. A sixth of the samples so follows
+ *           the light alone.
+ *   V       the share of the tile's rays that came through, with V0 of a ray before any is sent: 1/4, or that of a
+ *           larger region (mcs_region_inherit)
  *
- * Unbiased learning: a table must not be built of the rays of the very samples that are drawn from it. Rebuild it
- * between passes.
+ * So all light can be drawn, whatever was learned: nothing is biased, as long as no table is built of the rays of the
+ * very samples that are drawn from it. Rebuild it between passes.
+ *
+ * Pair each sample with one of the BRDF by mcs_mis_balance (mcs_mis_power for lobes narrower than a tile).
  *
  *   g          a region, in memory of yours like a product; it holds no pointers
- *   points     Reflections above the surface; others are not added. Without any, the table follows light and V alone.
+ *   points     Reflections above the surface; others are not added. Without any, f is 1.
  *   rays       Shadow rays, of samples of any kind. A tile counts up to 2^24.
  *   threads    Let each have regions of its own and merge them. Rays add up exactly, in any order; points in a fixed
  *              order only.
- *   cost       Bytes: 16 + 12 rows cols (6160 with 16 rows). README.md has times. */
+ *   cost       Bytes: 16 + 16 rows cols (8208 with 16 rows). README.md has times. */
 #if !defined(MCS_NO_TABLES) && !defined(MCS_NO_LOBES)
 /* Bytes of a region; 0 for rows other than 16, 32 and 64. */
 MCS_API size_t mcs_region_bytes(uint32_t rows);
@@ -1750,8 +1758,10 @@ MCS_API void mcs_region_add_ray(mcs_region *g, uint32_t k, int through);
 MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other);
 /* Lets all that was collected count `keep` times as much, 0 to 1: for scenes that change. */
 MCS_API void mcs_region_decay(mcs_region *g, float keep);
-/* V of tile k; up: the region above, or NULL. */
-MCS_API float mcs_region_visibility(const mcs_region *g, const mcs_region *up, uint32_t k);
+/* The V of a larger region, one that g is a part of, become the V0 of g. */
+MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger);
+/* V of tile k, 0 where k is no tile. */
+MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
 #endif
 
 /* ==== [estimator] running mean, variance and standard error ========================================================
@@ -7466,14 +7476,16 @@ MCSI_CORE float mcsi_tiles_u(float share, float u1) {
 }
 #endif
 
-/* ---- [region] bodies ----
- * Behind an mcs_region lie three lists: the sum of squared reflections towards each tile, the rays that were sent, and
- * those of them that came through. */
+/* ---- [region] bodies ---- */
 
 #if MCSI_W == 1
+/* What lies behind an mcs_region, float[n] each. */
 typedef struct {
     size_t n;
-    float *square, *rays, *through;
+    float *square;  /* sums of squared reflections towards each tile */
+    float *rays;    /* that were sent */
+    float *through; /* those that came through */
+    float *prior;   /* V of the region above */
 } mcsi_region_lists;
 MCSI_CORE mcsi_region_lists mcsi_region_lists_of(mcs_region *g) {
     mcsi_region_lists l;
@@ -7481,13 +7493,16 @@ MCSI_CORE mcsi_region_lists mcsi_region_lists_of(mcs_region *g) {
     l.square = MCSI_WRITE(float, g, sizeof *g);
     l.rays = l.square + l.n;
     l.through = l.rays + l.n;
+    l.prior = l.through + l.n;
     return l;
 }
 #endif
-/* V of tiles: their rays, and V of the region above. */
-MCSI_CORE mcs_f mcsi_visibility(mcs_f rays, mcs_f through, mcs_f above) {
-    const float prior = 4.0f; /* rays */
-    return mcsi_max((through + prior * above) / (rays + prior), mcs_set(0.05f));
+/* V of tiles, whose lists are n floats apart. */
+MCSI_CORE mcs_f mcsi_visibility(const float *rays, size_t n) {
+    const float least = 1e-4f;
+    const float prior_rays = 2.0f;
+    const mcs_f through = mcs_load(rays + n) + prior_rays * mcs_load(rays + 2 * n);
+    return mcsi_max(through / (mcs_load(rays) + prior_rays), mcs_set(least));
 }
 #ifdef MCSI_LOOPS
 /* Adds the squares of reflections towards n tiles. Not above 1e15, so that a thousand of them and more can be added. */
@@ -7499,14 +7514,9 @@ MCSI_LOOP void mcsi_region_points_loop(const mcsi_surface *s, size_t n, const fl
         mcs_store(square + i, mcs_load(square + i) + value * value);
     }
 }
-/* light times V^(3/4). */
-MCSI_LOOP void mcsi_seen_light_loop(const float *above, size_t n, const float *rays, const float *light, float *seen) {
-    const mcs_f one = mcs_set(1.0f);
-    for (size_t i = 0; i < n; i += MCSI_W) {
-        const mcs_f v = mcsi_visibility(mcs_load(rays + i), mcs_load(rays + n + i), above ? mcs_load(above + i) : one);
-        const mcs_f root = mcsi_sqrt(v);
-        mcs_store(seen + i, mcs_load(light + i) * (root * mcsi_sqrt(root)));
-    }
+/* light times V. */
+MCSI_LOOP void mcsi_seen_light_loop(size_t n, const float *rays, const float *light, float *seen) {
+    for (size_t i = 0; i < n; i += MCSI_W) mcs_store(seen + i, mcs_load(light + i) * mcsi_visibility(rays + i, n));
 }
 /* Root mean squares. */
 MCSI_LOOP void mcsi_region_values_loop(float points, size_t n, const float *square, float *value) {
@@ -7516,11 +7526,11 @@ MCSI_LOOP void mcsi_region_values_loop(float points, size_t n, const float *squa
 #endif
 #if MCSI_W == 1
 MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square);
-MCS_FN void mcsi_seen_light_n(const float *above, size_t n, const float *rays, const float *light, float *seen);
+MCS_FN void mcsi_seen_light_n(size_t n, const float *rays, const float *light, float *seen);
 MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value);
 
 MCS_API size_t mcs_region_bytes(uint32_t rows) {
-    return mcsi_tiles_ok(rows) ? sizeof(mcs_region) + 3 * sizeof(float) * 2 * rows * rows : 0;
+    return mcsi_tiles_ok(rows) ? sizeof(mcs_region) + 4 * sizeof(float) * 2 * rows * rows : 0;
 }
 MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles *t) {
     if (!g || !t || ((uintptr_t)g & MCSI_ALIGN)) return MCS_ERR_ARG;
@@ -7529,12 +7539,21 @@ MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles
     MCSI_FILL(g, 0, least);
     g->rows = t->rows;
     g->cols = t->cols;
+    const mcsi_region_lists l = mcsi_region_lists_of(g);
+    for (size_t k = 0; k < l.n; k++) l.prior[k] = 0.25f;
     return MCS_OK;
+}
+MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger) {
+    MCS_ASSERT(g->rows == larger->rows);
+    const mcsi_region_lists l = mcsi_region_lists_of(g);
+    for (size_t k = 0; k < l.n; k++) l.prior[k] = mcs_region_visibility(larger, (uint32_t)k);
 }
 MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
     MCS_ASSERT(g->rows == t->rows);
-    const mcsi_surface s = mcsi_surface_make(e, r);
+    mcsi_surface s = mcsi_surface_make(e, r);
     if (!s.reflects) return;
+    s.ax2 += 0.01f;
+    s.ay2 += 0.01f;
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     mcsi_region_points_n(&s, l.n, MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light), l.square);
     g->points += 1.0f;
@@ -7558,27 +7577,53 @@ MCS_API void mcs_region_decay(mcs_region *g, float keep) {
     g->points *= factor;
     for (size_t k = 0; k < 3 * l.n; k++) l.square[k] *= factor;
 }
-MCS_API float mcs_region_visibility(const mcs_region *g, const mcs_region *up, uint32_t k) {
+MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k) {
     const size_t n = (size_t)g->rows * g->cols;
-    if (k >= n) return 0.0f;
-    const float *rays = MCSI_READ(float, g, sizeof *g) + n + k;
-    return mcsi_visibility(rays[0], rays[n], up ? mcs_region_visibility(up, NULL, k) : 1.0f);
+    return k < n ? mcsi_visibility(MCSI_READ(float, g, sizeof *g) + n + k, n) : 0.0f;
 }
 
 /* ---- [product] building ---- */
 
 /* The light of the tiles, as far as it comes through to the region. */
-MCS_FN void mcsi_product_see(mcs_product *p, const mcs_tiles *t, const mcs_region *g, const mcs_region *up) {
+MCS_FN void mcsi_product_see(mcs_product *p, const mcs_tiles *t, const mcs_region *g) {
     const size_t n = mcsi_tiles_count(t);
     const float *light = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light);
     float *seen = MCSI_WRITE(float, p, p->at.light);
-    if (!g) {
-        MCSI_COPY(seen, light, n * sizeof *seen);
+    if (g) mcsi_seen_light_n(n, MCSI_READ(float, g, sizeof *g) + n, light, seen);
+    else MCSI_COPY(seen, light, n * sizeof *seen);
+}
+MCSI_CORE float mcsi_sum_of_products(const float *a, const float *b, size_t n) {
+    float sum = 0.0f;
+    for (size_t k = 0; k < n; k++) sum += a[k] * b[k];
+    return sum;
+}
+/* Fewer points, which have decayed, count as none: sums of their squares have lost digits. */
+#define MCSI_REGION_POINTS_LEAST 1e-20f
+/* Values of the tiles: the reflections of the region. */
+MCS_FN void mcsi_product_reflect(mcs_product *p, const mcs_region *g) {
+    const size_t n = (size_t)g->rows * g->cols;
+    const float *square = MCSI_READ(float, g, sizeof *g);
+    const float *seen = MCSI_READ(float, p, p->at.light);
+    float *value = MCSI_WRITE(float, p, p->at.value);
+    if (!(g->points > MCSI_REGION_POINTS_LEAST)) {
+        for (size_t k = 0; k < n; k++) value[k] = 1.0f;
         return;
     }
-    float *above = MCSI_WRITE(float, p, p->at.value); /* which is written later */
-    for (size_t k = 0; up && k < n; k++) above[k] = mcs_region_visibility(up, NULL, (uint32_t)k);
-    mcsi_seen_light_n(up ? above : NULL, n, MCSI_READ(float, g, sizeof *g) + n, light, seen);
+    mcsi_region_values_n(g->points, n, square, value);
+    float light = 0.0f;
+    for (size_t k = 0; k < n; k++) light += seen[k];
+    const float mean = mcsi_sum_of_products(seen, value, n) / mcsi_max(light, FLT_MIN);
+    const float even = mcsi_max(0.2f * mean, MCSI_VALUE_LEAST);
+    for (size_t k = 0; k < n; k++) value[k] += even;
+}
+/* A point to which too little light comes through becomes the table of its region. */
+MCS_FN int mcsi_product_hidden(mcs_product *p, const mcs_tiles *t, const mcs_region *g) {
+    const size_t n = mcsi_tiles_count(t);
+    const float *value = MCSI_READ(float, p, p->at.value);
+    const float all = mcsi_sum_of_products(MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light), value, n);
+    if (!(mcsi_sum_of_products(MCSI_READ(float, p, p->at.light), value, n) < 0.1f * all)) return 0;
+    mcsi_product_reflect(p, g);
+    return 1;
 }
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r, const mcs_region *g) {
@@ -7592,11 +7637,15 @@ MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_til
     const mcsi_tiles_offsets from = mcsi_tiles_offsets_of(t);
     p->lobe = mcsi_lobe_make(r, &s);
     p->brdf_share = mcsi_product_lobe_share(&s, t);
-    p->warped = 1;
-    mcsi_product_see(p, t, g, NULL);
+    mcsi_product_see(p, t, g);
     mcsi_tile_values_n(&s, n, MCSI_READ(float, t, from.light), MCSI_WRITE(float, p, p->at.value));
-    mcsi_corner_values_n(&s, n + t->cols, MCSI_READ(float, t, from.corner), MCSI_WRITE(float, p, p->at.corner));
-    if (s.matte < 1.0f && mcsi_lobe_in_cells(&s, n) < MCSI_GRIDS_BELOW) mcsi_product_refine(p, t, &s);
+    const int hidden = g && mcsi_product_hidden(p, t, g);
+    if (g && s.matte < 1.0f) p->brdf_share = mcsi_max(p->brdf_share, hidden ? 0.5f : 0.1f);
+    p->warped = !hidden;
+    if (!hidden) {
+        mcsi_corner_values_n(&s, n + t->cols, MCSI_READ(float, t, from.corner), MCSI_WRITE(float, p, p->at.corner));
+        if (s.matte < 1.0f && mcsi_lobe_in_cells(&s, n) < MCSI_GRIDS_BELOW) mcsi_product_refine(p, t, &s);
+    }
     mcsi_product_finish(p, t);
     return MCS_OK;
 }
@@ -7614,29 +7663,17 @@ MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const
     }
     for (size_t k = 0; k < n; k++) /* of the size of reflections, and none lost to underflow */
         value[k] = value[k] > 0.0f ? mcsi_max((float)((double)value[k] / (double)top), 1e-18f) : 0.0f;
-    mcsi_product_see(p, t, NULL, NULL);
+    mcsi_product_see(p, t, NULL);
     mcsi_product_finish(p, t);
     return MCS_OK;
 }
-/* Fewer points, which have decayed, count as none: sums of their squares have lost digits. */
-#define MCSI_REGION_POINTS_LEAST 1e-20f
-/* No tile has less than this part of the mean value. */
-#define MCSI_REGION_LEAST 0.01f
 MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                            const mcs_region *g, const mcs_region *up) {
+                                            const mcs_region *g) {
     const mcs_status status = mcsi_product_start(p, bytes, t ? mcs_product_table_bytes(t->rows) : 0, t, e, g);
     if (status) return status;
-    MCS_ASSERT(g->rows == t->rows && (!up || up->rows == t->rows));
-    const size_t n = mcsi_tiles_count(t);
-    float *value = MCSI_WRITE(float, p, p->at.value);
-    mcsi_product_see(p, t, g, up);
-    const float *square = MCSI_READ(float, g, sizeof *g);
-    if (g->points > MCSI_REGION_POINTS_LEAST) mcsi_region_values_n(g->points, n, square, value);
-    else MCSI_FILL(value, 0, n * sizeof *value);
-    float sum = 0.0f;
-    for (size_t k = 0; k < n; k++) sum += value[k];
-    const float least = sum > 0.0f ? MCSI_REGION_LEAST / (float)n * sum : 1.0f;
-    for (size_t k = 0; k < n; k++) value[k] = mcsi_max(value[k], least);
+    MCS_ASSERT(g->rows == t->rows);
+    mcsi_product_see(p, t, g);
+    mcsi_product_reflect(p, g);
     mcsi_product_finish(p, t);
     return MCS_OK;
 }
@@ -9036,8 +9073,8 @@ MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l) { MCSI_WIDEST(tile_b
 MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square) {
     MCSI_WIDEST(region_points_loop, (s, n, tile, square));
 }
-MCS_FN void mcsi_seen_light_n(const float *above, size_t n, const float *rays, const float *light, float *seen) {
-    MCSI_WIDEST(seen_light_loop, (above, n, rays, light, seen));
+MCS_FN void mcsi_seen_light_n(size_t n, const float *rays, const float *light, float *seen) {
+    MCSI_WIDEST(seen_light_loop, (n, rays, light, seen));
 }
 MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value) {
     MCSI_WIDEST(region_values_loop, (points, n, square, value));
