@@ -6009,34 +6009,34 @@ MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
 /* What a window has of a row: shares begin to begin + mass of its 2^31, modulo 2^31. */
 typedef struct {
     uint32_t begin, mass;
-} mcsi_share;
+} mcsi_row_part;
 /* The whole map, whose `share` is NULL, or a rectangle of texels. Its row i is row row0 + i of the map. uniform: it is
  * drawn as even light per solid angle. */
 typedef struct {
     mcsi_cdf rows;
     const mcsi_row *row;
-    const mcsi_share *share;
+    const mcsi_row_part *part;
     uint32_t row0, col0, cols, uniform;
 } mcsi_window;
 MCSI_CORE mcsi_window mcsi_env_whole(const mcs_env *e) {
     mcsi_window r;
     r.rows = mcsi_env_rows(e);
     r.row = MCSI_READ(mcsi_row, e, e->offset.row);
-    r.share = NULL;
+    r.part = NULL;
     r.row0 = 0;
     r.col0 = 0;
     r.cols = e->w;
     r.uniform = e->uniform;
     return r;
 }
-/* share: mcsi_share[rows]. sums: uint32_t[rows + 1], with guide: uint16_t[]. */
+/* part: mcsi_row_part[rows]. sums: uint32_t[rows + 1], with guide: uint16_t[]. */
 typedef struct {
-    size_t share, sums, guide, bytes;
+    size_t part, sums, guide, bytes;
 } mcsi_window_offsets;
 MCSI_CORE mcsi_window_offsets mcsi_window_layout(uint32_t rows, uint32_t shift) {
     mcsi_window_offsets o;
-    o.share = sizeof(mcs_env_window);
-    o.sums = o.share + (size_t)rows * sizeof(mcsi_share);
+    o.part = sizeof(mcs_env_window);
+    o.sums = o.part + (size_t)rows * sizeof(mcsi_row_part);
     o.guide = o.sums + ((size_t)rows + 1) * sizeof(uint32_t);
     o.bytes = (size_t)mcsi_up8(o.guide + mcsi_guide_length(shift) * sizeof(uint16_t));
     return o;
@@ -6050,7 +6050,7 @@ MCSI_CORE mcsi_window mcsi_window_of(const mcs_env *e, const mcs_env_window *m) 
     r.rows.shift = m->shift;
     r.rows.guide_bytes = sizeof(uint16_t);
     r.row = MCSI_READ(mcsi_row, e, e->offset.row) + m->row;
-    r.share = MCSI_READ(mcsi_share, m, o.share);
+    r.part = MCSI_READ(mcsi_row_part, m, o.part);
     r.row0 = m->row;
     r.col0 = m->col;
     r.cols = m->cols;
@@ -6062,10 +6062,10 @@ MCS_API size_t mcs_env_window_bytes(uint32_t rows) {
     return mcsi_window_layout(rows, mcsi_guide_shift(rows, 1)).bytes;
 }
 /* What columns [col, col + cols) have of a row of the map; they may go across the seam. */
-MCS_FN mcsi_share mcsi_share_make(const mcs_env *e, uint32_t row, uint32_t col, uint32_t cols) {
+MCS_FN mcsi_row_part mcsi_row_part_make(const mcs_env *e, uint32_t row, uint32_t col, uint32_t cols) {
     const uint32_t *sums = mcsi_env_sums(e, row);
     const uint32_t end = col + cols;
-    mcsi_share s;
+    mcsi_row_part s;
     s.begin = sums[col];
     s.mass = end <= e->w ? sums[end] - sums[col] : MCSI_ONE - sums[col] + sums[end - e->w];
     return s;
@@ -6078,7 +6078,7 @@ MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const m
     const mcsi_cdf map_rows = mcsi_env_rows(e);
     const uint32_t shift = mcsi_guide_shift(rows, 1);
     const mcsi_window_offsets o = mcsi_window_layout(rows, shift);
-    mcsi_share *share = MCSI_WRITE(mcsi_share, m, o.share);
+    mcsi_row_part *part = MCSI_WRITE(mcsi_row_part, m, o.part);
     uint32_t *sums = MCSI_WRITE(uint32_t, m, o.sums);
     MCSI_FILL(m, 0, o.bytes); /* the guide does not always fill its part */
     m->row = row;
@@ -6088,8 +6088,8 @@ MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const m
     m->shift = shift;
     for (uint32_t i = 0; i < rows; i++) {
         const uint32_t mass = e->uniform ? 0 : mcsi_cdf_mass(&map_rows, row + i);
-        if (mass) share[i] = mcsi_share_make(e, row + i, col, cols);
-        mcsi_put_weight(sums + i, (float)((double)mass * share[i].mass));
+        if (mass) part[i] = mcsi_row_part_make(e, row + i, col, cols);
+        mcsi_put_weight(sums + i, (float)((double)mass * part[i].mass));
     }
     m->uniform = !(mcsi_sums_build(sums, rows) > 0.0);
     mcsi_guide_build(MCSI_WRITE(uint16_t, m, o.guide), sizeof(uint16_t), shift, sums, rows);
@@ -6126,7 +6126,7 @@ MCSI_CORE mcsi_draw mcsi_draw_start(float u1, float u2) {
 /* Density of a texel per share of row i, which has light. */
 MCSI_CORE double mcsi_window_row_density(const mcsi_window *r, uint32_t i) {
     const double density = mcsi_cdf_mass(&r->rows, i) * r->row[i].texel_density;
-    return r->share ? density * ((double)MCSI_ONE / r->share[i].mass) : density;
+    return r->part ? density * ((double)MCSI_ONE / r->part[i].mass) : density;
 }
 /* Chooses a row by u2, of which the rest goes to p. */
 MCSI_CORE uint32_t mcsi_window_draw_row(const mcsi_window *r, mcsi_draw *d, mcsi_env_point *p) {
@@ -6140,15 +6140,15 @@ MCSI_CORE uint32_t mcsi_window_draw_row(const mcsi_window *r, mcsi_draw *d, mcsi
     d->density *= mcsi_window_row_density(r, i);
     return i;
 }
-/* From u1 in the window's share of row i to u1 in the row. */
-MCSI_CORE void mcsi_window_draw_share(const mcsi_window *r, uint32_t i, mcsi_draw *d) {
-    if (!r->share) return;
-    const mcsi_share share = r->share[i];
-    /* Rounding must not carry u1 to the end of the share, nor the wrapped value to 2^31 (x87 registers hold values
+/* From u1 in the window's part of row i to u1 in the row. */
+MCSI_CORE void mcsi_window_narrow(const mcsi_window *r, uint32_t i, mcsi_draw *d) {
+    if (!r->part) return;
+    const mcsi_row_part part = r->part[i];
+    /* Rounding must not carry u1 to the end of the part, nor the wrapped value to 2^31 (x87 registers hold values
      * between the largest double below 2^31, 2^-22 below it, and 2^31). */
-    const double u1 = d->u1 * (share.mass * (1.0 / MCSI_ONE));
-    const double end = share.mass - 4.76837158203125e-07;
-    const double unwrapped = share.begin + (u1 < end ? u1 : end);
+    const double u1 = d->u1 * (part.mass * (1.0 / MCSI_ONE));
+    const double end = part.mass - 4.76837158203125e-07;
+    const double unwrapped = part.begin + (u1 < end ? u1 : end);
     const double wrapped = unwrapped - (unwrapped > MCSI_ONE - 2.384185791015625e-07 ? (double)MCSI_ONE : 0.0);
     d->u1 = wrapped > 0.0 ? wrapped : 0.0;
 }
@@ -6299,7 +6299,7 @@ MCSI_CORE mcs_texel mcsi_window_look_up(const mcs_env *e, const mcsi_window *r, 
 MCSI_CORE mcsi_env_point mcsi_window_draw_point(const mcs_env *e, const mcsi_window *r, mcsi_draw *d, mcs_texel *x) {
     mcsi_env_point p;
     const uint32_t i = mcsi_window_draw_row(r, d, &p);
-    mcsi_window_draw_share(r, i, d);
+    mcsi_window_narrow(r, i, d);
     const mcsi_cdf columns = mcsi_env_columns(e, r->row0 + i);
     const mcsi_candidates c = mcsi_candidate_columns(&columns, (uint32_t)(int32_t)d->u1);
     x->row = r->row0 + i;
@@ -6358,7 +6358,7 @@ MCSI_CORE void mcsi_block_row(const mcs_env *e, const mcsi_window *r, mcsi_draw 
         mcsi_block_column(b, k, &p, d.density);
     } else {
         const uint32_t i = mcsi_window_draw_row(r, &d, &p);
-        mcsi_window_draw_share(r, i, &d);
+        mcsi_window_narrow(r, i, &d);
         b->in_row[k] = r->row0 + i;
         b->sums[k] = mcsi_env_sums(e, r->row0 + i);
         b->guide[k] = mcsi_env_guide(e, r->row0 + i);
@@ -6546,9 +6546,9 @@ MCSI_CORE mcsi_position mcsi_window_position(const mcs_env *e, const mcsi_window
     } else {
         const uint32_t *rows = r->rows.sums + (spot->row - r->row0);
         const uint32_t *sums = mcsi_env_sums(e, spot->row) + spot->col;
-        const mcsi_share *share = r->share + (spot->row - r->row0);
-        const double u1 = sums[0] + spot->across * (sums[1] - sums[0]) - share->begin;
-        t.t1 = (float)((u1 < 0.0 ? u1 + MCSI_ONE : u1) / share->mass);
+        const mcsi_row_part *part = r->part + (spot->row - r->row0);
+        const double u1 = sums[0] + spot->across * (sums[1] - sums[0]) - part->begin;
+        t.t1 = (float)((u1 < 0.0 ? u1 + MCSI_ONE : u1) / part->mass);
         t.t2 = (float)((rows[0] + spot->down * (rows[1] - rows[0])) / MCSI_ONE);
     }
     t.t1 = mcsi_min(mcsi_max(t.t1, 0.0f), 1.0f);
@@ -6560,7 +6560,7 @@ MCSI_CORE void mcsi_window_prefetch(const mcsi_window *r, double u2) {
     const uint32_t row = (uint32_t)(u2 * r->rows.n * (1.0 / MCSI_ONE));
     MCSI_PREFETCH((const uint16_t *)r->rows.guide + row);
     MCSI_PREFETCH(r->rows.sums + row);
-    MCSI_PREFETCH(r->share + row);
+    MCSI_PREFETCH(r->part + row);
 }
 #endif
 
