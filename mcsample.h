@@ -1611,8 +1611,7 @@ typedef struct {
 /* What a part of a scene has learned: see [region]. */
 typedef struct {
     uint32_t rows, cols; /* of tiles */
-    float points;        /* reflections that were added */
-    uint32_t unused;     /* private */
+    float points, rays;  /* how many were added */
 } mcs_region;            /* more lies behind it: see mcsi_region_lists */
 
 /* A lobe to draw from. Private. */
@@ -1700,6 +1699,8 @@ MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const
 MCS_API mcs_texel mcs_product_sample(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, float u1, float u2);
 /* The density with which mcs_product_sample draws w. */
 MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w);
+/* Density and texel of w, for radiance and density in one look-up. A bad w is answered as frame.n, with density 0. */
+MCS_API mcs_texel mcs_product_texel(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
 /* n samples. Each result, x, y, z (components of w), pdf, col and row (of the texel), holds n numbers or is NULL. */
 MCS_API void mcs_product_sample_n(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, size_t n, const float *u1,
@@ -1719,7 +1720,7 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *
  *     mcs_region_start(g, bytes, t);
  *     for a dozen points or more: mcs_region_add_point(g, t, e, &reflection);
- *     mcs_product_build_region(p, size, t, e, g);                  and again when the number of its rays has doubled
+ *     mcs_product_build_region(p, size, t, e, g);                  and again when g->rays has doubled
  *     for each sample: mcs_region_add_ray(g, mcs_tiles_of_texel(t, e, s.col, s.row), through);
  *
  * A tile of the table weighs
@@ -1735,9 +1736,11 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *           larger region (mcs_region_inherit)
  *
  * So all light can be drawn, whatever was learned: nothing is biased, as long as no table is built of the rays of the
- * very samples that are drawn from it. Rebuild it between passes.
+ * very samples that are drawn from it. Add the rays of a pass to regions of their own, merge these behind it, rebuild
+ * the tables, and empty them by mcs_region_decay(g, 0).
  *
- * Pair each sample with one of the BRDF by mcs_mis_balance (mcs_mis_power for lobes narrower than a tile).
+ * Pair each sample with one of the BRDF by mcs_mis_balance (mcs_mis_power for lobes narrower than a tile), and add its
+ * ray, too.
  *
  *   g          a region, in memory of yours like a product; it holds no pointers
  *   points     Reflections above the surface; others are not added. Without any, f is 1.
@@ -7561,6 +7564,7 @@ MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_e
 MCS_API void mcs_region_add_ray(mcs_region *g, uint32_t k, int through) {
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     if (k >= l.n) return;
+    g->rays += 1.0f;
     l.rays[k] += 1.0f;
     if (through) l.through[k] += 1.0f;
 }
@@ -7569,12 +7573,14 @@ MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other) {
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     const float *add = MCSI_READ(float, other, sizeof *other);
     g->points += other->points;
+    g->rays += other->rays;
     for (size_t k = 0; k < 3 * l.n; k++) l.square[k] += add[k];
 }
 MCS_API void mcs_region_decay(mcs_region *g, float keep) {
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     const float factor = mcsi_sane_parameter(keep >= 0.0f, keep, 0.0f, 1.0f);
     g->points *= factor;
+    g->rays *= factor;
     for (size_t k = 0; k < 3 * l.n; k++) l.square[k] *= factor;
 }
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k) {
@@ -7820,6 +7826,10 @@ MCS_API mcs_texel mcs_product_sample(const mcs_product *p, const mcs_tiles *t, c
 MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
     MCS_ASSERT(p->rows == t->rows);
     return mcsi_product_look_up(p, t, e, w).pdf;
+}
+MCS_API mcs_texel mcs_product_texel(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
+    MCS_ASSERT(p->rows == t->rows);
+    return mcsi_product_look_up(p, t, e, w);
 }
 
 /* ---- [product] arrays ----
