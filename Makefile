@@ -147,7 +147,7 @@ $(SHARED)/%.o: tests/shared/%.c mcsample.h $(wildcard tests/*.h) $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(FLAGS) $(EXACT) $(SHARED_FLAGS) -c $< -o $@
 
-$(RENDER): examples/render.c examples/hdr.h mcsample.h $(BUILD)/flags
+$(RENDER): examples/render.c $(wildcard examples/render_*.h) examples/hdr.h mcsample.h $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(FLAGS) $(OPENMP) $< -o $@ $(LIBS)
 

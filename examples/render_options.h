@@ -1,0 +1,188 @@
+/* render_options.h - the command line of render.c. */
+#ifndef RENDER_OPTIONS_H
+#define RENDER_OPTIONS_H
+#include <errno.h>
+#include "render_base.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#define OMP(directive) _Pragma(#directive)
+#else
+#define OMP(directive)
+#endif
+
+typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, PRODUCT, STRATEGIES } strategy;
+static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine", "brdf", "env", "mis", "product"};
+
+typedef struct {
+    unsigned w, h, spp, lights;
+    double seconds; /* of processor time after which to stop, 0: take spp samples */
+    double error;   /* relative standard error of the mean at which to stop, 0: take spp samples */
+    uint64_t seed;
+    int help, threads, wanted[STRATEGIES];
+    float stops;
+    const char *out, *map, *stack;
+} options;
+
+static void usage(void) {
+    fputs("usage: render [options] [map.hdr]     (--option value or --option=value)\n"
+          "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
+          "  --strategy LIST    uniform, cosine, brdf, env, mis, product, several with commas, or all (mis)\n"
+          "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384); 1 leaves the "
+          "error unknown\n"
+          "  --lights N         estimates of the light at each point that a sample sees (1)\n"
+          "  --seconds T        stop each strategy after T seconds of processor time: pictures of equal cost\n"
+          "  --error E          stop when the standard error of the mean of the picture is E times the mean\n"
+          "  --size WxH         size of the picture (960x320)\n"
+          "  --stops X          brighten the PNG by X stops from what suits the map (0)\n"
+          "  --out PREFIX       write PREFIX-STRATEGY.png and PREFIX-STRATEGY.hdr (render)\n"
+          "  --stack FILE       write all pictures into one PNG too, one below the other\n"
+          "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on "
+          "it\n"
+          "  --seed N           another set of random numbers (1)\n"
+          "  -h, --help         this text\n"
+          "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
+          "The camera has the main light of the map behind it at the left.\n"
+          "examples/product.png: render --strategy mis,product --lights 16 --seconds 2 --size 480x160 --threads 1\n"
+          "    --out build/product --stack examples/product.png\n",
+          stdout);
+}
+
+/* The shortest decimal text of a number without an exponent. */
+static const char *plain(double v, char text[64]) {
+    int digits = 0;
+    do snprintf(text, 64, "%.*f", digits, v);
+    while (strtod(text, NULL) != v && digits++ < 20);
+    return text;
+}
+
+static int parse_name(const char *name, const char *text, const char **value) {
+    if (!*text) return complain(name, "the name is empty");
+    *value = text;
+    return 1;
+}
+
+static int parse_size(const char *text, options *o) {
+    char more;
+    if (sscanf(text, "%6ux%6u%c", &o->w, &o->h, &more) != 2)
+        return complain("--size", "'%s' is not WIDTHxHEIGHT", text);
+    if (o->w - 1 < 16384 && o->h - 1 < 16384 && o->w * o->h <= 1u << 25) return 1;
+    return complain("--size", "each side is from 1 to 16384, with at most %u pixels in all", 1u << 25);
+}
+
+static int parse_strategies(const char *list, options *o) {
+    memset(o->wanted, 0, sizeof o->wanted);
+    for (;;) {
+        const size_t n = strcspn(list, ",");
+        int known = 0;
+        for (int i = 0; i < STRATEGIES; i++)
+            if ((n == 3 && !strncmp(list, "all", 3)) ||
+                (n == strlen(strategy_name[i]) && !strncmp(list, strategy_name[i], n)))
+                known = o->wanted[i] = 1;
+        if (!known)
+            return complain("--strategy", "'%.*s' is none of uniform, cosine, brdf, env, mis, product, all", (int)n,
+                            list);
+        if (!list[n]) return 1;
+        list += n + 1;
+    }
+}
+
+typedef enum {
+    O_STRATEGY,
+    O_SIZE,
+    O_OUT,
+    O_STACK,
+    O_SPP,
+    O_LIGHTS,
+    O_SECONDS,
+    O_ERROR,
+    O_STOPS,
+    O_THREADS,
+    O_SEED,
+    OPTIONS
+} option;
+static const struct {
+    const char *name;
+    double low, high; /* of numbers */
+    int whole;
+} option_table[OPTIONS] = {{"--strategy", 0, 0, 0},     {"--size", 0, 0, 0},     {"--out", 0, 0, 0},
+                           {"--stack", 0, 0, 0},        {"--spp", 1, 1e6, 1},    {"--lights", 1, 4096, 1},
+                           {"--seconds", 1e-3, 1e6, 0}, {"--error", 1e-7, 1, 0}, {"--stops", -20, 20, 0},
+                           {"--threads", 1, 1024, 1},   {"--seed", 0, 9e15, 1}};
+
+static int parse_number(option which, const char *text, double *value) {
+    const double low = option_table[which].low;
+    const double high = option_table[which].high;
+    const int whole = option_table[which].whole;
+    errno = 0;
+    char *end;
+    *value = strtod(text, &end);
+    if (end != text && !*end && !errno && *value >= low && *value <= high && (!whole || *value == floor(*value)))
+        return 1;
+    char from[64], to[64];
+    return complain(option_table[which].name, "'%s' is not a %s from %s to %s", text, whole ? "whole number" : "number",
+                    plain(low, from), plain(high, to));
+}
+
+static int parse_value(option which, const char *text, options *o) {
+    switch (which) {
+    case O_STRATEGY: return parse_strategies(text, o);
+    case O_SIZE: return parse_size(text, o);
+    case O_OUT: return parse_name(option_table[which].name, text, &o->out);
+    case O_STACK: return parse_name(option_table[which].name, text, &o->stack);
+    default: break;
+    }
+    double v;
+    if (!parse_number(which, text, &v)) return 0;
+    switch (which) {
+    case O_SPP: o->spp = (uint32_t)v; break;
+    case O_LIGHTS: o->lights = (uint32_t)v; break;
+    case O_SECONDS: o->seconds = v; break;
+    case O_ERROR: o->error = v; break;
+    case O_STOPS: o->stops = (float)v; break;
+    case O_THREADS: o->threads = (int)v; break;
+    default: o->seed = (uint64_t)v;
+    }
+    return 1;
+}
+
+/* The option that an argument names, alone or with =value. OPTIONS: none. */
+static option find_option(const char *argument) {
+    const size_t n = strcspn(argument, "=");
+    int i = 0;
+    while (i < OPTIONS && !(strlen(option_table[i].name) == n && !strncmp(argument, option_table[i].name, n))) i++;
+    return (option)i;
+}
+
+/* Returns 0 for a wrong argument. */
+static int parse_arguments(int argc, char **argv, options *o) {
+    memset(o, 0, sizeof *o);
+    o->w = 960;
+    o->h = 320;
+    o->seed = 1;
+    o->lights = 1;
+    o->wanted[MIS] = 1;
+    o->out = "render";
+    for (int i = 1; i < argc; i++) {
+        const option which = find_option(argv[i]);
+        const char *text = strchr(argv[i], '=');
+        if (!strcmp(argv[i], "-h") || !strcmp(argv[i], "--help")) return o->help = 1;
+        if (argv[i][0] != '-') {
+            if (o->map) return complain(argv[i], "only one map can be given");
+            if (!parse_name("map", argv[i], &o->map)) return 0;
+            continue;
+        }
+        if (which == OPTIONS) return complain(argv[i], "unknown option; --help lists them");
+        if (!text && i + 1 == argc) return complain(argv[i], "its value is missing");
+        if (!parse_value(which, text ? text + 1 : argv[++i], o)) return 0;
+    }
+    if (!o->spp) o->spp = o->error > 0 || o->seconds > 0 ? 16384 : 64;
+#ifdef _OPENMP
+    if (!o->threads) o->threads = omp_get_max_threads();
+#else
+    o->threads = 1;
+#endif
+    return 1;
+}
+
+#endif
