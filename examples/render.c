@@ -33,7 +33,7 @@ typedef struct {
     unsigned spp;
     double samples, wall, cpu; /* light samples; seconds on the clock, and of all threads together */
     double mean, error;        /* of the luminance of the picture; the standard error of that mean, INFINITY: unknown */
-    double mse[SPHERES + 1];   /* mean squared error of a pixel, by object */
+    double mse[OBJECTS];       /* mean squared error of a pixel, by object */
 } outcome;
 
 typedef struct {
@@ -65,10 +65,9 @@ static void render_row(const options *o, const scene *s, const environment *e, s
     for (uint32_t x = 0; x < o->w; x++) {
         pixel *p = row + x;
         for (uint32_t i = 0; i < n; i++) {
-            const float px =
-                2 * ((float)x + mcs_pcg32_float(&p->rng)) / (float)o->w - 1; /* a box filter: anywhere in the pixel */
-            const float py = 1 - 2 * ((float)y + mcs_pcg32_float(&p->rng)) / (float)o->h;
-            const vec3 w = unit(add(s->forward, add(scale(px, s->right), scale(py, s->up))));
+            const float px = ((float)x + mcs_pcg32_float(&p->rng)) / (float)o->w; /* a box filter: anywhere in it */
+            const float py = ((float)y + mcs_pcg32_float(&p->rng)) / (float)o->h;
+            const vec3 w = camera_ray(s, px, py);
             surface at;
             const vec3 c =
                 intersect(s, s->eye, w, &at) ? direct(s, e, &at, how, o->lights, &p->rng, &p->drawn) : radiance(e, w);
@@ -85,7 +84,7 @@ static void render_row(const options *o, const scene *s, const environment *e, s
  * error come out low until they do. */
 static void picture_statistics(const pixel *p, size_t n, outcome *r) {
     double variance = 0;
-    double count[SPHERES + 1] = {0};
+    double count[OBJECTS] = {0};
     r->mean = r->samples = 0;
     memset(r->mse, 0, sizeof r->mse);
     for (size_t i = 0; i < n; i++) {
@@ -98,7 +97,7 @@ static void picture_statistics(const pixel *p, size_t n, outcome *r) {
             count[p[i].object]++;
         }
     }
-    for (int k = 0; k <= SPHERES; k++) r->mse[k] /= fmax(count[k], 1);
+    for (int k = 0; k < OBJECTS; k++) r->mse[k] /= fmax(count[k], 1);
     r->mean /= (double)n;
     r->error = r->spp > 1 ? sqrt(variance) / (double)n : INFINITY; /* one sample tells nothing of its error */
 }
@@ -177,14 +176,15 @@ static void print_comparison(const options *o, const outcome *result) {
 /* Over the pixels that show nothing but that object. */
 static void print_objects(const options *o, const outcome *result) {
     static const char *const name[] = {"matte",  "Phong",  "Ward.18", "Ward ani", "GGX.06",
-                                       "GGX.12", "GGX.40", "A.-S.",   "ground"};
+                                       "GGX.12", "GGX.40", "A.-S.",   "ground",   "walls"};
+    const int objects = o->in_room ? OBJECTS : WALLS;
     printf("\nmean squared error of a pixel x cpu s, over that of mis\nstrategy");
-    for (int k = 0; k <= SPHERES; k++) printf(" %9s", name[k]);
+    for (int k = 0; k < objects; k++) printf(" %9s", name[k]);
     putchar('\n');
     for (int i = 0; i < STRATEGIES; i++) {
         if (!o->wanted[i] || i == MIS) continue;
         printf("%-8s", strategy_name[i]);
-        for (int k = 0; k <= SPHERES; k++) {
+        for (int k = 0; k < objects; k++) {
             const double mis = result[MIS].mse[k] * result[MIS].cpu;
             printf(" %9.3g", mis > 0 ? result[i].mse[k] * result[i].cpu / mis : 0);
         }
@@ -209,7 +209,7 @@ int main(int argc, char **argv) {
     pixel *image;
     image = malloc((o.stack ? count : 1) * pixels * sizeof *image); /* a stack needs all of them at once */
     int ok = image ? environment_make(&e, o.map) : complain("--size", "not enough memory for the picture");
-    const scene s = scene_make(o.w, o.h, e.main_light);
+    const scene s = scene_make(o.in_room, o.w, o.h, e.main_light);
     if (ok) {
         printf("%s %u x %u, picture %u x %u, %d thread%s\n", o.map ? o.map : "built-in sky", e.map.w, e.map.h, o.w, o.h,
                o.threads, o.threads > 1 ? "s" : "");

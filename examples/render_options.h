@@ -19,7 +19,7 @@ typedef struct {
     double seconds; /* of processor time after which to stop, 0: take spp samples */
     double error;   /* relative standard error of the mean at which to stop, 0: take spp samples */
     uint64_t seed;
-    int help, threads, wanted[STRATEGIES];
+    int help, threads, in_room, wanted[STRATEGIES];
     float stops;
     const char *out, *map, *stack;
 } options;
@@ -27,6 +27,7 @@ typedef struct {
 static void usage(void) {
     fputs("usage: render [options] [map.hdr]     (--option value or --option=value)\n"
           "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
+          "  --scene NAME       spheres, in the open, or room: the same in a room with one window (spheres)\n"
           "  --strategy LIST    uniform, cosine, brdf, env, mis, product, several with commas, or all (mis)\n"
           "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384); 1 leaves the "
           "error unknown\n"
@@ -70,6 +71,12 @@ static int parse_size(const char *text, options *o) {
     return complain("--size", "each side is from 1 to 16384, with at most %u pixels in all", 1u << 25);
 }
 
+static int parse_scene(const char *text, options *o) {
+    o->in_room = !strcmp(text, "room");
+    if (o->in_room || !strcmp(text, "spheres")) return 1;
+    return complain("--scene", "'%s' is none of spheres, room", text);
+}
+
 static int parse_strategies(const char *list, options *o) {
     memset(o->wanted, 0, sizeof o->wanted);
     for (;;) {
@@ -88,6 +95,7 @@ static int parse_strategies(const char *list, options *o) {
 }
 
 typedef enum {
+    O_SCENE,
     O_STRATEGY,
     O_SIZE,
     O_OUT,
@@ -105,10 +113,10 @@ static const struct {
     const char *name;
     double low, high; /* of numbers */
     int whole;
-} option_table[OPTIONS] = {{"--strategy", 0, 0, 0},     {"--size", 0, 0, 0},     {"--out", 0, 0, 0},
-                           {"--stack", 0, 0, 0},        {"--spp", 1, 1e6, 1},    {"--lights", 1, 4096, 1},
-                           {"--seconds", 1e-3, 1e6, 0}, {"--error", 1e-7, 1, 0}, {"--stops", -20, 20, 0},
-                           {"--threads", 1, 1024, 1},   {"--seed", 0, 9e15, 1}};
+} option_table[OPTIONS] = {{"--scene", 0, 0, 0},     {"--strategy", 0, 0, 0},     {"--size", 0, 0, 0},
+                           {"--out", 0, 0, 0},       {"--stack", 0, 0, 0},        {"--spp", 1, 1e6, 1},
+                           {"--lights", 1, 4096, 1}, {"--seconds", 1e-3, 1e6, 0}, {"--error", 1e-7, 1, 0},
+                           {"--stops", -20, 20, 0},  {"--threads", 1, 1024, 1},   {"--seed", 0, 9e15, 1}};
 
 static int parse_number(option which, const char *text, double *value) {
     const double low = option_table[which].low;
@@ -126,6 +134,7 @@ static int parse_number(option which, const char *text, double *value) {
 
 static int parse_value(option which, const char *text, options *o) {
     switch (which) {
+    case O_SCENE: return parse_scene(text, o);
     case O_STRATEGY: return parse_strategies(text, o);
     case O_SIZE: return parse_size(text, o);
     case O_OUT: return parse_name(option_table[which].name, text, &o->out);
