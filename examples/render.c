@@ -38,7 +38,7 @@ typedef struct {
 
 typedef struct {
     const char *what;
-    double start, last, rows, done; /* seconds; rows of all passes, -1 where nobody watches */
+    double start, last, rows, done; /* seconds; rows times samples, -1 where nobody watches */
 } progress;
 
 static double seconds(clockid_t clock_id) {
@@ -47,35 +47,63 @@ static double seconds(clockid_t clock_id) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void progress_row(progress *p) {
+static void progress_row(progress *p, uint32_t samples) {
     if (p->rows < 0) return;
     OMP(omp critical(progress)) {
         const double now = seconds(CLOCK_MONOTONIC);
-        p->done++;
+        p->done += samples;
         if (now - p->last > 0.2) {
             p->last = now;
-            fprintf(stderr, "\r%-8s row %.0f of %.0f, %.0f s left \033[K", p->what, p->done, p->rows,
+            fprintf(stderr, "\r%-8s %.0f %%, %.0f s left \033[K", p->what, 100 * p->done / p->rows,
                     fmax(0, (now - p->start) * (p->rows / p->done - 1)));
         }
     }
 }
 
-static void render_row(const options *o, const scene *s, const environment *e, strategy how, uint32_t y, uint32_t n,
-                       pixel *row) {
-    for (uint32_t x = 0; x < o->w; x++) {
-        pixel *p = row + x;
-        for (uint32_t i = 0; i < n; i++) {
-            const float px = ((float)x + mcs_pcg32_float(&p->rng)) / (float)o->w; /* a box filter: anywhere in it */
-            const float py = ((float)y + mcs_pcg32_float(&p->rng)) / (float)o->h;
-            const vec3 w = camera_ray(s, px, py);
-            surface at;
-            const vec3 c =
-                intersect(s, s->eye, w, &at) ? direct(s, e, &at, how, o->lights, &p->rng, &p->drawn) : radiance(e, w);
-            p->object = p->luminance.n > 0 && at.object != p->object ? NO_OBJECT : at.object;
-            p->sum = add(p->sum, c);
-            mcs_stat_add(&p->luminance, luminance(c));
-        }
+/* What is rendered, and how. */
+typedef struct {
+    const options *o;
+    const scene *s;
+    const environment *e;
+    strategy how;
+    learning *l; /* NULL for strategies that do not learn */
+} job;
+
+static void render_pixel(const job *j, float x, float y, pixel *p, shadow_rays *rays) {
+    const float px = (x + mcs_pcg32_float(&p->rng)) / (float)j->o->w; /* a box filter: anywhere in the pixel */
+    const float py = (y + mcs_pcg32_float(&p->rng)) / (float)j->o->h;
+    const vec3 w = camera_ray(j->s, px, py);
+    surface at;
+    vec3 c;
+    if (intersect(j->s, j->s->eye, w, &at)) {
+        const uint16_t number = j->l ? region_of(j->l, j->s, &at) : 0;
+        lit_point here = {j->s, j->e, &at, &p->rng, j->l, number, rays, 0};
+        c = direct(&here, j->how, j->o->lights);
+        p->drawn += here.drawn;
+    } else {
+        c = radiance(j->e, w);
     }
+    p->object = p->luminance.n > 0 && at.object != p->object ? NO_OBJECT : at.object;
+    p->sum = add(p->sum, c);
+    mcs_stat_add(&p->luminance, luminance(c));
+}
+
+/* n samples of each pixel of row y. */
+static void render_row(const job *j, uint32_t y, uint32_t n, pixel *row) {
+    shadow_rays rays;
+    rays.count = 0;
+    for (uint32_t x = 0; x < j->o->w; x++)
+        for (uint32_t i = 0; i < n; i++) render_pixel(j, (float)x, (float)y, row + x, &rays);
+    if (j->l) shadow_rays_deliver(j->l, &rays);
+}
+
+/* Samples per pixel of the next pass. Those that learn begin with short passes, 1, 1, 2, 4, ..., since a pass draws from
+ * what the passes before it have learned. */
+static unsigned pass_length(const job *j, unsigned done) {
+    unsigned n = PASS;
+    if (j->l && done < n) n = done > 0 ? done : 1;
+    if (j->o->seconds > 0) n = 1;
+    return n < j->o->spp - done ? n : j->o->spp - done;
 }
 
 /* The pixels are strata of equal size, each with its own independent samples: the variance of the mean of the picture
@@ -102,13 +130,40 @@ static void picture_statistics(const pixel *p, size_t n, outcome *r) {
     r->error = r->spp > 1 ? sqrt(variance) / (double)n : INFINITY; /* one sample tells nothing of its error */
 }
 
-/* Every pixel has its own stream, seeded from (seed, pixel, strategy), and owns all that it
- * changes: the picture does not depend on the number of threads. */
-static outcome render(const options *o, const scene *s, const environment *e, strategy how, pixel *image) {
+/* Whether another pass is needed. */
+static int unfinished(const options *o, const outcome *r) {
+    if (o->error > 0 && r->spp > 0 && r->error <= o->error * r->mean) return 0;
+    if (o->seconds > 0 && r->spp > 1 && r->cpu >= o->seconds) return 0;
+    return r->spp < o->spp;
+}
+
+static void render_passes(const job *j, pixel *image, outcome *r, progress *p) {
+    const options *o = j->o;
+    const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - r->cpu;
+    while (unfinished(o, r)) {
+        const uint32_t n = pass_length(j, r->spp);
+        OMP(omp parallel for schedule(dynamic) num_threads(o->threads))
+        for (int y = 0; y < (int)o->h; y++) {
+            render_row(j, (uint32_t)y, n, image + (size_t)y * o->w);
+            progress_row(p, n);
+        }
+        if (j->l) learning_advance(j->l);
+        r->spp += n;
+        picture_statistics(image, (size_t)o->w * o->h, r);
+        if (p->rows >= 0 && o->error > 0 && r->mean > 0) /* the error falls with the root of the samples */
+            p->rows = fmin(p->rows, p->done * fmax(1, pow(r->error / (o->error * r->mean), 2)));
+        r->cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
+        if (p->rows >= 0 && o->seconds > 0) p->rows = fmin(p->rows, p->done * fmax(1, o->seconds / r->cpu));
+    }
+}
+
+/* Every pixel has its own stream, seeded from (seed, pixel, strategy), and owns all that it changes; what all learn from
+ * each other only changes between passes: the picture does not depend on the number of threads. Returns 0 after a
+ * complaint. */
+static int render(const options *o, const scene *s, const environment *e, strategy how, pixel *image, outcome *r) {
     const size_t pixels = (size_t)o->w * o->h;
-    outcome r = {0, 0, 0, 0, 0, 0, {0}};
-    const unsigned pass = o->seconds > 0 ? 1 : PASS;
-    progress p = {strategy_name[how], seconds(CLOCK_MONOTONIC), 0, o->h * ceil(o->spp / (double)pass), 0};
+    memset(r, 0, sizeof *r);
+    progress p = {strategy_name[how], seconds(CLOCK_MONOTONIC), 0, o->h * (double)o->spp, 0};
     const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     const int watched = isatty(fileno(stderr));
     if (!watched) p.rows = -1;
@@ -116,24 +171,17 @@ static outcome render(const options *o, const scene *s, const environment *e, st
         memset(&image[i], 0, sizeof image[i]);
         image[i].rng = mcs_pcg32_for(o->seed, i, how);
     }
-    while (r.spp < o->spp && !(o->error > 0 && r.spp > 0 && r.error <= o->error * r.mean) &&
-           !(o->seconds > 0 && r.spp > 1 && r.cpu >= o->seconds)) {
-        const uint32_t n = o->spp - r.spp < pass ? o->spp - r.spp : pass;
-        OMP(omp parallel for schedule(dynamic) num_threads(o->threads))
-        for (int y = 0; y < (int)o->h; y++) {
-            render_row(o, s, e, how, (uint32_t)y, n, image + (size_t)y * o->w);
-            progress_row(&p);
-        }
-        r.spp += n;
-        picture_statistics(image, pixels, &r);
-        if (watched && o->error > 0 && r.mean > 0) /* the error falls with the root of the samples */
-            p.rows = fmin(p.rows, p.done * fmax(1, pow(r.error / (o->error * r.mean), 2)));
-        r.cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
-        if (watched && o->seconds > 0) p.rows = fmin(p.rows, p.done * fmax(1, o->seconds / r.cpu));
+    job j = {o, s, e, how, NULL};
+    if (how == REGION || how == LEARNED) {
+        j.l = learning_make(s, e, pixels, how == REGION);
+        if (!j.l) return 0;
     }
+    r->cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
+    render_passes(&j, image, r, &p);
     if (watched) fputs("\r\033[K", stderr);
-    r.wall = seconds(CLOCK_MONOTONIC) - p.start;
-    return r;
+    r->wall = seconds(CLOCK_MONOTONIC) - p.start;
+    learning_free(j.l);
+    return 1;
 }
 
 /* ---- The command ---- */
@@ -192,9 +240,41 @@ static void print_objects(const options *o, const outcome *result) {
     }
 }
 
+/* Renders every strategy that is wanted, prints its row and writes its pictures. `next` is how far the image of one is
+ * from that of the next: 0 where all share one. Returns 0 after a complaint. */
+static int render_all(const options *o, const scene *s, const environment *e, pixel *image, size_t next,
+                      outcome *result) {
+    printf("%s %u x %u, picture %u x %u, %d thread%s\n", o->map ? o->map : "built-in sky", e->map.w, e->map.h, o->w,
+           o->h, o->threads, o->threads > 1 ? "s" : "");
+    print_head();
+    int ok = flush_output();
+    for (int i = 0; ok && i < STRATEGIES; i++) {
+        if (!o->wanted[i]) continue;
+        ok = render(o, s, e, (strategy)i, image, &result[i]);
+        if (ok) print_row((strategy)i, &result[i]);
+        ok = ok && flush_output() && write_pictures(o, (strategy)i, e, image);
+        image += next;
+    }
+    return ok;
+}
+
+static void print_tables(const options *o, unsigned count, const outcome *result) {
+    puts("samples: light samples; efficiency: 1 / (std error^2 x cpu s)");
+    if (count < 2 || o->spp < 2) return;
+    print_comparison(o, result);
+    if (o->wanted[MIS]) print_objects(o, result);
+}
+
+static int reached_error(const options *o, const outcome *result) {
+    char error[64];
+    for (int i = 0; i < STRATEGIES; i++)
+        if (o->wanted[i] && o->error > 0 && !(result[i].error <= o->error * result[i].mean))
+            return complain(strategy_name[i], "error %s not reached with %u sample%s per pixel", plain(o->error, error),
+                            result[i].spp, result[i].spp > 1 ? "s" : "");
+    return 1;
+}
+
 int main(int argc, char **argv) {
-    unsigned shown = 0;
-    unsigned count = 0;
     options o;
     if (!parse_arguments(argc, argv, &o)) return 2;
     if (o.help) {
@@ -202,36 +282,22 @@ int main(int argc, char **argv) {
         return flush_output() ? 0 : 1;
     }
     if (!can_write_pictures(&o)) return 1;
-    environment e;
-    memset(&e, 0, sizeof e);
+    unsigned count = 0;
     for (int i = 0; i < STRATEGIES; i++) count += o.wanted[i] != 0;
     const size_t pixels = (size_t)o.w * o.h;
+    const int sheets = o.stack || o.beside; /* they need all pictures at once */
     pixel *image;
-    image = malloc((o.stack ? count : 1) * pixels * sizeof *image); /* a stack needs all of them at once */
+    image = malloc((sheets ? count : 1) * pixels * sizeof *image);
+    environment e;
+    memset(&e, 0, sizeof e);
     int ok = image ? environment_make(&e, o.map) : complain("--size", "not enough memory for the picture");
-    const scene s = scene_make(o.in_room, o.w, o.h, e.main_light);
     if (ok) {
-        printf("%s %u x %u, picture %u x %u, %d thread%s\n", o.map ? o.map : "built-in sky", e.map.w, e.map.h, o.w, o.h,
-               o.threads, o.threads > 1 ? "s" : "");
-        print_head();
-        ok = flush_output();
+        const scene s = scene_make(o.in_room, o.w, o.h, e.main_light);
+        outcome result[STRATEGIES];
+        ok = render_all(&o, &s, &e, image, sheets ? pixels : 0, result);
+        if (ok) print_tables(&o, count, result);
+        ok = ok && flush_output() && (!sheets || write_sheets(&o, &e, image, count)) && reached_error(&o, result);
     }
-    outcome result[STRATEGIES];
-    for (int i = 0; ok && i < STRATEGIES; i++) {
-        if (!o.wanted[i]) continue;
-        result[i] = render(&o, &s, &e, (strategy)i, image + (o.stack ? shown : 0) * pixels);
-        print_row((strategy)i, &result[i]);
-        ok = flush_output() && write_pictures(&o, (strategy)i, &e, image + (o.stack ? shown++ : 0) * pixels);
-    }
-    if (ok) puts("samples: light samples; efficiency: 1 / (std error^2 x cpu s)");
-    if (ok && count > 1 && o.spp > 1) print_comparison(&o, result);
-    if (ok && count > 1 && o.spp > 1 && o.wanted[MIS]) print_objects(&o, result);
-    ok = ok && flush_output() && (!o.stack || png_write(o.stack, image, o.w, shown * o.h, exposure_for(&o, &e)));
-    char error[64];
-    for (int i = 0; ok && i < STRATEGIES; i++)
-        if (o.wanted[i] && o.error > 0 && !(result[i].error <= o.error * result[i].mean))
-            ok = complain(strategy_name[i], "error %s not reached with %u sample%s per pixel", plain(o.error, error),
-                          result[i].spp, result[i].spp > 1 ? "s" : "");
     free(image);
     free(e.map.pixel);
     free(e.table);

@@ -11,8 +11,9 @@
 #define OMP(directive)
 #endif
 
-typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, PRODUCT, STRATEGIES } strategy;
-static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine", "brdf", "env", "mis", "product"};
+typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, PRODUCT, REGION, LEARNED, STRATEGIES } strategy;
+static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine",  "brdf",   "env",
+                                                      "mis",     "product", "region", "learned"};
 
 typedef struct {
     unsigned w, h, spp, lights;
@@ -21,14 +22,15 @@ typedef struct {
     uint64_t seed;
     int help, threads, in_room, wanted[STRATEGIES];
     float stops;
-    const char *out, *map, *stack;
+    const char *out, *map, *stack, *beside;
 } options;
 
 static void usage(void) {
     fputs("usage: render [options] [map.hdr]     (--option value or --option=value)\n"
           "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
           "  --scene NAME       spheres, in the open, or room: the same in a room with one window (spheres)\n"
-          "  --strategy LIST    uniform, cosine, brdf, env, mis, product, several with commas, or all (mis)\n"
+          "  --strategy LIST    uniform, cosine, brdf, env, mis, product, region, learned, several with commas, or all "
+          "(mis)\n"
           "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384); 1 leaves the "
           "error unknown\n"
           "  --lights N         estimates of the light at each point that a sample sees (1)\n"
@@ -38,6 +40,7 @@ static void usage(void) {
           "  --stops X          brighten the PNG by X stops from what suits the map (0)\n"
           "  --out PREFIX       write PREFIX-STRATEGY.png and PREFIX-STRATEGY.hdr (render)\n"
           "  --stack FILE       write all pictures into one PNG too, one below the other\n"
+          "  --beside FILE      the same, one beside the other\n"
           "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on "
           "it\n"
           "  --seed N           another set of random numbers (1)\n"
@@ -45,7 +48,9 @@ static void usage(void) {
           "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
           "The camera has the main light of the map behind it at the left.\n"
           "examples/product.png: render --strategy mis,product --lights 16 --seconds 2 --size 480x160 --threads 1\n"
-          "    --out build/product --stack examples/product.png\n",
+          "    --out build/product --stack examples/product.png\n"
+          "examples/room.png: render --scene room --strategy mis,region --seconds 4 --size 480x160 --threads 1\n"
+          "    --out build/room --beside examples/room.png\n",
           stdout);
 }
 
@@ -87,7 +92,8 @@ static int parse_strategies(const char *list, options *o) {
                 (n == strlen(strategy_name[i]) && !strncmp(list, strategy_name[i], n)))
                 known = o->wanted[i] = 1;
         if (!known)
-            return complain("--strategy", "'%.*s' is none of uniform, cosine, brdf, env, mis, product, all", (int)n,
+            return complain("--strategy",
+                            "'%.*s' is none of uniform, cosine, brdf, env, mis, product, region, learned, all", (int)n,
                             list);
         if (!list[n]) return 1;
         list += n + 1;
@@ -100,6 +106,7 @@ typedef enum {
     O_SIZE,
     O_OUT,
     O_STACK,
+    O_BESIDE,
     O_SPP,
     O_LIGHTS,
     O_SECONDS,
@@ -113,10 +120,11 @@ static const struct {
     const char *name;
     double low, high; /* of numbers */
     int whole;
-} option_table[OPTIONS] = {{"--scene", 0, 0, 0},     {"--strategy", 0, 0, 0},     {"--size", 0, 0, 0},
-                           {"--out", 0, 0, 0},       {"--stack", 0, 0, 0},        {"--spp", 1, 1e6, 1},
-                           {"--lights", 1, 4096, 1}, {"--seconds", 1e-3, 1e6, 0}, {"--error", 1e-7, 1, 0},
-                           {"--stops", -20, 20, 0},  {"--threads", 1, 1024, 1},   {"--seed", 0, 9e15, 1}};
+} option_table[OPTIONS] = {{"--scene", 0, 0, 0},    {"--strategy", 0, 0, 0},  {"--size", 0, 0, 0},
+                           {"--out", 0, 0, 0},      {"--stack", 0, 0, 0},     {"--beside", 0, 0, 0},
+                           {"--spp", 1, 1e6, 1},    {"--lights", 1, 4096, 1}, {"--seconds", 1e-3, 1e6, 0},
+                           {"--error", 1e-7, 1, 0}, {"--stops", -20, 20, 0},  {"--threads", 1, 1024, 1},
+                           {"--seed", 0, 9e15, 1}};
 
 static int parse_number(option which, const char *text, double *value) {
     const double low = option_table[which].low;
@@ -139,6 +147,7 @@ static int parse_value(option which, const char *text, options *o) {
     case O_SIZE: return parse_size(text, o);
     case O_OUT: return parse_name(option_table[which].name, text, &o->out);
     case O_STACK: return parse_name(option_table[which].name, text, &o->stack);
+    case O_BESIDE: return parse_name(option_table[which].name, text, &o->beside);
     default: break;
     }
     double v;

@@ -134,7 +134,20 @@ static void png_chunk(FILE *f, const char *type, const unsigned char *data, size
     fwrite(tail, 1, 4, f);
 }
 
-static int png_write(const char *name, const pixel *image, unsigned w, unsigned h, float exposure) {
+/* Pictures of equal size, w x h, that one file shows side by side or one below the other. */
+typedef struct {
+    const pixel *image; /* of one, then of the next */
+    unsigned w, h, across, down;
+} sheet;
+
+static const pixel *sheet_pixel(const sheet *s, size_t x, size_t y) {
+    const size_t which = x / s->w + y / s->h; /* across or down is 1 */
+    return s->image + (which * s->h + y % s->h) * s->w + x % s->w;
+}
+
+static int png_write(const char *name, const sheet *s, float exposure) {
+    const unsigned w = s->w * s->across;
+    const unsigned h = s->h * s->down;
     const size_t stride = (size_t)w * 3;
     const size_t raw_size = (stride + 1) * h;
     unsigned char *rows = calloc(2, stride);
@@ -147,7 +160,7 @@ static int png_write(const char *name, const pixel *image, unsigned w, unsigned 
         unsigned char *above = rows + (~y & 1) * stride;
         unsigned char *out = raw + y * (stride + 1);
         for (size_t x = 0; x < w; x++) {
-            vec3 c = pixel_color(&image[y * w + x]);
+            vec3 c = pixel_color(sheet_pixel(s, x, y));
             row[3 * x] = display(c.x, exposure);
             row[3 * x + 1] = display(c.y, exposure);
             row[3 * x + 2] = display(c.z, exposure);
@@ -171,8 +184,10 @@ static int png_write(const char *name, const pixel *image, unsigned w, unsigned 
     return ok;
 }
 
+/* In the room, little light is left: three stops. */
 static float exposure_for(const options *o, const environment *e) {
-    return (e->irradiance > 0 ? 0.9f * PI / e->irradiance : 1) * exp2f(o->stops);
+    const float plain = e->irradiance > 0 ? 0.9f * PI / e->irradiance : 1;
+    return plain * exp2f(o->stops + (o->in_room ? 3 : 0));
 }
 
 /* The caller frees the name. Returns NULL after a complaint. */
@@ -187,11 +202,19 @@ static char *picture_name(const options *o, strategy how, const char *extension)
 static int write_pictures(const options *o, strategy how, const environment *e, const pixel *image) {
     char *png = picture_name(o, how, ".png");
     char *hdr = picture_name(o, how, ".hdr");
-    const int ok =
-        png && hdr && png_write(png, image, o->w, o->h, exposure_for(o, e)) && hdr_write(hdr, image, o->w, o->h);
+    const sheet one = {image, o->w, o->h, 1, 1};
+    const int ok = png && hdr && png_write(png, &one, exposure_for(o, e)) && hdr_write(hdr, image, o->w, o->h);
     free(png);
     free(hdr);
     return ok;
+}
+
+/* All of `count` pictures in one file. */
+static int write_sheets(const options *o, const environment *e, const pixel *image, unsigned count) {
+    const sheet stack = {image, o->w, o->h, 1, count};
+    const sheet beside = {image, o->w, o->h, count, 1};
+    if (o->stack && !png_write(o->stack, &stack, exposure_for(o, e))) return 0;
+    return !o->beside || png_write(o->beside, &beside, exposure_for(o, e));
 }
 
 /* Whether a file can be written, asked before the time is spent on what goes into it. What was in it stays for now. */
@@ -208,7 +231,7 @@ static int can_write(const char *name) {
 }
 
 static int can_write_pictures(const options *o) {
-    int ok = !o->stack || can_write(o->stack);
+    int ok = (!o->stack || can_write(o->stack)) && (!o->beside || can_write(o->beside));
     for (int i = 0; ok && i < STRATEGIES; i++) {
         if (!o->wanted[i]) continue;
         char *png = picture_name(o, (strategy)i, ".png");

@@ -201,6 +201,25 @@ static int intersect(const scene *s, vec3 p, vec3 w, surface *x) {
     return 1;
 }
 
+/* What product sampling is told of a surface; Fresnel's factor as the mirror direction has it. */
+static mcs_reflection reflection_of(const surface *x, uint32_t draws) {
+    const material *m = x->m;
+    const float base = m->p_lobe < 1 ? luminance(m->base) : 0;
+    float lobe = 0;
+    if (m->p_lobe > 0) lobe = m->kind == PHONG ? luminance(m->specular) : mcs_schlick(luminance(m->specular), x->wo.z);
+    mcs_reflection r;
+    r.frame = x->frame;
+    r.wo = x->wo;
+    r.alpha_x = m->alpha_x;
+    r.alpha_y = m->alpha_y;
+    r.matte = base / (base + lobe);
+    r.profile = m->profile;
+    r.draws = draws;
+    return r;
+}
+
+/* ---- the camera ---- */
+
 /* Through a point of the picture, (0, 0) its upper left corner and (1, 1) the lower right one. */
 static vec3 camera_ray(const scene *s, float x, float y) {
     return unit(add(s->forward, add(scale(2 * x - 1, s->right), scale(1 - 2 * y, s->up))));

@@ -10,14 +10,36 @@ mkdir -p "$dir" && rm -rf "${dir:?}"/*
 
 # Deviations are in standard errors of the difference to the most efficient strategy: one of five beyond 4 in 3000 runs. With 64
 # samples the few that hit the mirrored sun leave the error of `uniform` anywhere from 0.008 to 0.036; with 256 it is known.
+same_means() { # file, strategies: what was printed there is of so many, and no mean is off
+    awk -v wanted="$2" '/^mean squared/ { exit }
+        /^(uniform|cosine|brdf|env|mis|product|region|learned) / && NF == 3 { n++; if ($3 > 4 || $3 < -4) print }
+        END { if (n != wanted) print n + 0, "strategies" }' "$1" >"$dir/off.txt"
+    [ ! -s "$dir/off.txt" ]
+    check $? "render: means differ in $1: $(cat "$dir/off.txt")"
+}
 "$render" --strategy all --size 240x80 --spp 256 --out "$dir/all" >"$dir/all.txt"
 check $? "render: every strategy"
-awk '/^mean squared/ { exit } /^(uniform|cosine|brdf|env|mis|product) / && NF == 3 { n++; if ($3 > 4 || $3 < -4) print }
-    END { if (n != 6) print n + 0, "strategies" }' "$dir/all.txt" >"$dir/off.txt"
-[ ! -s "$dir/off.txt" ]
-check $? "render: means differ: $(cat "$dir/off.txt")"
+same_means "$dir/all.txt" 8
 [ "$(grep -c '^strategy' "$dir/all.txt")" = 3 ]
 check $? "render: three tables"
+"$render" --scene room --strategy mis,region,learned --size 240x80 --spp 256 --out "$dir/room" >"$dir/room.txt"
+check $? "render: a room"
+same_means "$dir/room.txt" 3
+"$render" --scene room --strategy mis,region,learned --size 240x80 --spp 16 --lights 8 --out "$dir/room" >"$dir/lights.txt"
+check $? "render: many lights in a room"
+same_means "$dir/lights.txt" 3
+
+# Those that learn while they render: nothing may depend on which thread was first.
+for scene in spheres room; do
+    for threads in 1 4; do
+        "$render" --scene $scene --strategy region,learned --size 120x40 --spp 24 --threads $threads --out "$dir/by$threads" >"$dir/out.txt"
+        check $? "render: $threads threads"
+    done
+    for strategy in region learned; do
+        cmp -s "$dir/by1-$strategy.hdr" "$dir/by4-$strategy.hdr"
+        check $? "render: the picture of $strategy depends on the number of threads in $scene"
+    done
+done
 
 # --- arguments
 
@@ -43,10 +65,12 @@ wrong 'from 1 to 1024' --threads=
 wrong 'from 0 to 9000000000000000' --seed -1
 wrong 'at most 33554432' --size 16384x16384
 wrong 'WIDTHxHEIGHT' --size=60
+wrong 'none of spheres, room' --scene hall
 wrong 'is none of' --strategy mis,
 wrong 'name is empty' --out ''
 wrong 'name is empty' --out=
 wrong 'name is empty' --stack ''
+wrong 'name is empty' --beside=
 wrong 'name is empty' ''
 wrong 'value is missing' --spp
 wrong 'unknown option' --bounces
@@ -59,6 +83,9 @@ check $? "render: --size=60x20, one table for one strategy: $(cat "$dir/out.txt"
 short --spp 1 --strategy mis,env --stack "$dir/stack.png"
 grep -q '^mis  *1 .*unknown  *unknown$' "$dir/out.txt" && [ "$(grep -c '^strategy' "$dir/out.txt")" = 1 ]
 check $? "render: one sample tells no error: $(cat "$dir/out.txt")"
+short --spp 1 --strategy mis,env --beside "$dir/beside.png"
+[ "$(od -An -tu1 -j16 -N8 "$dir/beside.png" | tr -s ' ')" = ' 0 0 0 60 0 0 0 10' ]
+check $? "render: --beside is twice as wide"
 short --seconds 0.01 --error 0.9 # one sample has no error that could be small enough
 awk '/^mis / { exit !($2 > 1 && $7 > 0) }' "$dir/out.txt"
 check $? "render: --seconds and --error: $(cat "$dir/out.txt")"
@@ -122,6 +149,7 @@ mkdir "$dir/taken-env.hdr"
 lost "--out in no folder" --out "$dir/no/such"
 lost "--out where a folder is" --strategy mis,env --out "$dir/taken"
 lost "--stack in no folder" --stack "$dir/no/such.png"
+lost "--beside in no folder" --beside "$dir/no/such.png"
 [ ! -e "$dir/taken-mis.png" ]
 check $? "render: a file is left behind that was only tried"
 
