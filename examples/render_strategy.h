@@ -19,14 +19,6 @@ typedef struct {
     uint32_t drawn; /* light samples so far */
 } lit_point;
 
-/* Whether light of this texel comes from w. The regions are told. */
-static int light_reaches(const lit_point *p, vec3 w, uint32_t col, uint32_t row) {
-    const int through = visible(p->s, p->x->p, w, p->x->object);
-    if (p->l)
-        shadow_rays_add(p->l, p->rays, p->region, mcs_tiles_of_texel(p->e->tiles, p->e->table, col, row), through);
-    return through;
-}
-
 static bounce draw_bounce(const lit_point *p) {
     const float u0 = mcs_pcg32_float(p->rng);
     const float u1 = mcs_pcg32_float(p->rng);
@@ -80,10 +72,18 @@ static int brdf_is_due(lit_point *p) {
 
 /* ---- products: many samples ---- */
 
+/* Whether the light of this texel reaches the point. The regions are told. */
+static int light_reaches(const lit_point *p, mcs_texel l) {
+    const int through = visible(p->s, p->x->p, l.w, p->x->object);
+    if (p->l)
+        shadow_rays_add(p->l, p->rays, p->region, mcs_tiles_of_texel(p->e->tiles, p->e->table, l.col, l.row), through);
+    return through;
+}
+
 /* One light sample of a product that is paired with `share` BRDF samples by the balance heuristic. */
 static vec3 product_value(const lit_point *p, mcs_texel l, float share) {
     const vec3 wi = mcs_to_local(&p->x->frame, l.w);
-    if (!(l.pdf > 0 && wi.z > 0 && light_reaches(p, l.w, l.col, l.row))) return vec(0, 0, 0);
+    if (!(l.pdf > 0 && wi.z > 0 && light_reaches(p, l))) return vec(0, 0, 0);
     const float brdf = share > 0 ? share * material_pdf(p->x->m, p->x->wo, wi) : 0;
     return scale(1 / (l.pdf + brdf), integrand(p, wi, l));
 }
@@ -95,15 +95,16 @@ static vec3 sample_product(const lit_point *p, const mcs_product *product, uint3
     uint32_t n;
     for (; lights > 0; lights -= n) {
         n = lights < BLOCK ? lights : BLOCK;
+        if (n == 1) {
+            const float u1 = mcs_pcg32_float(p->rng);
+            const float u2 = mcs_pcg32_float(p->rng);
+            sum = add(sum, product_value(p, mcs_product_sample(product, p->e->tiles, p->e->table, u1, u2), share));
+            continue;
+        }
         float u1[BLOCK];
         mcs_pcg32_fill_n(p->rng, n, u1);
         float u2[BLOCK];
         mcs_pcg32_fill_n(p->rng, n, u2);
-        if (n == 1) {
-            const mcs_texel l = mcs_product_sample(product, p->e->tiles, p->e->table, u1[0], u2[0]);
-            sum = add(sum, product_value(p, l, share));
-            continue;
-        }
         float wx[BLOCK], wy[BLOCK], wz[BLOCK], pdf[BLOCK];
         uint32_t col[BLOCK], row[BLOCK];
         mcs_product_sample_n(product, p->e->tiles, p->e->table, n, u1, u2, wx, wy, wz, pdf, col, row);
@@ -136,11 +137,10 @@ static vec3 sample_prepared(const lit_point *p, uint32_t lights) {
 static vec3 sample_brdf_beside(const lit_point *p, const mcs_product *table) {
     const bounce b = draw_bounce(p);
     if (!(b.pdf > 0)) return vec(0, 0, 0);
-    const vec3 w = mcs_to_world(&p->x->frame, b.wi);
-    const mcs_texel l = mcs_env_texel(p->e->table, w);
-    if (!light_reaches(p, w, l.col, l.row)) return vec(0, 0, 0);
+    const mcs_texel l = mcs_env_texel(p->e->table, mcs_to_world(&p->x->frame, b.wi));
+    if (!light_reaches(p, l)) return vec(0, 0, 0);
     const float share = p->x->m->share;
-    const float of_table = mcs_product_pdf(table, p->e->tiles, p->e->table, w);
+    const float of_table = mcs_product_pdf(table, p->e->tiles, p->e->table, l.w);
     return scale(mcs_mis_balance(share * b.pdf, of_table) / share, mul(b.weight, radiance_at(p->e, l.col, l.row)));
 }
 
