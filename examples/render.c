@@ -97,8 +97,8 @@ static void render_row(const job *j, uint32_t y, uint32_t n, pixel *row) {
     if (j->l) shadow_rays_deliver(j->l, &rays);
 }
 
-/* Samples per pixel of the next pass. Those that learn begin with short passes, 1, 1, 2, 4, ..., since a pass draws from
- * what the passes before it have learned. */
+/* Samples per pixel of the next pass. What learns begins with short passes, 1, 1, 2, 4, ...: it learns each time that
+ * the samples have doubled. */
 static unsigned pass_length(const job *j, unsigned done) {
     unsigned n = PASS;
     if (j->l && done < n) n = done > 0 ? done : 1;
@@ -147,8 +147,8 @@ static void render_passes(const job *j, pixel *image, outcome *r, progress *p) {
             render_row(j, (uint32_t)y, n, image + (size_t)y * o->w);
             progress_row(p, n);
         }
-        if (j->l) learning_advance(j->l);
         r->spp += n;
+        if (j->l && (r->spp & (r->spp - 1)) == 0) learning_advance(j->l);
         picture_statistics(image, (size_t)o->w * o->h, r);
         if (p->rows >= 0 && o->error > 0 && r->mean > 0) /* the error falls with the root of the samples */
             p->rows = fmin(p->rows, p->done * fmax(1, pow(r->error / (o->error * r->mean), 2)));

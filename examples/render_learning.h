@@ -2,10 +2,9 @@
  * product that is built of it.
  *
  * A region is a piece of one object that faces one way: object, cell of a grid, main axis of the normal. Passes over the
- * picture send shadow rays, and after each pass its rays are added to what the regions know; during a pass nothing
- * changes that samples are drawn from. So no sample is drawn from a table that knows of its ray, and the estimate stays
- * unbiased. And as rays are counted, not added up in floats, the picture does not depend on the order in which threads
- * deliver them.
+ * picture send shadow rays, which wait until the pass is over; during a pass nothing changes that samples are drawn
+ * from. So no sample is drawn from a table that knows of its ray, and the estimate stays unbiased. And as rays are
+ * counted, in whole numbers, the picture does not depend on the order in which threads deliver them.
  */
 #ifndef RENDER_LEARNING_H
 #define RENDER_LEARNING_H
@@ -22,10 +21,10 @@ enum {
 
 typedef struct {
     int object;
-    mcs_region *known;       /* the points, and the rays of all passes before this one */
-    mcs_region *fresh;       /* the rays of this pass */
+    mcs_region *known;       /* the points, and rays of passes that are over */
+    mcs_region *fresh;       /* rays that wait */
     mcs_product *table;      /* built of `known`; NULL where nobody draws from it */
-    double fresh_rays, rays; /* how many: of this pass, and of all passes before */
+    double fresh_rays, rays; /* how many of each */
     double tabulated;        /* rays when the table was built */
 } region;
 
@@ -167,7 +166,8 @@ static void shadow_rays_add(learning *l, shadow_rays *r, uint16_t number, uint32
     ray->through = (uint16_t)through;
 }
 
-/* After a pass, by one thread: its rays become known, and tables that know half of the rays or less are built anew. */
+/* Between passes, by one thread: rays that wait become known, and tables that know half of them or less are built anew.
+ */
 static void learning_advance(learning *l) {
     for (uint32_t i = 0; i < l->count; i++) {
         region *g = &l->list[i];

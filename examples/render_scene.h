@@ -14,7 +14,8 @@ typedef struct {
 } wall;
 enum { LEFT, RIGHT, FRONT, BACK, CEILING, WALL_COUNT };
 
-/* Spheres on the ground z = 0, in the open or in a room whose left wall has a window. */
+/* Spheres on the ground z = 0, in the open or in a room. The room has a window in its front wall, at the camera's back.
+ */
 typedef struct {
     vec3 center[SPHERES]; /* radius 1, resting on the ground */
     material of[SPHERES], tile[2], plaster;
@@ -60,8 +61,8 @@ static wall wall_make(vec3 outwards, float distance) {
     return a;
 }
 
-/* Seen with the main light of the map behind the camera at the left, where it models the spheres, stays out of the
- * picture, and shines through the window. */
+/* Seen with the main light of the map behind the camera at the left, where it models the spheres, or falls through the
+ * window, and stays out of the picture. */
 static scene scene_make(int in_room, unsigned w, unsigned h, float main_light) {
     const float half_width = 7.75f;
     const float distance = 26;
@@ -79,7 +80,7 @@ static scene scene_make(int in_room, unsigned w, unsigned h, float main_light) {
     s.walls[RIGHT] = wall_make(s.side, 9);
     s.walls[FRONT] = wall_make(scale(-1, s.ahead), 6);
     s.walls[BACK] = wall_make(s.ahead, 6);
-    s.walls[CEILING] = wall_make(vec(0, 0, 1), 6);
+    s.walls[CEILING] = wall_make(vec(0, 0, 1), 5);
     s.forward = add(scale(cosf(elevation), s.ahead), vec(0, 0, -sinf(elevation)));
     s.eye = sub(vec(0, 0, 0.66f), scale(distance, s.forward));
     s.right = scale(half_width / distance, s.side);
@@ -117,8 +118,8 @@ static float hit_walls(const scene *s, vec3 p, vec3 w, int *which) {
 
 /* Whether a point of a wall lies in the window. */
 static int in_window(const scene *s, int which, vec3 p) {
-    const float along = dot(p, s->ahead);
-    return which == LEFT && along > -4 && along < 1 && p.z > 1.2f && p.z < 4.6f;
+    const float along = dot(p, s->side);
+    return which == FRONT && along > -5 && along < 3 && p.z > 1.4f && p.z < 4.4f;
 }
 
 static int leaves_room(const scene *s, vec3 p, vec3 w) {
