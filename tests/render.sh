@@ -22,10 +22,10 @@ check $? "render: every strategy"
 same_means "$dir/all.txt" 8
 [ "$(grep -c '^strategy' "$dir/all.txt")" = 3 ]
 check $? "render: three tables"
-"$render" --scene room --strategy mis,region,learned --size 240x80 --spp 256 --out "$dir/room" >"$dir/room.txt"
+"$render" --scene room --strategy mis,region,learned --size 240x80 --spp 64 --out "$dir/room" >"$dir/room.txt"
 check $? "render: a room"
 same_means "$dir/room.txt" 3
-"$render" --scene room --strategy mis,region,learned --size 240x80 --spp 16 --lights 8 --out "$dir/room" >"$dir/lights.txt"
+"$render" --scene room --strategy mis,region,learned --size 240x80 --spp 8 --lights 8 --out "$dir/room" >"$dir/lights.txt"
 check $? "render: many lights in a room"
 same_means "$dir/lights.txt" 3
 
