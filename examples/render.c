@@ -1,8 +1,9 @@
 /* render.c - the main example of mcsample.h: how a renderer uses it.
  *
- * A row of spheres, one per BRDF, on a matte ground, lit by a latitude-longitude environment map: direct illumination
- * with visibility, estimated by uniform, cosine, BRDF, environment, multiple importance or product sampling. Writes PNG
- * and Radiance .hdr pictures and prints what each strategy cost and how far its mean may be off.
+ * A row of spheres, one per BRDF, on a matte ground, in the open or in a room, lit by a latitude-longitude environment
+ * map: direct illumination with visibility, estimated by uniform, cosine, BRDF, environment, multiple importance or
+ * product sampling, or by tables of regions that learn which light they see. Writes PNG and Radiance .hdr pictures and
+ * prints what each strategy cost and how far its mean may be off.
  *
  *     cc -O2 -std=c99 -I. -fopenmp examples/render.c -o render -lm       (-fopenmp is optional: without it, one thread)
  *     ./render --strategy all sunrise.hdr
@@ -10,9 +11,10 @@
  * Here are the loop over pixels, the tables that are printed, and main. The rest, by subject:
  *
  *     render_strategy.h    direct illumination: where each strategy calls mcsample.h
+ *     render_learning.h    regions of the scene, which learn from shadow rays
  *     render_material.h    materials made of the BRDFs of mcsample.h
  *     render_light.h       the environment map
- *     render_scene.h       spheres, ground and camera
+ *     render_scene.h       spheres, ground, room and camera
  *     render_options.h     the command line
  *     render_picture.h     PNG and Radiance files
  *
@@ -157,9 +159,9 @@ static void render_passes(const job *j, pixel *image, outcome *r, progress *p) {
     }
 }
 
-/* Every pixel has its own stream, seeded from (seed, pixel, strategy), and owns all that it changes; what all learn from
- * each other only changes between passes: the picture does not depend on the number of threads. Returns 0 after a
- * complaint. */
+/* Every pixel has its own stream, seeded from (seed, pixel, strategy), and owns all that it changes. What pixels learn
+ * from each other changes between passes only. So the picture does not depend on the number of threads. Returns 0 after
+ * a complaint. */
 static int render(const options *o, const scene *s, const environment *e, strategy how, pixel *image, outcome *r) {
     const size_t pixels = (size_t)o->w * o->h;
     memset(r, 0, sizeof *r);

@@ -1,8 +1,8 @@
 /* render_learning.h - what render.c learns of its light: the scene cut into regions, each with an mcs_region and the
  * product that is built of it.
  *
- * A region is a piece of one object that faces one way: object, cell of a grid, main axis of the normal. Passes over the
- * picture send shadow rays, which wait until the pass is over; during a pass nothing changes that samples are drawn
+ * A region is a piece of one object that faces one way: object, cell of a grid, main axis of the normal. Passes over
+ * the picture send shadow rays, which wait until the pass is over; during a pass nothing changes that samples are drawn
  * from. So no sample is drawn from a table that knows of its ray, and the estimate stays unbiased. And as rays are
  * counted, in whole numbers, the picture does not depend on the order in which threads deliver them.
  */
