@@ -32,7 +32,8 @@ same_means "$dir/lights.txt" 3
 # Those that learn while they render: nothing may depend on which thread was first.
 for scene in spheres room; do
     for threads in 1 4; do
-        "$render" --scene $scene --strategy region,learned --size 120x40 --spp 24 --threads $threads --out "$dir/by$threads" >"$dir/out.txt"
+        "$render" --scene $scene --strategy region,learned --size 120x40 --spp 24 --threads $threads \
+            --out "$dir/by$threads" >"$dir/out.txt"
         check $? "render: $threads threads"
     done
     for strategy in region learned; do
