@@ -21,11 +21,10 @@ enum {
 
 typedef struct {
     int object;
-    mcs_region *known;       /* the points, and rays of passes that are over */
-    mcs_region *fresh;       /* rays that wait */
-    mcs_product *table;      /* built of `known`; NULL where nobody draws from it */
-    double fresh_rays, rays; /* how many of each */
-    double tabulated;        /* rays when the table was built */
+    mcs_region *known;  /* the points, and rays of passes that are over */
+    mcs_region *fresh;  /* rays that wait */
+    mcs_product *table; /* built of `known`; NULL where nobody draws from it */
+    float tabulated;    /* rays when the table was built */
 } region;
 
 /* Regions 0 to OBJECTS - 1 are whole objects. They stand in where no probe fell. */
@@ -100,12 +99,13 @@ static int region_make(learning *l, int object, int with_table) {
     return 1;
 }
 
+/* A whole object stands in for what a region has not seen yet. */
 static void region_tabulate(const learning *l, region *g) {
     const mcs_region *whole = l->list[g->object].known;
+    if (g->known != whole) mcs_region_inherit(g->known, whole);
+    g->tabulated = g->known->rays;
     if (!g->table) return;
-    mcs_product_build_region(g->table, mcs_product_table_bytes(TILES), l->light->tiles, l->light->table, g->known,
-                             g->known == whole ? NULL : whole);
-    g->tabulated = g->rays;
+    mcs_product_build_region(g->table, mcs_product_table_bytes(TILES), l->light->tiles, l->light->table, g->known);
 }
 
 /* Looks at points all over the picture: each makes the region that it lies in, and is added to it if that has too few.
@@ -150,9 +150,7 @@ static learning *learning_make(const scene *s, const environment *e, size_t pixe
 static void shadow_rays_deliver(learning *l, shadow_rays *r) {
     OMP(omp critical(deliver)) {
         for (uint32_t i = 0; i < r->count; i++) {
-            region *g = &l->list[r->ray[i].region];
-            mcs_region_add_ray(g->fresh, r->ray[i].tile, r->ray[i].through);
-            g->fresh_rays++;
+            mcs_region_add_ray(l->list[r->ray[i].region].fresh, r->ray[i].tile, r->ray[i].through);
         }
     }
     r->count = 0;
@@ -170,19 +168,16 @@ static void shadow_rays_add(learning *l, shadow_rays *r, uint16_t number, uint32
  */
 static void learning_advance(learning *l) {
     for (uint32_t i = 0; i < l->count; i++) {
-        region *g = &l->list[i];
-        if (!(g->fresh_rays > 0)) continue;
+        const region *g = &l->list[i];
+        if (!(g->fresh->rays > 0)) continue;
         mcs_region_merge(g->known, g->fresh);
-        g->rays += g->fresh_rays;
-        if (i >= OBJECTS) {
-            mcs_region_merge(l->list[g->object].known, g->fresh);
-            l->list[g->object].rays += g->fresh_rays;
-        }
+        if (i >= OBJECTS) mcs_region_merge(l->list[g->object].known, g->fresh);
         mcs_region_decay(g->fresh, 0);
-        g->fresh_rays = 0;
     }
-    for (uint32_t i = 0; i < l->count; i++)
-        if (l->list[i].rays > 0 && l->list[i].rays >= 2 * l->list[i].tabulated) region_tabulate(l, &l->list[i]);
+    for (uint32_t i = 0; i < l->count; i++) {
+        const float rays = l->list[i].known->rays;
+        if (rays > 0 && rays >= 2 * l->list[i].tabulated) region_tabulate(l, &l->list[i]);
+    }
 }
 
 #endif

@@ -137,11 +137,10 @@ static vec3 sample_prepared(const lit_point *p, uint32_t lights) {
 static vec3 sample_brdf_beside(const lit_point *p, const mcs_product *table) {
     const bounce b = draw_bounce(p);
     if (!(b.pdf > 0)) return vec(0, 0, 0);
-    const mcs_texel l = mcs_env_texel(p->e->table, mcs_to_world(&p->x->frame, b.wi));
+    const mcs_texel l = mcs_product_texel(table, p->e->tiles, p->e->table, mcs_to_world(&p->x->frame, b.wi));
     if (!light_reaches(p, l)) return vec(0, 0, 0);
     const float share = p->x->m->share;
-    const float of_table = mcs_product_pdf(table, p->e->tiles, p->e->table, l.w);
-    return scale(mcs_mis_balance(share * b.pdf, of_table) / share, mul(b.weight, radiance_at(p->e, l.col, l.row)));
+    return scale(mcs_mis_balance(share * b.pdf, l.pdf) / share, mul(b.weight, radiance_at(p->e, l.col, l.row)));
 }
 
 static vec3 sample_region(lit_point *p, uint32_t lights) {
