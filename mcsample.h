@@ -1521,7 +1521,7 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  *   tiles       mcs_tiles_build, once per map.
  *   prepared    mcs_product_build, once per shading point. For several draws at a point, and for one in the open.
  *   of a region mcs_product_build_region, for a part of a scene in whose points one table is drawn from. It knows which
- *               light is hidden there. For one draw at a point: it costs no more than one from the map. See [region].
+ *               light is hidden there. For one draw at a point. A draw takes about twice that of the map. See [region].
  *   of weights  mcs_product_build_weights, for anything else: one weight per tile.
  *
  * All are drawn from by mcs_product_sample. Pair the last two with one sample of the BRDF (mcs_mis_balance): they do
@@ -1682,8 +1682,8 @@ MCS_API size_t mcs_product_table_bytes(uint32_t rows);
 /* Builds the product of a map and a reflection. It holds for the orientation (e->frame) that the map has now. g: the
  * region that the point belongs to, or NULL. The light is then that which comes through to the region, and at least a
  * tenth of the samples comes from the lobe. Where less than a tenth of the reflected light comes through, tiles are
- * weighed as in mcs_product_build_region, and half of the samples come from the lobe. A surface that is all matte has no
- * lobe. */
+ * weighed as in mcs_product_build_region, and half of the samples come from the lobe. A surface that is all matte has
+ * no lobe. */
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r, const mcs_region *g);
 /* Builds the product of a map and a region: one table for all its points. */
@@ -1716,7 +1716,7 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  * A region is a set of points that see nearly the same: a piece of one object that faces one way. How to cut a scene is
  * the renderer's; object, cell of a grid and main axis of the normal will do, with cells of 3/8 of the object. A region
  * collects what its surfaces reflect and which light comes through to them, tile by tile. From both
- * mcs_product_build_region makes one table for all its points, from which a draw costs as much as from the map.
+ * mcs_product_build_region makes one table for all its points.
  *
  *     mcs_region_start(g, bytes, t);
  *     for a dozen points or more: mcs_region_add_point(g, t, e, &reflection);
@@ -1730,8 +1730,8 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *   L       its light
  *   f       root mean square of the reflections towards it, times cosine, over the points that were added. Lobes count
  *           as if alpha^2 were larger by 0.01.
- *   m       mean of f over the light that comes through: sum of L V f over sum of L V. A sixth of the samples so follows
- *           the light alone.
+ *   m       mean of f over the light that comes through: sum of L V f over sum of L V. A sixth of the samples so
+ *           follows the light alone.
  *   V       the share of the tile's rays that came through, with V0 of a ray before any is sent: 1/4, or that of a
  *           larger region (mcs_region_inherit)
  *
@@ -2085,8 +2085,8 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
  *
  * To add a sampler X:
  *
- *   part I     its paragraph and prototypes, X_sample_n within #ifndef MCS_NO_BATCH; the map of the file and the head of
- *              its block name it.
+ *   part I     its paragraph and prototypes, X_sample_n within #ifndef MCS_NO_BATCH; the map of the file and the head
+ *              of its block name it.
  *   part III   MCSI_SAMPLE before X_sample. MCSI_FN before X_pdf and X_invert, within #ifdef MCSI_PUBLIC. MCSI_LOOP
  *              before its loop, within #ifdef MCSI_LOOPS. MCSI_CORE before what is private. MCSI_REQUIRE tells bad
  *              parameters; [sane] makes bad input harmless.
