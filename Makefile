@@ -177,19 +177,21 @@ BENCH_TAKES = $(shell $(CC) $(1) -E -x c /dev/null >/dev/null 2>&1 && echo '$(1)
 BENCH_SLEEF = $(shell mkdir -p $(BENCH) && printf '\043include <sleef.h>\nint main(void) { return Sleef_expf8_u10avx2 == 0; }\n' | \
 	$(CC) -mavx2 -x c - -o $(BENCH)/sleef.probe -lsleef 2>/dev/null && echo -DBENCH_SLEEF)
 BENCH_HEADERS = mcsample.h $(wildcard tests/*.h tests/bench/*.h) examples/hdr.h $(BUILD)/flags
-BENCH_BINS = $(BENCH)/throughput $(BENCH)/tables $(BENCH)/clock $(BENCH)/convergence
+BENCH_BINS = $(BENCH)/throughput $(BENCH)/tables $(BENCH)/clock $(BENCH)/convergence $(BENCH)/shadow
 
 bench: bench-binaries ## run time against error: CSV files and plots in build/bench, tables here; some minutes
 	@$(BENCH)/throughput --out $(BENCH)
 	@$(BENCH)/tables --out $(BENCH)
 	@CLOCK=$(BENCH)/clock sh tests/bench/include.sh $(BENCH)
 	@$(BENCH)/convergence --out $(BENCH) $(MAPS)
+	@$(BENCH)/shadow --out $(BENCH) $(MAPS)
 
 bench-quick: bench-binaries ## the same with less repetition and smaller tables, about 45 s
 	@$(BENCH)/throughput --quick --out $(BENCH)
 	@$(BENCH)/tables --quick --out $(BENCH)
 	@CLOCK=$(BENCH)/clock sh tests/bench/include.sh $(BENCH) quick
 	@$(BENCH)/convergence --quick --out $(BENCH) $(MAPS)
+	@$(BENCH)/shadow --quick --out $(BENCH) $(MAPS)
 
 bench-binaries:
 	+@$(SUBMAKE) $(BENCH_BINS)
