@@ -30,11 +30,11 @@
     X(image_make) X(env_bytes) X(env_build) X(env_build_rows) X(env_finish) X(env_check) X(env_mean) X(env_sample) \
     X(env_sample_bits) X(env_pdf) X(env_invert) X(env_texel) X(env_weight) X(env_window_bytes) X(env_window_build) \
     X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(tiles_of_texel) \
-    X(tiles_of_direction) X(product_bytes) X(product_table_bytes) X(product_sample) X(product_pdf) X(region_bytes) \
-    X(region_visibility)
+    X(tiles_of_direction) X(product_bytes) X(product_table_bytes) X(product_sample) X(product_pdf) X(product_texel) \
+    X(region_bytes) X(region_visibility)
 #define BITS_HOST(X) \
     X(product_build) X(product_build_region) X(product_build_weights) X(region_start) X(region_add_point) \
-    X(region_add_ray) X(region_merge) X(region_decay)
+    X(region_add_ray) X(region_merge) X(region_inherit) X(region_decay)
 #define BITS_ARRAYS(X) \
     X(env_sample_n, BITS_MAPS) X(env_texel_n, BITS_MAPS) X(env_pdf_n, BITS_MAPS) X(env_window_sample_n, BITS_MAPS) \
     X(product_sample_n, BITS_MAPS * BITS_PRODUCTS) X(product_pdf_n, BITS_MAPS * BITS_PRODUCTS)
@@ -481,7 +481,7 @@ static void bits_map_build(int kind, bits_map *m) {
         mcs_region_add_point(m->region, m->tiles, m->env, &r);
     }
     bytes = mcs_product_table_bytes(rows), m->product[k] = (mcs_product *)bits_memory(bytes);
-    m->status[3 + k] = mcs_product_build_region(m->product[k], bytes, m->tiles, m->env, m->region, NULL);
+    m->status[3 + k] = mcs_product_build_region(m->product[k], bytes, m->tiles, m->env, m->region);
 }
 #ifdef __CUDACC__
 static __device__ bits_map bits_gpu_maps[BITS_MAPS]; /* copies of those below */
@@ -757,16 +757,19 @@ FN(product_pdf) {
 
 /* --- regions ------------------------------------------------------------------------------------------------------ */
 
+FN(product_texel) {
+    MAP;
+    bits_put_texel(out, 0, mcs_product_texel(m->product[WORD(11) % BITS_SURFACES], m->tiles, m->env, IN3(8)));
+}
 FN(region_bytes) {
     PUT_WORD(0, (uint32_t)mcs_region_bytes(16u << (WORD(11) & 3))), PUT_WORD(1, (uint32_t)mcs_region_bytes(WORD(12)));
 }
 FN(region_visibility) {
     MAP;
-    PUT(0, mcs_region_visibility(m->region, NULL, WORD(11) % 600));
-    PUT(1, mcs_region_visibility(m->region, m->region, WORD(12) % 600));
-    PUT(2, mcs_region_visibility(m->region, NULL, WORD(12)));
+    PUT(0, mcs_region_visibility(m->region, WORD(11) % 600));
+    PUT(1, mcs_region_visibility(m->region, WORD(12)));
 }
-static uint64_t bits_region_room[2][1 + (16 + 12 * 2048) / 8];
+static uint64_t bits_region_room[2][1 + (16 + 16 * 2048) / 8];
 /* One of two regions of a case: of one point and some rays. */
 static mcs_region *bits_region(const float *in, uint32_t which) {
     MAP;
@@ -811,6 +814,12 @@ HOST(region_merge) {
     mcs_region_merge(g, g);
     bits_put_region(out, 2, g);
 }
+HOST(region_inherit) {
+    MAP;
+    mcs_region *g = bits_region(in, 0);
+    mcs_region_inherit(g, m->region);
+    bits_put_region(out, 0, g);
+}
 HOST(region_decay) {
     mcs_region *g = bits_region(in, 0);
     mcs_region_decay(g, IN(6));
@@ -821,7 +830,7 @@ HOST(product_build_region) {
     const mcs_region *g = WORD(11) % 32 == 1 ? NULL : bits_region(in, 0);
     const size_t bytes = mcs_product_table_bytes(m->tiles->rows) - (WORD(11) % 32 == 0);
     mcs_product *const p = (mcs_product *)(void *)bits_room;
-    bits_put_product(in, out, mcs_product_build_region(p, bytes, m->tiles, m->env, g, WORD(12) & 1 ? m->region : NULL));
+    bits_put_product(in, out, mcs_product_build_region(p, bytes, m->tiles, m->env, g));
 }
 
 /* --- array forms -------------------------------------------------------------------------------------------------- */

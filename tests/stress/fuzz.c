@@ -395,10 +395,11 @@ static void fuzz_region(mcs_region *g, const mcs_tiles *t, const mcs_env *e, con
         case 0: mcs_region_add_point(g, t, e, r); break;
         case 1: mcs_region_decay(g, take_float(b)); break;
         case 2: mcs_region_merge(g, g); break;
-        case 3: mcs_region_add_ray(g, k, 1); break;
+        case 4: mcs_region_inherit(g, g); break;
+        case 3: mcs_region_add_ray(g, k << 4 | 3, 1); break; /* mostly no tile */
         default: mcs_region_add_ray(g, k % 512, (int)(k >> 27 & 1));
         }
-        const float v = mcs_region_visibility(g, k & 1024 ? g : NULL, k % 600);
+        const float v = mcs_region_visibility(g, k % 600);
         MUST(v >= 0 && v <= 1 && mcs_tiles_of_direction(t, e, take_direction(b, k & 1)) <= 512 &&
              mcs_tiles_of_texel(t, e, k % 80, k >> 16) <= 512);
     }
@@ -464,7 +465,7 @@ static void fuzz_product(const mcs_env *e, bytes *b) {
     for (size_t k = 0; k < 512; k++) MUST(finite3(mcs_tiles_direction(t, e, (uint32_t)k)));
     fuzz_region(g, t, e, &r, b);
     s = kind == 0   ? mcs_product_build_weights(p, product_size, t, e, weight)
-        : kind == 1 ? mcs_product_build_region(p, mcs_product_table_bytes(16), t, e, g, take_u8(b) & 1 ? g : NULL)
+        : kind == 1 ? mcs_product_build_region(p, mcs_product_table_bytes(16), t, e, g)
                     : mcs_product_build(p, product_size, t, e, &r, kind == 2 ? g : NULL);
     MUST(s == MCS_OK && (kind != 1 || !p->dark));
     draw_product(p, t, e, take_u8(b) % 40, b);

@@ -368,11 +368,13 @@ static void teach_region(const part_of *q, const mcs_tiles *tiles, mcs_region *g
             mcs_region_decay(g, st_hostile(mcst_mix(state)));
         } else if (z % 64 == 2) {
             mcs_region_merge(g, g);
+        } else if (z % 64 == 3) {
+            mcs_region_inherit(g, g);
         } else {
             mcs_region_add_ray(g, (uint32_t)(z >> 32), (int)(z >> 8 & 1));
             mcs_region_add_ray(g, (uint32_t)(z >> 32) % 512, (int)(z >> 8 & 1));
         }
-        const float v = mcs_region_visibility(g, z & 256 ? g : NULL, (uint32_t)(z >> 40) % 600);
+        const float v = mcs_region_visibility(g, (uint32_t)(z >> 40) % 600);
         CHECK(finite(t, v) && v >= 0 && v <= 1, "V %a", (double)v);
         const uint32_t k = mcs_tiles_of_direction(tiles, q->e, hostile_direction(state));
         CHECK(k <= 512, "tile %u", (unsigned)k);
@@ -404,7 +406,7 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
     CHECK(mcs_region_start(g, region.bytes, tiles) == MCS_OK, "region");
     teach_region(q, tiles, g, state, t);
     s = kind == 0   ? mcs_product_build_weights(p, bytes, tiles, q->e, weight)
-        : kind == 1 ? mcs_product_build_region(p, bytes, tiles, q->e, g, mcst_mix(state) & 1 ? g : NULL)
+        : kind == 1 ? mcs_product_build_region(p, bytes, tiles, q->e, g)
                     : mcs_product_build(p, bytes, tiles, q->e, &r, kind == 2 ? g : NULL);
     CHECK(s == MCS_OK && arena_intact(&m) && (kind != 1 || !p->dark), "product: status %d", (int)s);
     if (mcst_mix(state) % 4 == 0) p->brdf_share = 0; /* as the header allows */
