@@ -242,10 +242,9 @@ static mcs_product *prepared; /* at the shading point whose turn it is */
 
 /* A set-up for every `run` samples. */
 static void by_product(const scene *s, block *b, size_t n, uint32_t run) {
-    mcs_reflection like = s->like;
-    like.draws = run;
     for (size_t i = 0; i < n; i++) {
-        if (i % run == 0) mcs_product_build(prepared, mcs_product_bytes(TILES), s->e->tiles, s->e->table, &like, NULL);
+        if (i % run == 0)
+            mcs_product_build(prepared, mcs_product_bytes(TILES), s->e->tiles, s->e->table, &s->like, NULL);
         const mcs_texel t = mcs_product_sample(prepared, s->e->tiles, s->e->table, b->u1[i], b->u2[i]);
         const mcs_vec3 w = mcs_to_local(&s->frame, t.w);
         b->x[i] = w.x;

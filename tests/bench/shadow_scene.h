@@ -55,13 +55,10 @@ typedef struct {
     int balls, blocks, twigs;
 } scene;
 
-/* Objects are blocks, then balls; all twigs are one. */
-enum { OBJECTS = BLOCKS + BALLS + 1 };
-
 typedef struct {
     float distance;
     mcs_vec3 normal;
-    int object;
+    int object; /* blocks, then balls; all twigs are one */
 } hit;
 
 /* The distance to a surface, or -1. */
@@ -103,21 +100,6 @@ static float meet_block(const block *b, mcs_vec3 from, mcs_vec3 w, int *axis) {
     return enter < leave ? enter : -1;
 }
 
-/* Whether nothing stands in the direction w of a point. */
-static int is_free(const scene *s, mcs_vec3 from, mcs_vec3 w) {
-    int axis = 0;
-    for (int k = 0; k < s->blocks; k++)
-        if (meet_block(&s->block[k], from, w, &axis) > 0) return 0;
-    for (int k = 0; k < s->balls; k++)
-        if (meet_ball(&s->ball[k], from, w) > 0) return 0;
-    for (int k = 0; k < s->twigs; k++) {
-        if (misses(&s->twig[k].around, from, w)) continue;
-        for (int i = 0; i < LEAVES_OF_TWIG; i++)
-            if (meet_leaf(&s->twig[k].leaf[i], from, w) > 0) return 0;
-    }
-    return 1;
-}
-
 /* What is seen first; the distance is 0 where that is nothing. */
 static hit look(const scene *s, mcs_vec3 from, mcs_vec3 w) {
     hit h = {0, {0, 0, 0}, 0};
@@ -137,16 +119,20 @@ static hit look(const scene *s, mcs_vec3 from, mcs_vec3 w) {
         h.distance = distance;
         h.object = BLOCKS + k;
     }
-    for (int k = 0; k < s->twigs * LEAVES_OF_TWIG; k++) {
-        const leaf *l = &s->twig[k / LEAVES_OF_TWIG].leaf[k % LEAVES_OF_TWIG];
-        const float distance = meet_leaf(l, from, w);
-        if (!(distance > 0) || (h.distance > 0 && distance > h.distance)) continue;
-        h.normal = dot(l->normal, w) > 0 ? along(vector(0, 0, 0), -1, l->normal) : l->normal;
-        h.distance = distance;
-        h.object = BLOCKS + BALLS;
+    for (int k = 0; k < s->twigs; k++) {
+        for (int i = 0; i < LEAVES_OF_TWIG && !misses(&s->twig[k].around, from, w); i++) {
+            const leaf *l = &s->twig[k].leaf[i];
+            const float distance = meet_leaf(l, from, w);
+            if (!(distance > 0) || (h.distance > 0 && distance > h.distance)) continue;
+            h.normal = dot(l->normal, w) > 0 ? along(vector(0, 0, 0), -1, l->normal) : l->normal;
+            h.distance = distance;
+            h.object = BLOCKS + BALLS;
+        }
     }
     return h;
 }
+/* Whether nothing stands in the direction w of a point. */
+static int is_free(const scene *s, mcs_vec3 from, mcs_vec3 w) { return !(look(s, from, w).distance > 0); }
 
 /* ---- The four scenes ---- */
 
@@ -246,12 +232,12 @@ typedef struct {
     uint32_t key; /* object, main axis, cell: points of a region have the same one */
 } point;
 
-/* Points first to first + count - 1. Those of the parent region have the same object and axis and lie in any cell. */
+/* Points first to first + count - 1. */
 typedef struct {
-    uint32_t first, count, parent_first, parent_count;
+    uint32_t first, count, object;
 } region;
 
-enum { PICTURE = 40000, REGIONS = 16, REGION_LEAST = 48, CELLS = 27, AXES = 6 };
+enum { PICTURE = 40000, REGIONS = 32, REGION_LEAST = 48, CELLS = 27, AXES = 6 };
 
 typedef struct {
     scene scene;
@@ -317,27 +303,8 @@ static int see(const scene *s, mcs_pcg32 *rng, point *p) {
     return p->wo.z > 0.01f;
 }
 
-/* All regions of enough points, in the order of their keys; returns how many. */
-static uint32_t find_regions(const view *v, region *all) {
-    uint32_t count = 0;
-    uint32_t parent = 0;
-    for (uint32_t i = 0; i < v->points;) {
-        uint32_t end = i;
-        while (end < v->points && v->point[end].key == v->point[i].key) end++;
-        if (v->point[i].key / CELLS != v->point[parent].key / CELLS) parent = i;
-        uint32_t parent_end = end;
-        while (parent_end < v->points && v->point[parent_end].key / CELLS == v->point[i].key / CELLS) parent_end++;
-        const region r = {i, end - i, parent, parent_end - parent};
-        if (r.count >= REGION_LEAST) all[count++] = r;
-        i = end;
-    }
-    return count;
-}
-
 /* Looks at a scene and picks up to REGIONS regions, in proportion to the area that they have in the picture. */
 static int view_make(view *v, int number) {
-    enum { ALL = PICTURE / REGION_LEAST };
-    static region all[ALL];
     memset(v, 0, sizeof *v);
     scene_makers[number](&v->scene);
     v->point = malloc(PICTURE * sizeof *v->point);
@@ -345,14 +312,16 @@ static int view_make(view *v, int number) {
     mcs_pcg32 rng = mcs_pcg32_make(1, 1);
     for (int i = 0; i < PICTURE; i++) v->points += (uint32_t)see(&v->scene, &rng, &v->point[v->points]);
     qsort(v->point, v->points, sizeof *v->point, by_key);
-    const uint32_t count = find_regions(v, all);
-    uint32_t total = 0;
-    for (uint32_t i = 0; i < count; i++) total += all[i].count;
-    uint32_t so_far = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t before = so_far * REGIONS / total;
-        so_far += all[i].count;
-        if (so_far * REGIONS / total > before) v->region[v->regions++] = all[i];
+    uint32_t end = 0;
+    for (uint32_t k = 0; k < REGIONS; k++) {
+        const uint32_t middle = (2 * k + 1) * v->points / (2 * REGIONS);
+        if (middle < end) continue;
+        const uint32_t key = v->point[middle].key;
+        uint32_t first = middle;
+        while (first > 0 && v->point[first - 1].key == key) first--;
+        for (end = middle; end < v->points && v->point[end].key == key; end++) {}
+        const region r = {first, end - first, key / (AXES * CELLS)};
+        if (r.count >= REGION_LEAST) v->region[v->regions++] = r;
     }
     return v->regions > 0;
 }

@@ -3,107 +3,126 @@
 #define MCST_SHADOW_STRATEGY_H
 #include "maps.h"
 #include "shadow_material.h"
-#include "shadow_region.h"
 #include "shadow_scene.h"
 
 /* Tables of a region are built whenever its rays have doubled: stage 0 after 32, stage 8 after 8192. */
-enum { STAGES = 9, STAGE_FIRST = 32, STAGE_256 = 3, STAGE_ONLINE = 6 };
+enum { STAGES = 9, STAGE_FIRST = 32, STAGE_256 = 3, STAGE_LAST = STAGES - 1 };
 
-/* What samples are drawn from. Prepared products are built at each point, tables once per region and stage. */
+/* What samples are drawn from. Products of a point are built at each one, tables once per region and stage. */
 typedef enum {
     BRDF,
     MAP,
-    PRODUCT,     /* mcs_product_build */
-    REPAIRED,    /* without fireflies */
-    LEARNED_256, /* and with the visible light that the region knows from 256 rays */
+    PRODUCT,     /* for one draw */
+    PRODUCT_16,  /* for 16 draws */
+    LEARNED_256, /* for 16 draws, with what the region knows from 256 rays */
     LEARNED,     /* from all rays */
     TABLE,       /* of stage 0 */
-    TABLE_256 = TABLE + STAGE_256,
-    TABLE_ALL = TABLE + STAGES - 1,
-    VARIANT, /* tables by other rules */
-    TECHNIQUES = VARIANT + 96
+    TECHNIQUES = TABLE + STAGES
 } technique;
-
-/* How many different prices techniques have. */
-typedef enum { PRICE_BRDF, PRICE_MAP, PRICE_PRODUCT, PRICE_LEARNED, PRICE_TABLE, PRICES } price;
-static price price_of(int t) {
-    if (t >= TABLE) return PRICE_TABLE;
-    return t >= REPAIRED ? PRICE_LEARNED : (price)t;
-}
 
 /* Of samples from a technique and from the BRDF. */
 typedef enum {
-    ALONE,
+    ONE,          /* one sample: from the BRDF with probability `share` */
     PAIR_POWER,   /* one of each, power heuristic */
     PAIR_BALANCE, /* one of each, balance heuristic */
-    MIXTURE,      /* one of both: the BRDF's with probability `share`; 0 is by the lobe */
-    WAYS
+    ONLINE        /* a region that learns while it draws: the strategies of all stages, from number `technique` on */
 } way;
 
 typedef struct {
-    const char *name;
+    char name[32];
     way how;
     int technique;
+    int draws; /* that share what is prepared at a point; 0: nothing is */
     float share;
 } strategy;
 
+/* PAIR and MIXED are the first of STAGES each. */
 enum {
     MAP_ALONE,
     BRDF_ALONE,
     MIS_POWER,
     MIS_ONE,
     PRODUCT_ALONE,
-    PRODUCT_PAIR,
-    REPAIRED_ALONE,
+    PRODUCT_ALONE_16,
     LEARNED_ALONE_256,
     LEARNED_ALONE,
-    REGION_PAIR_256,
-    REGION_PAIR,
-    REGION_MIXTURE_256,
-    REGION_MIXTURE,
-    REGION_ALONE,
+    PAIR,
+    MIXED = PAIR + STAGES,
+    MEASURED = MIXED + STAGES,
+    PAIR_ONLINE = MEASURED,
+    MIXED_ONLINE,
     STRATEGIES
 };
 
-/* Tiles that a lobe covers when it is seen from above. */
-static float lobe_tiles(const coat *c) {
+/* Lists all strategies. How samples of a table are joined with those of the BRDF depends on the lobe: in pairs, by the
+ * power heuristic where the lobe is smaller than a tile; in mixtures, with a share that is the larger, the narrower the
+ * lobe. */
+static void list_strategies(const coat *c, strategy *list) {
+    static const strategy plain[] = {{"map", ONE, MAP, 0, 0},
+                                     {"BRDF", ONE, BRDF, 0, 0},
+                                     {"MIS power", PAIR_POWER, MAP, 0, 0},
+                                     {"MIS one-sample", ONE, MAP, 0, 0.5f},
+                                     {"product", ONE, PRODUCT, 1, 0},
+                                     {"product", ONE, PRODUCT_16, 16, 0},
+                                     {"product learned 256", ONE, LEARNED_256, 16, 0},
+                                     {"product learned 8192", ONE, LEARNED, 16, 0}};
+    static const strategy online[] = {{"region + BRDF online", ONLINE, PAIR, 0, 0},
+                                      {"region or BRDF online", ONLINE, MIXED, 0, 0}};
+    memcpy(list, plain, sizeof plain);
+    memcpy(list + PAIR_ONLINE, online, sizeof online);
     const mcs_frame frame = mcs_frame_make(vector(0, 0, 1));
     const mcs_reflection r = coat_reflection(c, &frame, vector(0, 0, 1));
-    return 2 * TILES * TILES * r.alpha_x * r.alpha_y;
-}
-/* How samples of a region's table are joined with those of the BRDF: in pairs, by the power heuristic where the lobe is
- * smaller than a tile; in mixtures, with a share that is the larger, the narrower the lobe. */
-static void fit_to_lobe(strategy *s, const coat *c) {
-    const float tiles = lobe_tiles(c);
-    if (s->technique < TABLE || s->how == ALONE) return;
-    if (s->how == MIXTURE) s->share = fmaxf((1 - c->m->matte) / (1 + sqrtf(tiles)), 0.1f);
-    else s->how = tiles < 1 && c->m->matte == 0 ? PAIR_POWER : PAIR_BALANCE;
+    const float tiles = 2 * TILES * TILES * r.alpha_x * r.alpha_y; /* that the lobe covers, seen from above */
+    for (int k = 0; k < STAGES; k++) {
+        strategy *pair = &list[PAIR + k];
+        strategy *mixed = &list[MIXED + k];
+        snprintf(pair->name, sizeof pair->name, "region + BRDF %d", STAGE_FIRST << k);
+        snprintf(mixed->name, sizeof mixed->name, "region or BRDF %d", STAGE_FIRST << k);
+        pair->technique = mixed->technique = TABLE + k;
+        pair->how = tiles < 1 && r.matte == 0 ? PAIR_POWER : PAIR_BALANCE;
+        mixed->how = ONE;
+        mixed->share = fmaxf((1 - r.matte) / (1 + sqrtf(tiles)), 0.1f);
+    }
 }
 
 /* ---- One point with one material under one map ---- */
+
+typedef union {
+    mcs_product p;
+    unsigned char bytes[MCS_PRODUCT_BYTES(TILES)];
+} product;
 
 typedef struct {
     const map *map;
     const coat *coat;
     const point *point;
-    mcs_product *const *product; /* by technique */
+    product *by; /* of the point and its region, by technique */
 } setting;
 
-static mcs_texel setting_sample(const setting *s, int t, float u1, float u2) {
-    if (t == MAP) return mcs_env_sample(s->map->table, u1, u2);
-    if (t > MAP) return mcs_product_sample(s->product[t], s->map->tiles, s->map->table, u1, u2);
-    const mcs_dir d = coat_sample(s->coat, s->point->wo, u1, u2);
-    mcs_texel x;
-    x.w = mcs_to_world(&s->point->frame, d.w);
-    const mcs_texel of_map = mcs_env_texel(s->map->table, x.w);
-    x.col = of_map.col;
-    x.row = of_map.row;
-    x.pdf = d.pdf;
+static mcs_reflection setting_reflection(const setting *s) {
+    return coat_reflection(s->coat, &s->point->frame, s->point->wo);
+}
+/* A direction's texel; its density by the technique, or by the map where that is the BRDF. */
+static mcs_texel setting_texel(const setting *s, int t, mcs_vec3 w) {
+    return t > MAP ? mcs_product_texel(&s->by[t].p, s->map->tiles, s->map->table, w) : mcs_env_texel(s->map->table, w);
+}
+/* The same of a direction that is drawn from the BRDF, with *pdf as the density of that. */
+static mcs_texel setting_of_brdf(const setting *s, int t, const float *u, float *pdf) {
+    const mcs_dir d = coat_sample(s->coat, s->point->wo, u[0], u[1]);
+    *pdf = d.pdf;
+    return setting_texel(s, t, mcs_to_world(&s->point->frame, d.w));
+}
+static mcs_texel setting_sample(const setting *s, int t, const float *u) {
+    if (t == MAP) return mcs_env_sample(s->map->table, u[0], u[1]);
+    if (t > MAP) return mcs_product_sample(&s->by[t].p, s->map->tiles, s->map->table, u[0], u[1]);
+    float pdf;
+    mcs_texel x = setting_of_brdf(s, BRDF, u, &pdf);
+    x.pdf = pdf;
     return x;
 }
 static float setting_pdf(const setting *s, int t, mcs_vec3 w) {
     if (t == MAP) return mcs_env_pdf(s->map->table, w);
-    if (t > MAP) return mcs_product_pdf(s->product[t], s->map->tiles, s->map->table, w);
+    if (t > MAP) return mcs_product_pdf(&s->by[t].p, s->map->tiles, s->map->table, w);
     return coat_pdf(s->coat, s->point->wo, mcs_to_local(&s->point->frame, w));
 }
 /* f cos L */
@@ -115,28 +134,35 @@ static float setting_value(const setting *s, const mcs_texel *x) {
 
 /* ---- Estimates, as a renderer would make them, without the shadow ray ---- */
 
-/* The sample of one technique, weighed against another one. */
-static float one_of_pair(const setting *s, const strategy *how, int t, const float *u) {
-    const mcs_texel x = setting_sample(s, t, u[0], u[1]);
-    if (!(x.pdf > 0)) return 0;
-    const float value = setting_value(s, &x);
-    if (!(value > 0)) return 0;
-    const float other = setting_pdf(s, t == BRDF ? how->technique : BRDF, x.w);
-    const float weight = how->how == PAIR_POWER ? mcs_mis_power(x.pdf, other) : mcs_mis_balance(x.pdf, other);
-    return value / x.pdf * weight;
+/* A sample of the technique or of the BRDF, with the densities that the strategy asks for; the value is 0 where it is
+ * lost. */
+typedef struct {
+    float value, pdf, brdf;
+} drawn;
+static drawn draw(const setting *s, const strategy *how, int from_brdf, const float *u) {
+    drawn d = {0, 0, 0};
+    const mcs_texel x =
+        from_brdf ? setting_of_brdf(s, how->technique, u, &d.brdf) : setting_sample(s, how->technique, u);
+    d.pdf = x.pdf;
+    if ((from_brdf ? d.brdf : d.pdf) > 0) d.value = setting_value(s, &x);
+    const int alone = how->how == ONE && !(how->share > 0);
+    if (!from_brdf && !alone && d.value > 0) d.brdf = setting_pdf(s, BRDF, x.w);
+    return d;
 }
 static float estimate(const setting *s, const strategy *how, const float u[4]) {
-    if (how->how == PAIR_POWER || how->how == PAIR_BALANCE)
-        return one_of_pair(s, how, how->technique, u) + one_of_pair(s, how, BRDF, u + 2);
-    const float share = how->how == MIXTURE ? how->share : 0;
-    const int brdf = u[0] < share;
-    const float u1 = brdf ? u[0] / share : (u[0] - share) / (1 - share);
-    const mcs_texel x = setting_sample(s, brdf ? BRDF : how->technique, fminf(u1, 0.99999994f), u[1]);
-    const float value = x.pdf > 0 ? setting_value(s, &x) : 0;
-    if (!(value > 0)) return 0;
-    if (how->how == ALONE) return value / x.pdf;
-    const float other = setting_pdf(s, brdf ? how->technique : BRDF, x.w);
-    return value / mcs_mix_pdf(share, brdf ? x.pdf : other, brdf ? other : x.pdf);
+    if (how->how == ONE) {
+        const drawn d = draw(s, how, u[2] < how->share, u);
+        return d.value > 0 ? d.value / mcs_mix_pdf(how->share, d.brdf, d.pdf) : 0;
+    }
+    float sum = 0;
+    for (int from_brdf = 0; from_brdf < 2; from_brdf++) {
+        const drawn d = draw(s, how, from_brdf, u + 2 * from_brdf);
+        if (!(d.value > 0)) continue;
+        const float own = from_brdf ? d.brdf : d.pdf;
+        const float other = from_brdf ? d.pdf : d.brdf;
+        sum += d.value / own * (how->how == PAIR_POWER ? mcs_mis_power(own, other) : mcs_mis_balance(own, other));
+    }
+    return sum;
 }
 
 /* ---- The same, exactly: sums over samples of any density ---- */
@@ -151,25 +177,19 @@ typedef struct {
 typedef struct {
     double value, weight;
     int through, half;
-    const float *pdf; /* by technique */
+    float pdf[TECHNIQUES];
 } look_up;
 
 static void tally_add(tally *sum, const strategy *how, const look_up *l) {
     const double share = (double)how->share;
-    double p = (double)l->pdf[how->technique];
     const double b = (double)l->pdf[BRDF];
-    const int pair = how->how == PAIR_POWER || how->how == PAIR_BALANCE;
-    if (how->how == MIXTURE) p = share * b + (1 - share) * p;
-    sum->rays += l->weight * (pair ? p + b : p);
+    const double p = share * b + (1 - share) * (double)l->pdf[how->technique];
+    sum->rays += l->weight * (how->how == ONE ? p : p + b);
     if (!l->through || !(p + b > 0)) return;
-    double of_first = 1;
     double of_brdf = 0;
-    if (pair) {
-        const double p_power = how->how == PAIR_POWER ? p * p : p;
-        const double b_power = how->how == PAIR_POWER ? b * b : b;
-        of_first = p_power / (p_power + b_power);
-        of_brdf = b_power / (p_power + b_power);
-    }
+    if (how->how == PAIR_BALANCE) of_brdf = b / (p + b);
+    if (how->how == PAIR_POWER) of_brdf = b * b / (p * p + b * b);
+    const double of_first = 1 - of_brdf;
     const double first = p > 0 ? of_first * l->value / p : 0;
     const double brdf = b > 0 ? of_brdf * l->value / b : 0;
     sum->square += l->weight * l->value * (of_first * first + of_brdf * brdf);

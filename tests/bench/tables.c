@@ -446,7 +446,6 @@ static void make_surfaces(void) {
             r->alpha_x = r->alpha_y = 0.3f;
             r->matte = kind == MATTE;
             r->profile = MCS_PROFILE_GGX;
-            r->draws = RUN;
         }
     }
 }
