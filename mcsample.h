@@ -1605,7 +1605,6 @@ typedef struct {
     float alpha_x, alpha_y;
     float matte;         /* weight of the diffuse part, 0 to 1; the lobe has the rest */
     mcs_profile profile; /* any other value counts as MCS_PROFILE_GGX */
-    uint32_t draws;      /* how many you expect to draw at this point: tells how much to prepare; 0 counts as 1 */
 } mcs_reflection;
 
 /* What a part of a scene has learned: see [region]. */
@@ -1681,9 +1680,7 @@ MCS_API size_t mcs_product_bytes(uint32_t rows);
 MCS_API size_t mcs_product_table_bytes(uint32_t rows);
 /* Builds the product of a map and a reflection. It holds for the orientation (e->frame) that the map has now. g: the
  * region that the point belongs to, or NULL. The light is then that which comes through to the region, and at least a
- * tenth of the samples comes from the lobe. Where less than a tenth of the reflected light comes through, tiles are
- * weighed as in mcs_product_build_region, and half of the samples come from the lobe. A surface that is all matte has
- * no lobe. */
+ * tenth of the samples comes from the lobe, unless the surface is all matte. */
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r, const mcs_region *g);
 /* Builds the product of a map and a region: one table for all its points. */
@@ -7622,15 +7619,6 @@ MCS_FN void mcsi_product_reflect(mcs_product *p, const mcs_region *g) {
     const float even = mcsi_max(0.2f * mean, MCSI_VALUE_LEAST);
     for (size_t k = 0; k < n; k++) value[k] += even;
 }
-/* A point to which too little light comes through becomes the table of its region. */
-MCS_FN int mcsi_product_hidden(mcs_product *p, const mcs_tiles *t, const mcs_region *g) {
-    const size_t n = mcsi_tiles_count(t);
-    const float *value = MCSI_READ(float, p, p->at.value);
-    const float all = mcsi_sum_of_products(MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light), value, n);
-    if (!(mcsi_sum_of_products(MCSI_READ(float, p, p->at.light), value, n) < 0.1f * all)) return 0;
-    mcsi_product_reflect(p, g);
-    return 1;
-}
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r, const mcs_region *g) {
     const mcs_status status = mcsi_product_start(p, bytes, t ? mcs_product_bytes(t->rows) : 0, t, e, r);
@@ -7645,13 +7633,10 @@ MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_til
     p->brdf_share = mcsi_product_lobe_share(&s, t);
     mcsi_product_see(p, t, g);
     mcsi_tile_values_n(&s, n, MCSI_READ(float, t, from.light), MCSI_WRITE(float, p, p->at.value));
-    const int hidden = g && mcsi_product_hidden(p, t, g);
-    if (g && s.matte < 1.0f) p->brdf_share = mcsi_max(p->brdf_share, hidden ? 0.5f : 0.1f);
-    p->warped = !hidden;
-    if (!hidden) {
-        mcsi_corner_values_n(&s, n + t->cols, MCSI_READ(float, t, from.corner), MCSI_WRITE(float, p, p->at.corner));
-        if (s.matte < 1.0f && mcsi_lobe_in_cells(&s, n) < MCSI_GRIDS_BELOW) mcsi_product_refine(p, t, &s);
-    }
+    if (g && s.matte < 1.0f) p->brdf_share = mcsi_max(p->brdf_share, 0.1f);
+    p->warped = 1;
+    mcsi_corner_values_n(&s, n + t->cols, MCSI_READ(float, t, from.corner), MCSI_WRITE(float, p, p->at.corner));
+    if (s.matte < 1.0f && mcsi_lobe_in_cells(&s, n) < MCSI_GRIDS_BELOW) mcsi_product_refine(p, t, &s);
     mcsi_product_finish(p, t);
     return MCS_OK;
 }

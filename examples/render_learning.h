@@ -121,7 +121,7 @@ static int learning_probe(learning *l, const scene *s, uint32_t probes) {
         }
         region *g = &l->list[*number ? *number : x.object];
         if (g->known->points >= POINTS) continue;
-        const mcs_reflection r = reflection_of(&x, 1);
+        const mcs_reflection r = reflection_of(&x);
         mcs_region_add_point(g->known, l->light->tiles, l->light->table, &r);
         mcs_region_add_point(l->list[x.object].known, l->light->tiles, l->light->table, &r);
     }

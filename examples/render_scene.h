@@ -203,7 +203,7 @@ static int intersect(const scene *s, vec3 p, vec3 w, surface *x) {
 }
 
 /* What product sampling is told of a surface; Fresnel's factor as the mirror direction has it. */
-static mcs_reflection reflection_of(const surface *x, uint32_t draws) {
+static mcs_reflection reflection_of(const surface *x) {
     const material *m = x->m;
     const float base = m->p_lobe < 1 ? luminance(m->base) : 0;
     float lobe = 0;
@@ -215,7 +215,6 @@ static mcs_reflection reflection_of(const surface *x, uint32_t draws) {
     r.alpha_y = m->alpha_y;
     r.matte = base / (base + lobe);
     r.profile = m->profile;
-    r.draws = draws;
     return r;
 }
 

@@ -127,7 +127,7 @@ static vec3 sample_prepared(const lit_point *p, uint32_t lights) {
         mcs_product p;
         char room[MCS_PRODUCT_BYTES(TILES)];
     } here;
-    const mcs_reflection r = reflection_of(p->x, lights);
+    const mcs_reflection r = reflection_of(p->x);
     const mcs_region *g = p->l ? p->l->list[p->region].known : NULL;
     if (mcs_product_build(&here.p, sizeof here, p->e->tiles, p->e->table, &r, g) != MCS_OK) return vec(0, 0, 0);
     return sample_product(p, &here.p, lights, 0);

@@ -475,7 +475,7 @@ static void bits_map_build(int kind, bits_map *m) {
         mcs_reflection r;
         r.frame = mcs_frame_make(mcsi_vec3(0.6f, 0.48f, 0.64f));
         r.wo = mcsi_vec3(0.0f, mcsi_sqrt(1.0f - s[3] * s[3]), s[3]), r.alpha_x = s[0], r.alpha_y = s[1], r.matte = s[2];
-        r.profile = (mcs_profile)(k % 3), r.draws = 64;
+        r.profile = (mcs_profile)(k % 3);
         bytes = mcs_product_bytes(rows), m->product[k] = (mcs_product *)bits_memory(bytes);
         m->status[3 + k] = mcs_product_build(m->product[k], bytes, m->tiles, m->env, &r, NULL);
         mcs_region_add_point(m->region, m->tiles, m->env, &r);
@@ -673,7 +673,6 @@ MCST_HD static mcs_reflection bits_reflection(const float *in) {
     mcs_reflection r;
     r.frame = mcs_frame_make(IN3(8)), r.wo = IN3(3), r.alpha_x = IN(0), r.alpha_y = IN(1);
     r.matte = WORD(12) % 4 ? mcs_u01(WORD(12)) : IN(6), r.profile = (mcs_profile)(WORD(11) >> 2 & 3);
-    r.draws = WORD(11) >> 4 & 31;
     return r;
 }
 FN(tiles_bytes) {

@@ -156,7 +156,6 @@ static void check_extreme_surfaces(const extreme_map *map, uint32_t rows) {
         s.r.alpha_y = alphas[i % 3 ? i % 10 : 9 - i % 10];
         s.r.matte = mattes[i / 10];
         s.r.profile = map->profile;
-        s.r.draws = i % 2 ? 64 : UINT32_MAX * (uint32_t)(i % 4);
         sampler d = sampler_make(&m, &s);
         check_sane(&d, 1);
         if (map->kind == BLACK_MAP) check_black(&d, &even);

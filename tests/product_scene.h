@@ -198,7 +198,6 @@ static inline surface surface_make(mcs_vec3 normal, mcs_vec3 wo, lobe l) {
     s.r.alpha_y = l.ay;
     s.r.matte = l.matte;
     s.r.profile = l.profile;
-    s.r.draws = 64;
     to3(s.s, f.s);
     to3(s.t, f.t);
     to3(s.n, f.n);

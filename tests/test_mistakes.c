@@ -251,7 +251,7 @@ static void check_products(void) {
     mcs_tiles *other = (mcs_tiles *)malloc(bytes);
     static double p_room[MCS_PRODUCT_BYTES(16) / 8 + 1];
     mcs_product *p = (mcs_product *)(void *)p_room;
-    const mcs_reflection r = {mcs_frame_make(unit), unit, 0.5f, 0.5f, 0.5f, MCS_PROFILE_GGX, 1};
+    const mcs_reflection r = {mcs_frame_make(unit), unit, 0.5f, 0.5f, 0.5f, MCS_PROFILE_GGX};
     CHECK(t && other && !mcs_tiles_build(t, bytes, e, 16) && !mcs_tiles_build(other, bytes, e, 32), "tiles");
     CHECK(!mcs_product_build(p, sizeof p_room, t, e, &r, NULL), "product");
     TELLS_U("mcs_product_sample", mcs_product_sample(p, t, e, u, u));

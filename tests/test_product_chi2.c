@@ -306,7 +306,6 @@ static void test_chi2(void) {
             for (int k = 0; k < tried; k++) {
                 const int b = (first + k) % NORMALS;
                 surface s = surface_make(normals[b], local_wo(0.25 + 0.12 * b, 0.3 * b), lobes[l]);
-                s.r.draws = b % 3 ? 64 : (uint32_t)(a + l) % 2;
                 check_normal(&m, &s, &rng, (double)(MAPS * LOBES) * tried);
             }
             free(expected);

@@ -693,7 +693,8 @@ static void sweep_line(void) {
 
 /* Over all u the radius of one of a plane, a direction or a half-vector. */
 static void sweep_radius(const struct radius *r) {
-    const int past_equator = (row->traits & MCST_WHOLE) && !(row->coord == MCST_CONE && r->a <= 1); /* sin falls again */
+    const int past_equator =
+        (row->traits & MCST_WHOLE) && !(row->coord == MCST_CONE && r->a <= 1); /* sin falls again */
     result of[2];
     arg[0] = r->a, arg[1] = r->b;
     if (!mcst_case("%s %g %g", row->name, (double)arg[0], (double)arg[1])) return;

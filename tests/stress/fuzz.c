@@ -453,7 +453,6 @@ static void fuzz_product(const mcs_env *e, bytes *b) {
     r.alpha_y = take_float(b);
     r.matte = take_float(b);
     r.profile = (mcs_profile)(take_u8(b) & 3);
-    r.draws = take_u32(b);
     if (tame) {
         r.alpha_x = mcs_schlick(0, r.alpha_x);
         r.alpha_y = mcs_schlick(0, r.alpha_y);

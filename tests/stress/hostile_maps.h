@@ -274,7 +274,6 @@ static mcs_reflection make_reflection(uint64_t *state, int *sane) {
     r.alpha_y = z & 2 ? b : 1e-3f * b;
     r.matte = z & 4 ? b : (float)(z >> 3 & 1);
     r.profile = (mcs_profile)(z >> 60 & 3);
-    r.draws = (uint32_t)(z >> 6 & 63);
     *sane = r.wo.z > 0;
     if (z & 16) return r;
     float *slot[15];

@@ -642,7 +642,6 @@ static void check_products(const source *map, const row_of_texels *t, long n, ta
         r.alpha_x = 0.2f;
         r.alpha_y = 0.4f;
         r.matte = i ? 0.1f : 1.0f;
-        r.draws = 64;
         rc = mcs_product_build(product, b.bytes, tiles, map->e, &r, NULL);
         product->brdf_share = 0;
         s.kind = PRODUCT;
