@@ -317,6 +317,33 @@ static void check_one_point(const lobe *of, int hidden) {
     scene_free(&m);
 }
 
+/* A product that is built with a region has the same values, of light that is dimmed by V. */
+static void check_dimmed(const lobe *of) {
+    scene m = scene_make(ROOM, 96, 64, 16);
+    const surface s = surface_make(normals[4], local_wo(0.7, 0.1), *of);
+    learned l = region_make(&m);
+    add_rays(&l, 4000, 30);
+    sampler d = sampler_make(&m, &s);
+    d.p->brdf_share = 0;
+    double *open = tile_masses(&d);
+    CHECK(mcs_product_build(d.p, d.mem.bytes, tiles_of(&m), env_of(&m), &s.r, l.g) == MCS_OK && arena_intact(&d.mem),
+          "product with a region");
+    CHECK(d.p->brdf_share == (s.r.matte < 1 ? 0.1f : 0.0f), "share %g", (double)d.p->brdf_share);
+    d.p->brdf_share = 0;
+    double *dimmed = tile_masses(&d);
+    double all = 0;
+    for (uint32_t k = 0; k < count_of(&m); k++) all += open[k] * visibility_of(l.g, NULL, k);
+    for (uint32_t k = 0; k < count_of(&m); k++) {
+        const double want = open[k] * visibility_of(l.g, NULL, k) / all;
+        CHECK(fabs(dimmed[k] - want) <= 1e-3 * want + 32 * 0x1p-24, "tile %u: %g, not %g", k, dimmed[k], want);
+    }
+    free(open);
+    free(dimmed);
+    sampler_free(&d);
+    region_free(&l);
+    scene_free(&m);
+}
+
 /* ---- what holds of every table: density where light is, and one in all; draws after it ---- */
 
 static void check_table(const sampler *d, mcs_pcg32 *rng, double tests) {
@@ -636,6 +663,8 @@ int main(int argc, char **argv) {
         if (mcst_case("%s%s", lobes[of[i / 2]].name, i % 2 ? ", hidden" : ""))
             check_one_point(&lobes[of[i / 2]], i % 2);
     }
+    for (int i = 0; i < 2; i++)
+        if (mcst_case("%s, dimmed", lobes[i].name)) check_dimmed(&lobes[i]);
     test_tables();
     mcst_group("region, means");
     for (int i = 0; i < 4; i++)
