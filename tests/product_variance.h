@@ -109,7 +109,7 @@ typedef struct {
 
 /* Normals spread over the sphere by the golden angle, the eye at cosines of 0.35 to 0.95. */
 static void add_map(const scene *m, ratios *sum) {
-    const uint32_t count = (uint32_t)(4096 * fmin(scale(), 64));
+    const uint32_t count = (uint32_t)(4096 * fmin(fmax(scale(), 1), 64)); /* fewer are too few for what is asked */
     for (int k = 0; k < ROWS * TWELVE; k++) {
         const int i = k % TWELVE;
         const double z = 1 - (2 * i + 1.0) / TWELVE;

@@ -445,7 +445,7 @@ static void check_unbiased(picture kind, int of_point, uint64_t stream) {
     double sum = 0;
     double sum2 = 0;
     int n = 0;
-    while (n < 500000 * fmin(scale(), 10)) {
+    while (n < 500000 * fmin(fmax(scale(), 0.2), 10)) {
         fill(&rng, CHUNK, u1, u2);
         for (int k = 0; k < CHUNK; k++, n++) {
             const mcs_texel t = draw(&d, u1[k], u2[k]);
