@@ -7983,19 +7983,19 @@ MCSI_CORE void mcsi_lobe_draw_n(const mcsi_lobe *l, size_t n, const float *u1, c
 /* Densities of n world directions, at most a block: those of the tiles become those of the mixture. */
 MCSI_CORE void mcsi_lobe_mix_n(const mcsi_lobe *l, float share, size_t n, const float *x, const float *y,
                                const float *z, float *pdf) {
-    mcsi_texel_block local;
+    mcsi_texel_block turned;
     for (size_t k = 0; k < n; k++) {
         const mcs_vec3 w = mcs_to_local(&l->frame, mcsi_vec3(x[k], y[k], z[k]));
-        local.x[k] = w.x;
-        local.y[k] = w.y;
-        local.z[k] = w.z;
+        turned.x[k] = w.x;
+        turned.y[k] = w.y;
+        turned.z[k] = w.z;
     }
     switch (l->profile) {
-    case MCS_PROFILE_GAUSS: mcs_ward_pdf_n(&l->gauss, l->wo, n, local.x, local.y, local.z, local.pdf); break;
-    case MCS_PROFILE_PHONG: mcs_phong_pdf_n(&l->phong, l->wo, n, local.x, local.y, local.z, local.pdf); break;
-    default: mcs_ggx_vndf_pdf_n(&l->ggx, l->wo, n, local.x, local.y, local.z, local.pdf);
+    case MCS_PROFILE_GAUSS: mcs_ward_pdf_n(&l->gauss, l->wo, n, turned.x, turned.y, turned.z, turned.pdf); break;
+    case MCS_PROFILE_PHONG: mcs_phong_pdf_n(&l->phong, l->wo, n, turned.x, turned.y, turned.z, turned.pdf); break;
+    default: mcs_ggx_vndf_pdf_n(&l->ggx, l->wo, n, turned.x, turned.y, turned.z, turned.pdf);
     }
-    for (size_t k = 0; k < n; k++) pdf[k] = mcs_mix_pdf(share, local.pdf[k], pdf[k]);
+    for (size_t k = 0; k < n; k++) pdf[k] = mcs_mix_pdf(share, turned.pdf[k], pdf[k]);
 }
 /* A block of random numbers, rescaled for lobe and tiles: those of the lobe first, those of the tiles from the end. */
 typedef struct {
