@@ -1552,28 +1552,33 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  *
  * Support: every direction above the surface from which light comes can be drawn. A tile that may reach above the
  * horizon, by the distance of its corners from the mean direction of its light, weighs at least a ten-thousandth of
- * what it would weigh on a white matte surface that faces it. Directions below the horizon are drawn only in tiles that
- * it crosses. A black map counts as even light, as in [env].
+ * what it would weigh on a white matte surface that faces it, and at least a quarter of the mean of what it draws by.
+ * So no tile is drawn so rarely that a sample in it is worth thousands of times the answer. No bound holds where the
+ * horizon or a lobe leaves next to nothing of the light: a tile cannot tell it from nothing. Directions below the
+ * horizon are drawn only in tiles that it crosses. A black map counts as even light, as in [env].
  *
- * Narrow lobes. A lobe is narrow when its solid angle, A = 4 pi alpha_x alpha_y cos(theta_o), is below 8 mean tiles.
- * The prepared form then evaluates the reflection on a grid of 8 x 8 points in each heavy tile: at most 32 tiles, those
- * that by their mean direction or a corner may weigh more than 1/256 of all. If the lobe is narrower still, a share of
- * the samples (p->brdf_share) comes from the lobe itself, by mcs_ggx_vndf, mcs_ward or mcs_phong; the density is that
- * of the mixture. What the lobe sends below the surface is lost: its density is 0. With T the mean solid angle of a
- * tile, and c = 1 (GGX) or 3 (the others, which have no tails), the share is (1 - matte) m/(1 + m), where m/(1 + m) is
- * at most 0.95, and
+ * Narrow lobes. A lobe is narrow when 4 pi alpha^2 cos(theta_o) is below 8 mean tiles, with the smaller alpha; Phong's
+ * lobe has no cosine here and below. The reflection is then evaluated on a grid of 8 x 8 points in each heavy tile: at
+ * most 32 tiles, those that by their mean direction or a corner may weigh more than 1/128 of all.
  *
- *   m = c T/(14 A) - 0.03
+ * A share of the samples (p->brdf_share) comes from the lobe itself, by mcs_ggx_vndf, mcs_ward or mcs_phong; the
+ * density is that of the mixture. What the lobe sends below the surface is lost: its density is 0. The share grows with
+ * T/A, the mean solid angle of a tile over that of the lobe, A = 4 pi alpha_x alpha_y cos(theta_o). It grows with R/S,
+ * too: the mean radiance of the tile about the mirror direction, over what the product reflects; that is, with how much
+ * of the answer the lobe would find. With R/S within [1/4096, 1], c = 1 (GGX) or 3 (the others, which have no tails),
+ * m = c T/(14 A) - 0.007 and x = m + m^2, the share is
  *
- * For wide lobes the share is 0 and the maps are monotone: stratified u stay stratified. That gains little below
- * several thousand samples, as every tile has a residue of its own.
+ *   (1 - matte) sqrt(R/S) x/(1 + x)      x/(1 + x) being at most 0.95
+ *
+ * and 0 where m <= 0. Then the maps are monotone, as on matte surfaces: stratified u stay stratified. That gains little
+ * below several thousand samples, as every tile has a residue of its own.
  *
  * Density:  per solid angle, exact for what is drawn: tiles have integer probabilities. Within a tile it is continuous;
  *           it jumps between tiles, and varies within a texel. The density of a sample is that of mcs_product_pdf but
  *           for the rounding of the sample's position, 2^-21 of the map's texels.
- * Bad:      u outside [0,1) or a bad direction gives density 0 and a finite direction. So does a wo below the surface;
- *           where all light is below it, only the lobe's share has a density. Parameters out of range are taken as the
- *           nearer end, NaN as the lower one.
+ * Bad:      u outside [0,1) or a bad direction gives density 0 and a finite direction. So does every sample where wo
+ *           or all light is below the surface. Parameters out of range are taken as the nearer end, NaN as the lower
+ *           one.
  * Cost:     a sample takes that of the map and two short searches; a warp takes 2 square roots and 5 divisions.
  *           README.md has times.
  * Source:   Clarberg and Akenine-Moeller 2008, "Practical product importance sampling for direct illumination"; Cline,
@@ -7144,7 +7149,8 @@ typedef struct {
     const float *evenness; /* of the tiles */
     float *light, *value, *corner, *row_weight;
     uint32_t *tile_sums;
-    float *bound; /* [cols][rows]: what tiles may weigh; it lies where tile_sums will */
+    float *bound; /* [cols + 1][rows]: what tiles may weigh, and the largest in a row; it lies where tile_sums will */
+    float excess; /* how much a value loses of what it is above the mean of the tile's warp */
 } mcsi_product_lists;
 MCSI_CORE mcsi_product_lists mcsi_product_lists_of(mcs_product *p, const mcs_tiles *t) {
     const mcsi_tiles_offsets from = mcsi_tiles_offsets_of(t);
@@ -7158,6 +7164,7 @@ MCSI_CORE mcsi_product_lists mcsi_product_lists_of(mcs_product *p, const mcs_til
     l.row_weight = MCSI_WRITE(float, p, p->at.row_weight);
     l.tile_sums = MCSI_WRITE(uint32_t, p, p->at.tile_sums);
     l.bound = MCSI_WRITE(float, p, p->at.tile_sums);
+    l.excess = 0.0f;
     return l;
 }
 
@@ -7240,16 +7247,13 @@ MCS_FN void mcsi_product_finish(mcs_product *p, const mcs_tiles *t) {
 }
 #endif
 
-/* ---- [product] narrow lobes: grids on the heaviest tiles ----
- * A lobe is narrow when its solid angle, 4 pi alpha_x alpha_y cos(theta_o), is below 8 mean tiles. The prepared form
- * then evaluates the reflection on a grid of 8 x 8 nodes in each heavy tile: at most 32 tiles, those that by their mean
- * direction or a corner may weigh more than 1/256 of all. In these tiles the density is bilinear in 7 x 7 cells, and
- * the tile weighs the mean of the grid. The other tiles weigh less where their corners are darker than their mean
- * direction. */
+/* ---- [product] bounds: what a tile may weigh, and that it weighs enough ----
+ * A sample in the light of a tile is worth the sum of all weights times the reflection over value times warp. So it is
+ * worth too much where the value is far below what the warp was made from: a light below the horizon has next to no
+ * value, but its tile may reach far above the horizon. Hence a value is at least a quarter of the warp's mean. */
 
-#if MCSI_W == 1
-#define MCSI_GRIDS_BELOW 8.0f /* mean tiles */
-#endif
+/* How much of the mean of its warp a value is at least. */
+#define MCSI_VALUE_OF_WARP 0.25f
 /* The larger one and the sum of the values at the two corners of a tile at one azimuth. */
 typedef struct {
     mcs_f most, sum;
@@ -7262,9 +7266,10 @@ MCSI_CORE mcsi_side mcsi_side_load(const float *corner) {
     side.sum = upper + lower;
     return side;
 }
-/* Upper bound of each tile's weight: light times the largest of its value and its corner values; and the sums of rows.
- * Then lowers a tile's value by three quarters of its excess over the mean of its warp: beside the peak of a narrow
- * lobe, the value at the mean direction overestimates the tile. */
+/* Upper bound of each tile's weight: light times the largest of its value and its corner values. Behind the bounds
+ * follows the largest one of each row. Then raises values that are too low, and lowers a value by a part of its excess
+ * over the mean of its warp: beside the peak of a narrow lobe, the value at the mean direction overestimates the tile.
+ * Last, the weights of rows by these values: by them it shows which bounds are large, as most bounds overestimate. */
 MCSI_CORE void mcsi_tile_bounds(const mcsi_product_lists *l) {
     const size_t rows = l->rows;
     const size_t cols = l->cols;
@@ -7273,6 +7278,7 @@ MCSI_CORE void mcsi_tile_bounds(const mcsi_product_lists *l) {
     float *values = l->value;
     for (size_t i = 0; i < rows; i += MCSI_W) {
         mcs_f sum = mcs_set(0.0f);
+        mcs_f largest = mcs_set(0.0f);
         const mcsi_side first = mcsi_side_load(corner + i);
         mcsi_side left = first;
         for (size_t j = 0; j < cols; j++) {
@@ -7281,13 +7287,18 @@ MCSI_CORE void mcsi_tile_bounds(const mcsi_product_lists *l) {
             if (j + 1 < cols) right = mcsi_side_load(corner + (j + 1) * (rows + 1) + i);
             const mcs_f v = mcs_load(values + k);
             const mcs_f most = mcsi_sane_result(v > 0.0f, mcsi_max(v, mcsi_max(left.most, right.most)));
-            const mcs_f bound = mcs_load(l->light + k) * most;
-            sum = sum + bound;
             const mcs_f mean = v + mcs_load(l->evenness + k) * (0.25f * (left.sum + right.sum) - v);
+            const mcs_f enough = mcsi_max(v, MCSI_VALUE_OF_WARP * mean);
+            const mcs_f value = mcsi_sane_result(v > 0.0f, mcsi_sel(mean < v, v + l->excess * (mean - v), enough));
+            const mcs_f light = mcs_load(l->light + k);
+            const mcs_f bound = light * most;
             mcs_store(bounds + k, bound);
-            mcs_store(values + k, mcsi_sel(mean < v, 0.25f * v + 0.75f * mean, v));
+            mcs_store(values + k, value);
+            largest = mcsi_max(largest, bound);
+            sum = sum + light * value;
             left = right;
         }
+        mcs_store(bounds + rows * cols + i, largest);
         mcs_store(l->row_weight + i, sum);
     }
 }
@@ -7297,6 +7308,22 @@ MCSI_LOOP void mcsi_tile_bounds_loop(const mcsi_product_lists *l) { mcsi_tile_bo
 #if MCSI_W == 1
 MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l); /* by the widest loop */
 
+/* ---- [product] narrow lobes: grids on the heaviest tiles ----
+ * A lobe is narrow when its solid angle, were it as wide along both axes as along its narrower one, is below 8 mean
+ * tiles. The prepared form then evaluates the reflection on a grid of 8 x 8 nodes in each heavy tile: at most 32 tiles,
+ * those that by their mean direction or a corner may weigh more than 1/128 of all. In these tiles the density is
+ * bilinear in 7 x 7 cells, and the tile weighs the mean of the grid. */
+
+#define MCSI_GRIDS_BELOW 8.0f /* mean tiles */
+/* How much of its value without a grid a tile keeps: all nodes may lie on a light below the horizon, and other light of
+ * the tile above it. */
+#define MCSI_GRID_OF_VALUE (1.0f / 128.0f)
+/* A lobe of half-vectors narrows with the cosine of wo; Phong's, about the mirror direction, does not. */
+MCSI_CORE float mcsi_lobe_cosine(const mcsi_surface *s) { return s->profile == MCS_PROFILE_PHONG ? 1.0f : s->wo.z; }
+/* Solid angle in mean tiles, n of them, of a lobe that is as wide along both axes as s is along its narrower one. */
+MCSI_CORE float mcsi_lobe_in_tiles(const mcsi_surface *s, size_t n) {
+    return (float)n * mcsi_min(s->ax2, s->ay2) * mcsi_lobe_cosine(s);
+}
 /* Keeps tile k if it is one of the MCSI_GRIDS heaviest so far. Returns how many are kept. */
 MCSI_CORE uint32_t mcsi_keep_heaviest(const float *bound, uint32_t k, uint32_t *tile, uint32_t count) {
     if (count < MCSI_GRIDS) {
@@ -7310,14 +7337,13 @@ MCSI_CORE uint32_t mcsi_keep_heaviest(const float *bound, uint32_t k, uint32_t *
 }
 /* The numbers of the tiles that get a grid. Returns how many they are. */
 MCS_FN uint32_t mcsi_product_heaviest(const mcsi_product_lists *l, uint32_t *tile) {
-    mcsi_tile_bounds_n(l);
     const uint32_t rows = (uint32_t)l->rows;
     const uint32_t n = (uint32_t)(l->rows * l->cols);
     float least = 0.0f;
-    for (uint32_t i = 0; i < rows; i++) least += l->row_weight[i] * 0.00390625f;
+    for (uint32_t i = 0; i < rows; i++) least += l->row_weight[i] * (1.0f / 128.0f);
     uint32_t count = 0;
     for (uint32_t i = 0; i < rows; i++) {
-        if (!(l->row_weight[i] > least)) continue;
+        if (!(l->bound[n + i] > least)) continue;
         for (uint32_t k = i; k < n; k += rows)
             if (l->bound[k] > least) count = mcsi_keep_heaviest(l->bound, k, tile, count);
     }
@@ -7339,17 +7365,23 @@ MCS_FN float mcsi_grid_build(const mcsi_surface *s, const float *node, float *gr
     for (uint32_t k = 0; k < MCSI_NODES; k++) grid[MCSI_GRID + k] = sum[k] + (MCSI_NODES - 1) * least;
     return mean + least;
 }
-/* Gives grids to the tiles that need them. */
+/* Brings values within their bounds, and gives grids to the tiles of a narrow lobe that need them. */
 MCS_FN void mcsi_product_refine(mcs_product *p, const mcs_tiles *t, const mcsi_surface *s) {
-    const mcsi_product_lists l = mcsi_product_lists_of(p, t);
+    mcsi_product_lists l = mcsi_product_lists_of(p, t);
+    const int narrow = s->matte < 1.0f && mcsi_lobe_in_tiles(s, l.rows * l.cols) < MCSI_GRIDS_BELOW;
+    if (narrow) l.excess = 0.75f;
+    mcsi_tile_bounds_n(&l);
+    if (!narrow) return;
     const float *node = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).node);
     float *grid = MCSI_WRITE(float, p, p->at.grid);
     uint8_t *grid_of = MCSI_WRITE(uint8_t, p, p->at.grid_of);
     uint32_t tile[MCSI_GRIDS];
     const uint32_t count = mcsi_product_heaviest(&l, tile);
     for (uint32_t i = 0; i < count; i++) {
-        l.value[tile[i]] =
-            mcsi_grid_build(s, node + 3 * (size_t)MCSI_GRID * tile[i], grid + i * (size_t)(MCSI_GRID + MCSI_NODES));
+        float *value = l.value + tile[i];
+        float *at = grid + i * (size_t)(MCSI_GRID + MCSI_NODES);
+        const float mean = mcsi_grid_build(s, node + 3 * (size_t)MCSI_GRID * tile[i], at);
+        *value = mcsi_max(mean, MCSI_GRID_OF_VALUE * *value);
         grid_of[tile[i]] = (uint8_t)(i + 1);
     }
 }
@@ -7413,19 +7445,38 @@ MCSI_CORE float mcsi_grid_density(const float *grid, float t1, float t2) {
  * If the lobe is narrower than a cell, a share of the samples comes from the lobe itself (mcs_ggx_vndf, mcs_ward,
  * mcs_phong); the density is that of the mixture. What the lobe sends below the surface is lost. */
 
-/* Solid angle of a lobe in mean cells, when the sphere is cut into n. */
-MCSI_CORE float mcsi_lobe_in_cells(const mcsi_surface *s, size_t n) {
-    return (float)n * mcsi_sqrt(s->ax2 * s->ay2) * s->wo.z;
+/* Solid angle of a tile. */
+MCS_FN float mcsi_tile_solid_angle(const mcs_tiles *t, const mcs_env *e, mcsi_tile tile) {
+    const double top = mcsi_env_top(e, mcsi_tile_begin(tile.row, t->rows, e->h));
+    const double bottom = mcsi_env_top(e, mcsi_tile_begin(tile.row + 1, t->rows, e->h));
+    const uint32_t cols = mcsi_tile_begin(tile.col + 1, t->cols, e->w) - mcsi_tile_begin(tile.col, t->cols, e->w);
+    return (float)(6.2831853071795865 / e->w * cols * (bottom - top));
 }
-/* The lobe's share of the samples. It begins where a cell is `threshold` times as large as the lobe. Lobes without
- * GGX's tails fall within a third. */
-MCS_FN float mcsi_lobe_share(const mcsi_surface *s, size_t n, float threshold) {
-    const float m = (s->profile == MCS_PROFILE_GGX ? 1.0f : 3.0f) / mcsi_lobe_in_cells(s, n) - threshold;
-    return m > 0.0f ? (1.0f - s->matte) * mcsi_min(m / (1.0f + m), 0.95f) : 0.0f;
+/* How much of what the product reflects the lobe would, were all light about the mirror direction as in the tile there:
+ * it is what samples of the lobe are good for. Within [1/4096, 1]; the lower end bounds what a sample is worth where
+ * that tile is dark and the next one is not. */
+MCS_FN float mcsi_product_mirrored(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r,
+                                   const mcsi_surface *s) {
+    mcsi_spot spot;
+    if (!mcsi_env_find(e, mcs_to_world(&r->frame, mcsi_vec3(-s->wo.x, -s->wo.y, s->wo.z)), &spot)) return 1.0f;
+    const mcsi_tile tile = mcsi_tile_of_spot(t, e, &spot);
+    const float light = MCSI_READ(float, p, p->at.light)[mcsi_tile_number(t->rows, tile)];
+    const float *row_weight = MCSI_READ(float, p, p->at.row_weight);
+    float total = 0.0f;
+    for (uint32_t i = 0; i < t->rows; i++) total += row_weight[i];
+    total *= mcsi_tile_solid_angle(t, e, tile);
+    return light < total ? mcsi_max(light / total, 1.0f / 4096.0f) : 1.0f;
 }
-/* Of the prepared form, where 14 stands for the cells of a tile. */
-MCSI_CORE float mcsi_product_lobe_share(const mcsi_surface *s, const mcs_tiles *t) {
-    return mcsi_lobe_share(s, 14 * mcsi_tiles_count(t), 0.03f);
+/* The lobe's share in the finished product. It begins where a lobe is 143 times as large as the cell of a grid, of which
+ * 14 stand for a tile. Lobes without GGX's tails fall within a third. */
+MCS_FN float mcsi_product_lobe_share(const mcs_product *p, const mcs_tiles *t, const mcs_env *e,
+                                     const mcs_reflection *r, const mcsi_surface *s) {
+    const float cells = 14.0f * (float)mcsi_tiles_count(t);
+    const float lobe = cells * mcsi_sqrt(s->ax2 * s->ay2) * mcsi_lobe_cosine(s);
+    const float m = mcsi_min((s->profile == MCS_PROFILE_GGX ? 1.0f : 3.0f) / lobe, 100.0f) - 0.007f;
+    if (!(m > 0.0f && s->matte < 1.0f)) return 0.0f;
+    const float x = m + m * m;
+    return (1.0f - s->matte) * mcsi_min(x / (1.0f + x), 0.95f) * mcsi_sqrt(mcsi_product_mirrored(p, t, e, r, s));
 }
 MCSI_CORE mcsi_lobe mcsi_lobe_make(const mcs_reflection *r, const mcsi_surface *s) {
     const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-7f, 1e4f);
@@ -7630,14 +7681,15 @@ MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_til
     const size_t n = mcsi_tiles_count(t);
     const mcsi_tiles_offsets from = mcsi_tiles_offsets_of(t);
     p->lobe = mcsi_lobe_make(r, &s);
-    p->brdf_share = mcsi_product_lobe_share(&s, t);
     mcsi_product_see(p, t, g);
     mcsi_tile_values_n(&s, n, MCSI_READ(float, t, from.light), MCSI_WRITE(float, p, p->at.value));
-    if (g && s.matte < 1.0f) p->brdf_share = mcsi_max(p->brdf_share, 0.1f);
     p->warped = 1;
     mcsi_corner_values_n(&s, n + t->cols, MCSI_READ(float, t, from.corner), MCSI_WRITE(float, p, p->at.corner));
-    if (s.matte < 1.0f && mcsi_lobe_in_cells(&s, n) < MCSI_GRIDS_BELOW) mcsi_product_refine(p, t, &s);
+    mcsi_product_refine(p, t, &s);
     mcsi_product_finish(p, t);
+    if (p->dark) return MCS_OK;
+    p->brdf_share = mcsi_product_lobe_share(p, t, e, r, &s);
+    if (g && s.matte < 1.0f) p->brdf_share = mcsi_max(p->brdf_share, 0.1f);
     return MCS_OK;
 }
 MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
@@ -7797,14 +7849,14 @@ MCSI_CORE mcs_texel mcsi_product_draw(const mcs_product *p, const mcs_tiles *t, 
 }
 MCS_API mcs_texel mcs_product_sample(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, float u1, float u2) {
     MCS_ASSERT(p->rows == t->rows);
+    if (p->dark) return mcsi_no_texel(e);
     const float share = p->brdf_share;
     int32_t ok = 1;
     u1 = mcsi_sane_u(u1, &ok);
     u2 = mcsi_sane_u(u2, &ok);
     mcs_texel x;
     if (u1 < share) x = mcsi_product_look_up(p, t, e, mcsi_lobe_draw(&p->lobe, mcsi_lobe_u(share, u1), u2, &ok));
-    else if (!p->dark) x = mcsi_product_draw(p, t, e, mcsi_draw_of(mcsi_tiles_u(share, u1), u2));
-    else return mcsi_no_texel(e);
+    else x = mcsi_product_draw(p, t, e, mcsi_draw_of(mcsi_tiles_u(share, u1), u2));
     x.pdf = ok ? x.pdf : 0.0f;
     return x;
 }
@@ -8019,7 +8071,7 @@ MCSI_CORE void mcsi_split_make(mcsi_split *s, float share, size_t n, const float
         s->ok[at] = ok;
     }
 }
-/* Draws of a product whose lobe has a share, or that is dark. */
+/* Draws of a product whose lobe has a share. */
 MCS_FN void mcsi_product_block_mix(mcsi_product_block *b, mcsi_split *s, size_t n, mcsi_texel_block *r) {
     const mcs_product *p = b->p;
     const mcsi_texels into = {r->x, r->y, r->z, r->pdf, r->col, r->row};
@@ -8032,13 +8084,10 @@ MCS_FN void mcsi_product_block_mix(mcsi_product_block *b, mcsi_split *s, size_t 
         r->col[k] = b->spot[k].col;
         s->ok[k] &= b->found[k];
     }
-    for (size_t k = s->lobes; k < n; k++) {
-        if (p->dark) mcsi_texels_put(&into, k, mcsi_no_texel(b->e));
-        else b->draw[k - s->lobes] = mcsi_draw_of(s->u1[k], s->u2[k]);
-    }
-    if (!p->dark && s->lobes < n) mcsi_product_block_draw(b, n - s->lobes, &into, s->lobes);
-    if (p->brdf_share > 0.0f) mcsi_lobe_mix_n(&p->lobe, p->brdf_share, n, r->x, r->y, r->z, r->pdf);
-    for (size_t k = 0; k < n; k++) r->pdf[k] = s->ok[k] && !(p->dark && k >= s->lobes) ? r->pdf[k] : 0.0f;
+    for (size_t k = s->lobes; k < n; k++) b->draw[k - s->lobes] = mcsi_draw_of(s->u1[k], s->u2[k]);
+    if (s->lobes < n) mcsi_product_block_draw(b, n - s->lobes, &into, s->lobes);
+    mcsi_lobe_mix_n(&p->lobe, p->brdf_share, n, r->x, r->y, r->z, r->pdf);
+    for (size_t k = 0; k < n; k++) r->pdf[k] = s->ok[k] ? r->pdf[k] : 0.0f;
 }
 
 /* -- the whole -- */
@@ -8047,7 +8096,11 @@ MCS_API void mcs_product_sample_n(const mcs_product *p, const mcs_tiles *t, cons
                                   const float *u2, float *x, float *y, float *z, float *pdf, uint32_t *col,
                                   uint32_t *row) {
     const mcsi_texels out = {x, y, z, pdf, col, row};
-    const int mixed = p->brdf_share > 0.0f || p->dark;
+    if (p->dark) {
+        for (size_t k = 0; k < n; k++) mcsi_texels_put(&out, k, mcsi_no_texel(e));
+        return;
+    }
+    const int mixed = p->brdf_share > 0.0f;
     mcsi_product_block b;
     mcsi_product_block_start(&b, p, t, e, mixed ? 0 : n);
     size_t m;

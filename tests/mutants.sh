@@ -83,7 +83,7 @@ build() { # HEADER_FOLDER PROGRAM FILTER OUTPUT
         "tests/$2.c" -o "$4" -lm >"$4.log" 2>&1
 }
 binary() { # FOLDER PROGRAM FILTER
-    case $2 in test_oracle | test_width) echo "$1/$2.${3%%[/ ]*}" ;; *) echo "$1/$2" ;; esac
+    case $2 in test_oracle | test_width) echo "$1/$2.${3%%[/ ]*}" ;; *) echo "$1/${2##*/}" ;; esac
 }
 # The cases named must pass with the header as it is, and how long that takes sets how long a mutant may take.
 baseline() {

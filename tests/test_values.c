@@ -621,9 +621,19 @@ static void borders_of_rows(void) {
 
 /* ---- product ---- */
 
-/* The lobe's share as the header has it: (1 - matte) m/(1 + m), at most 0.95, where m + 0.03 is a fourteenth of the
- * mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), three times as much without GGX's tails. Some ten
- * roundings of m. */
+/* The radiance about the mirror direction, in a map of a texel per tile, over what a product reflects in all. */
+static ld mirrored_part(const mcs_product *p, const mcs_env *e, const float *light, const mcs_reflection *r) {
+    const mcs_vec3 mirror = {-r->wo.x, -r->wo.y, r->wo.z};
+    const mcs_texel x = mcs_env_texel(e, mcs_to_world(&r->frame, mirror));
+    const float *row_weight = MCSI_READ(float, p, p->at.row_weight);
+    ld total = 0;
+    for (uint32_t i = 0; i < p->rows; i++) total += (ld)row_weight[i];
+    return fminl((ld)light[x.row * e->w + x.col] / (ld)e->total / total, 1);
+}
+/* The lobe's share as the header has it: (1 - matte) sqrt(R/S) x/(1 + x), x/(1 + x) at most 0.95, where x = m + m^2 and
+ * m + 0.007 is a fourteenth of the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), without the cosine
+ * for Phong's lobe, three times as much without GGX's tails. Some ten roundings of m; the map's probabilities are those
+ * of its light to 1e-6. */
 static void share_of_the_lobe(void) {
     static const float alphas[][2] = {{1, 1},         {0.08f, 0.08f}, {0.03f, 0.03f},
                                       {0.02f, 0.01f}, {0.01f, 0.01f}, {1e-3f, 1e-3f}};
@@ -643,19 +653,22 @@ static void share_of_the_lobe(void) {
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++) {
                 const mcs_vec3 up = {0, 0, 1};
-                const mcs_vec3 wo = {0.6f, 0, 0.8f};
+                /* towards light of 3 and of 1: as much as is reflected in all, and less */
+                const mcs_vec3 wo[] = {{0.6f, 0.01f, 0.8f}, {0.48f, 0.36f, 0.8f}};
                 mcs_reflection r;
                 memset(&r, 0, sizeof r);
                 r.frame = mcs_frame_make(up);
-                r.wo = wo;
+                r.wo = wo[i % 2];
                 r.alpha_x = alphas[i][0];
                 r.alpha_y = alphas[i][1];
                 r.matte = mattes[j];
                 r.profile = k == 0 ? MCS_PROFILE_GGX : k == 1 ? MCS_PROFILE_GAUSS : MCS_PROFILE_PHONG;
                 CHECK(mcs_product_build(p, memory.bytes, t, e, &r, NULL) == MCS_OK, "product");
-                const ld m = (k ? 3 : 1) / (14 * 512.0L * (ld)alphas[i][0] * (ld)alphas[i][1] * 0.8L) - 0.03L;
-                const ld want = m > 0 ? (1 - (ld)mattes[j]) * fminl(m / (1 + m), 0.95L) : 0;
-                CHECK(fabsl((ld)p->brdf_share - want) <= 16 * EPS, "alphas %g %g, matte %g, profile %d: %g, not %Lg",
+                const ld lobe = (ld)alphas[i][0] * (ld)alphas[i][1] * (k == 2 ? 1 : 0.8L);
+                const ld m = (k ? 3 : 1) / (14 * 512.0L * lobe) - 0.007L;
+                const ld of_width = m > 0 ? fminl((m + m * m) / (1 + m + m * m), 0.95L) : 0;
+                const ld want = (1 - (ld)mattes[j]) * of_width * sqrtl(mirrored_part(p, e, light, &r));
+                CHECK(fabsl((ld)p->brdf_share - want) <= 32 * EPS, "alphas %g %g, matte %g, profile %d: %g, not %Lg",
                       (double)alphas[i][0], (double)alphas[i][1], (double)mattes[j], k, (double)p->brdf_share, want);
             }
     arena_free(&map);
@@ -763,7 +776,8 @@ static lit_surface surface_under(const float *light, uint32_t w, uint32_t h, flo
     s.p = (mcs_product *)(void *)s.memory.at;
     s.r = glossy(alpha);
     CHECK(mcs_tiles_build(s.t, s.tiles.bytes, s.e, 16) == MCS_OK, "tiles");
-    CHECK(mcs_product_build(s.p, s.memory.bytes, s.t, s.e, &s.r, NULL) == MCS_OK && !(s.p->brdf_share > 0), "product");
+    CHECK(mcs_product_build(s.p, s.memory.bytes, s.t, s.e, &s.r, NULL) == MCS_OK, "product");
+    s.p->brdf_share = 0;
     return s;
 }
 
