@@ -19,7 +19,7 @@ EXAMPLES = $(sort $(wildcard examples/[0-9][0-9]_*.c))
 TEST_BINS = $(TESTS:%.c=$(BUILD)/%)
 # Stress programs: at full size by `make stress`, part by part; a small cut of each with every full `make test`. The truth of
 # extremes and climb is __float128, which takes gcc and its libquadmath.
-STRESS_ALL = extremes floats deep hostile fuzz images climb
+STRESS_ALL = extremes floats deep hostile fuzz images climb fireflies
 STRESS_QUAD = extremes climb
 STRESS = $(if $(QUADMATH),$(STRESS_ALL),$(filter-out $(STRESS_QUAD),$(STRESS_ALL)))
 STRESS_BINS = $(STRESS:%=$(BUILD)/tests/stress/%)
@@ -29,7 +29,7 @@ STRESS_NAMES := $(shell sed -n 's/^ *M.X, [A-Z]*, \([a-z0-9_]*\),.*/\1/p' tests/
 STRESS_ROWS := $(filter-out $(foreach n,$(STRESS_NAMES),$(filter-out $(n),$(filter %$(n),$(STRESS_NAMES)))),$(STRESS_NAMES))
 # Parts of make stress, of up to about five minutes each: program-filter, + for a space and . for a slash in the filter, ^ for all
 # but what follows. stress-whole looks whether they leave a case out.
-STRESS_PARTS = hostile images fuzz-product fuzz-^product $(filter climb,$(STRESS)) \
+STRESS_PARTS = hostile images fuzz-product fuzz-^product $(filter climb,$(STRESS)) fireflies-climbing fireflies-^climbing \
 	$(addprefix floats-vector+maths.,sin 1 ln e x normal+tail normal+quantile atan2+of) \
 	$(addprefix floats-,y+to+1 y+beyond+1 y+below+0 u+to+x u+to+radius any+float.u) \
 	$(addprefix floats-any+float.x+of+,$(STRESS_LINES)) $(STRESS_ROWS:%=deep-%.) \
