@@ -5465,7 +5465,7 @@ MCSI_CORE mcsi_angles mcsi_env_angles(const mcs_frame *f, mcs_vec3 w) {
  * mcsi_env_point. */
 enum { MCSI_ENV_BLOCK = 32 };
 typedef struct {
-    double u1, u2, density;
+    double rest1, rest2, density;
 } mcsi_draw; /* see "draws, in steps" */
 typedef struct {
     mcsi_draw draw[MCSI_ENV_BLOCK];
@@ -6105,15 +6105,16 @@ MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const m
  * A map is drawn from as the window of all its rows and columns (mcsi_env_whole).
  *
  * Every draw is a descent: row, column, point in the texel (products begin above it, with a tile). It carries what is
- * left of the two random numbers, from 0 to 2^31 within the last choice, and the density of the path so far. That is
- * relative to a uniform draw at first and per solid angle from the row on. A bad random number makes it 0 at the start.
+ * left of the two random numbers (rest1, rest2), from 0 to 2^31 within the last choice, and the density of the path so
+ * far. That is relative to a uniform draw at first and per solid angle from the row on. A bad random number makes it 0
+ * at the start.
  * Each step is a function that takes a mcsi_draw, chooses, and hands on the rest. Each density function walks the same
  * steps for a given texel. */
 
-MCSI_CORE mcsi_draw mcsi_draw_make(double u1, double u2, double density) {
+MCSI_CORE mcsi_draw mcsi_draw_make(double rest1, double rest2, double density) {
     mcsi_draw d;
-    d.u1 = u1;
-    d.u2 = u2;
+    d.rest1 = rest1;
+    d.rest2 = rest2;
     d.density = density;
     return d;
 }
@@ -6121,9 +6122,9 @@ MCSI_CORE mcsi_draw mcsi_draw_make(double u1, double u2, double density) {
 MCSI_CORE double mcsi_times_one(float u, int32_t *ok) { return (double)mcsi_sane_u(u, ok) * MCSI_ONE; }
 MCSI_CORE mcsi_draw mcsi_draw_start(float u1, float u2) {
     int32_t ok = 1;
-    const double U1 = mcsi_times_one(u1, &ok);
-    const double U2 = mcsi_times_one(u2, &ok);
-    return mcsi_draw_make(U1, U2, ok ? 1.0 : 0.0);
+    const double rest1 = mcsi_times_one(u1, &ok);
+    const double rest2 = mcsi_times_one(u2, &ok);
+    return mcsi_draw_make(rest1, rest2, ok ? 1.0 : 0.0);
 }
 
 /* -- row -- */
@@ -6137,25 +6138,25 @@ MCSI_CORE double mcsi_window_row_density(const mcsi_window *r, uint32_t i) {
 MCSI_CORE uint32_t mcsi_window_draw_row(const mcsi_window *r, mcsi_draw *d, mcsi_env_point *p) {
     mcsi_cdf rows = r->rows;
     rows.guide_bytes = sizeof(uint16_t); /* which a compiler does not know of a window behind a pointer */
-    const uint32_t i = mcsi_cdf_find(&rows, (uint32_t)(int32_t)d->u2);
-    p->row_rest = (float)(d->u2 - (int32_t)rows.sums[i]);
+    const uint32_t i = mcsi_cdf_find(&rows, (uint32_t)(int32_t)d->rest2);
+    p->row_rest = (float)(d->rest2 - (int32_t)rows.sums[i]);
     p->row_mass = (float)mcsi_cdf_mass(&rows, i);
     p->edge = r->row[i].edge;
     p->height = r->row[i].height;
     d->density *= mcsi_window_row_density(r, i);
     return i;
 }
-/* From u1 in the window's part of row i to u1 in the row. */
+/* From a rest within the window's part of row i to one within the row. */
 MCSI_CORE void mcsi_window_narrow(const mcsi_window *r, uint32_t i, mcsi_draw *d) {
     if (!r->part) return;
     const mcsi_row_part part = r->part[i];
-    /* Rounding must not carry u1 to the end of the part, nor the wrapped value to 2^31 (x87 registers hold values
+    /* Rounding must not carry it to the end of the part, nor the wrapped value to 2^31 (x87 registers hold values
      * between the largest double below 2^31, 2^-22 below it, and 2^31). */
-    const double u1 = d->u1 * (part.mass * (1.0 / MCSI_ONE));
+    const double in_part = d->rest1 * (part.mass * (1.0 / MCSI_ONE));
     const double end = part.mass - 4.76837158203125e-07;
-    const double unwrapped = part.begin + (u1 < end ? u1 : end);
+    const double unwrapped = part.begin + (in_part < end ? in_part : end);
     const double wrapped = unwrapped - (unwrapped > MCSI_ONE - 2.384185791015625e-07 ? (double)MCSI_ONE : 0.0);
-    d->u1 = wrapped > 0.0 ? wrapped : 0.0;
+    d->rest1 = wrapped > 0.0 ? wrapped : 0.0;
 }
 
 /* -- column: looked for in two steps, so that array forms can fetch memory between them -- */
@@ -6191,10 +6192,10 @@ MCSI_CORE uint32_t mcsi_find_column(const mcsi_cdf *columns, const mcsi_candidat
 /* Chooses a column by u1, of which the rest goes to p. */
 MCSI_CORE uint32_t mcsi_draw_column(const mcsi_cdf *columns, const mcsi_candidates *c, mcsi_draw *d,
                                     mcsi_env_point *p) {
-    const uint32_t col = mcsi_find_column(columns, c, (uint32_t)(int32_t)d->u1);
+    const uint32_t col = mcsi_find_column(columns, c, (uint32_t)(int32_t)d->rest1);
     const uint32_t mass = mcsi_cdf_mass(columns, col);
     p->col = (float)(int32_t)col;
-    p->col_rest = (float)(d->u1 - (int32_t)columns->sums[col]);
+    p->col_rest = (float)(d->rest1 - (int32_t)columns->sums[col]);
     p->col_mass = (float)mass;
     d->density *= mass;
     return col;
@@ -6219,8 +6220,8 @@ MCSI_CORE mcsi_env_point mcsi_window_draw_uniform(const mcs_env *e, const mcsi_w
     const double margin = MCSI_ENV_MARGIN * e->h;
     const double first = top + (mcsi_env_top(e, r->row0 + 1) - top) * margin;
     const double last = bottom - (bottom - mcsi_env_top(e, end - 1)) * margin;
-    const double t = first + (last - first) * (d->u2 / MCSI_ONE);
-    const double unwrapped = r->col0 + d->u1 / MCSI_ONE * r->cols;
+    const double t = first + (last - first) * (d->rest2 / MCSI_ONE);
+    const double unwrapped = r->col0 + d->rest1 / MCSI_ONE * r->cols;
     const double col = unwrapped < e->w ? unwrapped : unwrapped - e->w;
     mcsi_env_point p;
     p.row_rest = 0.5f;
@@ -6306,7 +6307,7 @@ MCSI_CORE mcsi_env_point mcsi_window_draw_point(const mcs_env *e, const mcsi_win
     const uint32_t i = mcsi_window_draw_row(r, d, &p);
     mcsi_window_narrow(r, i, d);
     const mcsi_cdf columns = mcsi_env_columns(e, r->row0 + i);
-    const mcsi_candidates c = mcsi_candidate_columns(&columns, (uint32_t)(int32_t)d->u1);
+    const mcsi_candidates c = mcsi_candidate_columns(&columns, (uint32_t)(int32_t)d->rest1);
     x->row = r->row0 + i;
     x->col = mcsi_draw_column(&columns, &c, d, &p);
     return p;
@@ -6368,7 +6369,7 @@ MCSI_CORE void mcsi_block_row(const mcs_env *e, const mcsi_window *r, mcsi_draw 
         b->sums[k] = mcsi_env_sums(e, r->row0 + i);
         b->guide[k] = mcsi_env_guide(e, r->row0 + i);
         b->draw[k] = d;
-        MCSI_PREFETCH(b->guide[k] + ((uint32_t)(int32_t)d.u1 >> e->offset.col_shift));
+        MCSI_PREFETCH(b->guide[k] + ((uint32_t)(int32_t)d.rest1 >> e->offset.col_shift));
     }
     b->row_rest[k] = p.row_rest;
     b->row_mass[k] = p.row_mass;
@@ -6383,7 +6384,7 @@ MCS_FN void mcsi_block_search(const mcs_env *e, mcsi_env_block *b, size_t n) {
     for (size_t k = 0; k < n; k++) {
         if (!b->sums[k]) continue;
         columns.guide = b->guide[k];
-        c[k] = mcsi_candidate_columns(&columns, (uint32_t)(int32_t)b->draw[k].u1);
+        c[k] = mcsi_candidate_columns(&columns, (uint32_t)(int32_t)b->draw[k].rest1);
         MCSI_PREFETCH(b->sums[k] + c[k].first);
         MCSI_PREFETCH(b->sums[k] + c[k].first + 8);
     }
@@ -7114,12 +7115,12 @@ MCSI_CORE mcsi_draw mcsi_draw_of(float u1, float u2) {
 }
 /* A number in [0, 2^31) as one in [0, 1]. */
 MCSI_CORE float mcsi_part_of_one(double u) { return (float)(u * (1.0 / MCSI_ONE)); }
-/* u1 and u2 become the point of the warp. */
+/* The rests become the point of the warp. */
 MCSI_CORE void mcsi_draw_warp(const mcsi_warp *w, mcsi_draw *d) {
-    const mcsi_warp_point p = mcsi_warp_draw(w, mcsi_part_of_one(d->u1), mcsi_part_of_one(d->u2));
+    const mcsi_warp_point p = mcsi_warp_draw(w, mcsi_part_of_one(d->rest1), mcsi_part_of_one(d->rest2));
     d->density *= (double)p.density;
-    d->u1 = (double)p.t1 * MCSI_ONE;
-    d->u2 = (double)p.t2 * MCSI_ONE;
+    d->rest1 = (double)p.t1 * MCSI_ONE;
+    d->rest2 = (double)p.t2 * MCSI_ONE;
 }
 #endif
 
@@ -7413,18 +7414,18 @@ MCSI_CORE uint32_t mcsi_nodes_draw(const float *w, double *u, double *density) {
     *density *= (MCSI_NODES - 1) * mass / total;
     return k;
 }
-/* u1 and u2 become the point of the grid: row of cells, cell, point in it. */
+/* The rests become the point of the grid: row of cells, cell, point in it. */
 MCSI_CORE void mcsi_draw_grid(const float *grid, mcsi_draw *d) {
-    const uint32_t row = mcsi_nodes_draw(grid + MCSI_GRID, &d->u2, &d->density);
+    const uint32_t row = mcsi_nodes_draw(grid + MCSI_GRID, &d->rest2, &d->density);
     const float *v = grid + row;
     float both[MCSI_NODES]; /* weights of the nodes on both borders of the row */
     for (uint32_t k = 0; k < MCSI_NODES; k++) both[k] = v[k * MCSI_NODES] + v[k * MCSI_NODES + 1];
-    const uint32_t col = mcsi_nodes_draw(both, &d->u1, &d->density);
+    const uint32_t col = mcsi_nodes_draw(both, &d->rest1, &d->density);
     const mcsi_warp w = mcsi_grid_cell(v + col * MCSI_NODES);
     d->density *= 4.0 / (((double)w.v00 + (double)w.v01) + ((double)w.v10 + (double)w.v11));
     mcsi_draw_warp(&w, d);
-    d->u1 = (col * (double)MCSI_ONE + d->u1) * (1.0 / (MCSI_NODES - 1));
-    d->u2 = (row * (double)MCSI_ONE + d->u2) * (1.0 / (MCSI_NODES - 1));
+    d->rest1 = (col * (double)MCSI_ONE + d->rest1) * (1.0 / (MCSI_NODES - 1));
+    d->rest2 = (row * (double)MCSI_ONE + d->rest2) * (1.0 / (MCSI_NODES - 1));
 }
 /* Density of a grid at t1, t2, both 0 to 1, relative to its mean. */
 MCSI_CORE float mcsi_grid_density(const float *grid, float t1, float t2) {
@@ -7725,12 +7726,12 @@ MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const 
 
 /* -- tile: chosen by row and column -- */
 
-/* Chooses a row of tiles by u2. */
+/* Chooses a row of tiles. */
 MCSI_CORE uint32_t mcsi_product_draw_row(const mcs_product *p, mcsi_draw *d) {
     const uint32_t *sums = MCSI_READ(uint32_t, p, p->at.row_sums);
-    const double u2 = d->u2 * p->row_total;
-    const uint32_t row = mcsi_shares_find(sums, p->rows, 1, (uint32_t)(int32_t)u2);
-    d->u2 = mcsi_share_position(u2, sums[row], sums[row + 1]);
+    const double at = d->rest2 * p->row_total;
+    const uint32_t row = mcsi_shares_find(sums, p->rows, 1, (uint32_t)(int32_t)at);
+    d->rest2 = mcsi_share_position(at, sums[row], sums[row + 1]);
     return row;
 }
 /* Cumulative shares of the tiles of a row, rows apart. */
@@ -7745,16 +7746,16 @@ MCSI_CORE double mcsi_product_tile_probability(const mcs_product *p, mcsi_tile t
     const uint32_t *sums = mcsi_product_tile_sums(p, tile.row) + tile.col * p->rows;
     return mcsi_product_probability(p, tile.row, sums[p->rows] - sums[0]);
 }
-/* Chooses a tile of the row by u1. */
+/* Chooses a tile of the row. */
 MCSI_CORE mcsi_tile mcsi_product_draw_tile(const mcs_product *p, uint32_t row, mcsi_draw *d) {
     const uint32_t *sums = mcsi_product_tile_sums(p, row);
-    const double u1 = d->u1 * ((int32_t)sums[p->cols * p->rows] * (1.0 / MCSI_ONE));
+    const double at = d->rest1 * ((int32_t)sums[p->cols * p->rows] * (1.0 / MCSI_ONE));
     mcsi_tile tile;
     tile.row = row;
-    tile.col = mcsi_shares_find(sums, p->cols, p->rows, (uint32_t)(int32_t)u1);
+    tile.col = mcsi_shares_find(sums, p->cols, p->rows, (uint32_t)(int32_t)at);
     const uint32_t begin = sums[tile.col * p->rows];
     const uint32_t end = sums[(tile.col + 1) * p->rows];
-    d->u1 = mcsi_share_position(u1, begin, end);
+    d->rest1 = mcsi_share_position(at, begin, end);
     d->density *= mcsi_product_probability(p, row, end - begin);
     return tile;
 }
@@ -7785,7 +7786,7 @@ MCSI_CORE mcsi_warp mcsi_product_warp(const mcs_product *p, const mcs_tiles *t, 
     const mcsi_warp_source s = mcsi_product_warp_source(p, t, tile);
     return mcsi_warp_make(&s);
 }
-/* u1 and u2 become the point among the light of the tile. */
+/* The rests become the point among the light of the tile. */
 MCSI_CORE void mcsi_product_draw_point(const mcs_product *p, const mcs_tiles *t, mcsi_tile tile, mcsi_draw *d) {
     const float *grid = mcsi_product_grid(p, tile);
     if (grid) {
@@ -7841,7 +7842,7 @@ MCSI_CORE mcs_texel mcsi_product_draw(const mcs_product *p, const mcs_tiles *t, 
     const uint32_t row = mcsi_product_draw_row(p, &d);
     const mcsi_tile tile = mcsi_product_draw_tile(p, row, &d);
     const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, tile));
-    mcsi_window_prefetch(&window, d.u2);
+    mcsi_window_prefetch(&window, d.rest2);
     mcsi_product_draw_point(p, t, tile, &d);
     mcs_texel x = mcsi_window_draw(e, &window, d);
     x.pdf = mcsi_lobe_mix(&p->lobe, p->brdf_share, x.w, x.pdf);
@@ -7917,8 +7918,8 @@ MCSI_CORE void mcsi_product_block_tiles(mcsi_product_block *b, size_t n) {
     for (size_t k = 0; k < n; k++) {
         const mcsi_tile tile = mcsi_product_draw_tile(b->p, b->tile_row[k], &b->draw[k]);
         mcsi_product_block_tile(b, k, tile);
-        b->warps.u1[k] = mcsi_part_of_one(b->draw[k].u1);
-        b->warps.u2[k] = mcsi_part_of_one(b->draw[k].u2);
+        b->warps.u1[k] = mcsi_part_of_one(b->draw[k].rest1);
+        b->warps.u2[k] = mcsi_part_of_one(b->draw[k].rest2);
     }
 }
 /* Chooses the points in the tiles. */
@@ -7930,11 +7931,11 @@ MCSI_CORE void mcsi_product_block_points(mcsi_product_block *b, size_t n) {
             mcsi_draw_grid(b->grid[k], d);
         } else if (b->p->warped) {
             d->density *= (double)b->warps.density[k];
-            d->u1 = (double)b->warps.t1[k] * MCSI_ONE;
-            d->u2 = (double)b->warps.t2[k] * MCSI_ONE;
+            d->rest1 = (double)b->warps.t1[k] * MCSI_ONE;
+            d->rest2 = (double)b->warps.t2[k] * MCSI_ONE;
         }
         const mcsi_window window = mcsi_window_of(b->e, b->window[k]);
-        mcsi_window_prefetch(&window, d->u2);
+        mcsi_window_prefetch(&window, d->rest2);
     }
 }
 /* All of n draws; results go to out->x[first] and so on. */
