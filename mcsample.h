@@ -7468,8 +7468,8 @@ MCS_FN float mcsi_product_mirrored(const mcs_product *p, const mcs_tiles *t, con
     total *= mcsi_tile_solid_angle(t, e, tile);
     return light < total ? mcsi_max(light / total, 1.0f / 4096.0f) : 1.0f;
 }
-/* The lobe's share in the finished product. It begins where a lobe is 143 times as large as the cell of a grid, of which
- * 14 stand for a tile. Lobes without GGX's tails fall within a third. */
+/* The lobe's share in the finished product. It begins where a lobe is 143 times as large as the cell of a grid, of
+ * which 14 stand for a tile. Lobes without GGX's tails fall within a third. */
 MCS_FN float mcsi_product_lobe_share(const mcs_product *p, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r, const mcsi_surface *s) {
     const float cells = 14.0f * (float)mcsi_tiles_count(t);

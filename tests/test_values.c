@@ -631,9 +631,9 @@ static ld mirrored_part(const mcs_product *p, const mcs_env *e, const float *lig
     return fminl((ld)light[x.row * e->w + x.col] / (ld)e->total / total, 1);
 }
 /* The lobe's share as the header has it: (1 - matte) sqrt(R/S) x/(1 + x), x/(1 + x) at most 0.95, where x = m + m^2 and
- * m + 0.007 is a fourteenth of the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), without the cosine
- * for Phong's lobe, three times as much without GGX's tails. Some ten roundings of m; the map's probabilities are those
- * of its light to 1e-6. */
+ * m + 0.007 is a fourteenth of the mean solid angle of a tile over 4 pi alpha_x alpha_y cos(theta_o), without the
+ * cosine for Phong's lobe, three times as much without GGX's tails. Some ten roundings of m; the map's probabilities
+ * are those of its light to 1e-6. */
 static void share_of_the_lobe(void) {
     static const float alphas[][2] = {{1, 1},         {0.08f, 0.08f}, {0.03f, 0.03f},
                                       {0.02f, 0.01f}, {0.01f, 0.01f}, {1e-3f, 1e-3f}};

@@ -141,8 +141,8 @@ static void attack(material_kind kind) {
     mcst_note("  %-20s %9.3g at %s\n", materials_of[kind], worst, where);
 }
 
-/* What the adversary found once: a lamp below the horizon that has all nodes of a grid, and other light of its tile above
- * it. A sample was worth 1.9e4 times the answer when such a tile weighed no more than its grid. */
+/* What the adversary found once: a lamp below the horizon that has all nodes of a grid, and other light of its tile
+ * above it. A sample was worth 1.9e4 times the answer when such a tile weighed no more than its grid. */
 static void check_found(void) {
     picture m = picture_make("lamps", CLIMB_W, CLIMB_H);
     mcs_product *memory_of_it = (mcs_product *)memory(mcs_product_bytes(TILE_ROWS));
