@@ -1553,9 +1553,10 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * Support: every direction above the surface from which light comes can be drawn. A tile that may reach above the
  * horizon, by the distance of its corners from the mean direction of its light, weighs at least a ten-thousandth of
  * what it would weigh on a white matte surface that faces it, and at least a quarter of the mean of what it draws by.
- * So no tile is drawn so rarely that a sample in it is worth more than a few thousand times the answer. No bound holds
- * where the horizon or a lobe leaves next to nothing of the light: a tile cannot tell it from nothing. Directions below
- * the horizon are drawn only in tiles that it crosses. A black map counts as even light, as in [env].
+ * So no tile is drawn so rarely that a sample in it is worth more than some ten thousand times the answer, and next to
+ * never above a thousand. No bound holds where the horizon or a lobe leaves next to nothing of the light: a tile cannot
+ * tell it from nothing. Directions below the horizon are drawn only in tiles that it crosses. A black map counts as
+ * even light, as in [env].
  *
  * Narrow lobes. A lobe is narrow when 4 pi alpha^2 cos(theta_o) is below 8 mean tiles, with the smaller alpha; Phong's
  * lobe has no cosine here and below. The reflection is then evaluated on a grid of 8 x 8 points in each heavy tile: at

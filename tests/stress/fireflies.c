@@ -14,9 +14,10 @@
 #include <time.h>
 #include "fireflies_climb.h"
 
-/* What is claimed of the largest sample, over the answer; and of what the adversary finds, see score_of. */
+/* What is claimed of the largest sample, over the answer; and of what the adversary finds, see score_of: twice what it
+ * found in a dozen climbs from different seeds. */
 static const double most_worth = 1000;
-static const double most_climbed = 1e4;
+static const double most_climbed = 3e4;
 enum { CLIMBS = 4, STEPS = 400, STEPS_LEAST = 16 };
 static const char *const materials_of[KINDS] = {"matte", "GGX", "Ward", "Phong", "Ashikhmin-Shirley"};
 
@@ -164,7 +165,7 @@ static void check_found(void) {
     t.lamp[1] = beside;
     const worth v = trial_worth(&t, &m, memory_of_it);
     const double score = score_of(&v, &m);
-    CHECK(score <= most_climbed, "a sample is %.3g times the answer", score);
+    CHECK(score <= 8000, "a sample is %.3g times the answer", score);
     free(memory_of_it);
     picture_free(&m);
 }
