@@ -114,7 +114,7 @@
  *   [types]       points, directions, samples, lanes, status codes
  *   [rng]         random numbers, and a generator for every pixel          independent samples
  *   [points]      scrambled Sobol, strata, Latin hypercubes, R2            less noise for as many samples
- *   [1d]          eight densities on a line                                distances, filters
+ *   [1d]          nine densities on a line                                 distances, filters
  *   [disk]        points on a disk                                         lenses, round lights
  *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte surfaces, spherical lights
  *   [frame]       local and world coordinates                              every shaded point
@@ -483,7 +483,7 @@ MCS_FN mcs_vec2 mcs_r2(uint32_t index, uint32_t seed);
 MCS_FN uint32_t mcs_hash(uint32_t a, uint32_t b);
 
 /* ==== [1d] densities on a line ====================================================================================
- * Eight densities, each by inversion from one number u in [0,1). Every map increases with u: over the 2^24 multiples of
+ * Nine densities, each by inversion from one number u in [0,1). Every map increases with u: over the 2^24 multiples of
  * 2^-24 none ever falls, by as little as an ulp. Stratified u therefore give stratified x.
  *
  *   X_sample  draws x; its pdf is per length
@@ -577,9 +577,20 @@ MCS_FN mcs_sample1 mcs_evenpower_sample(float e, float u);
 MCS_FN float mcs_evenpower_pdf(float e, float x);
 MCS_FN float mcs_evenpower_invert(float e, float x);
 
+/* ---- smoothstep: a soft ramp, which leaves 0 and arrives at its top with no slope ----
+ * density    2 (3 t^2 - 2 t^3) / (b - a) on [a, b], with t = (x - a)/(b - a)
+ * a, b       the ends; b - a, rounded to a float, in [1e-18, 1e18]. The density is 0 at a and 2/(b - a) at b. u = 0 is
+ *            a, exactly, and no x is outside [a, b].
+ * cost       2 divisions in double, and 1 for the parameters; pdf and inverse 1
+ * functions  mcs_smoothstep_sample, mcs_smoothstep_pdf, mcs_smoothstep_invert */
+MCS_FN mcs_sample1 mcs_smoothstep_sample(float a, float b, float u);
+MCS_FN float mcs_smoothstep_pdf(float a, float b, float x);
+MCS_FN float mcs_smoothstep_invert(float a, float b, float x);
+
 /* ---- arrays: the parameters of one density, n numbers u ----
  * Each is X_sample for n numbers: mcs_linear_sample_n, mcs_tent_sample_n, mcs_exponential_sample_n,
- * mcs_truncexp_sample_n, mcs_normal_sample_n, mcs_logistic_sample_n, mcs_power_sample_n, mcs_evenpower_sample_n. */
+ * mcs_truncexp_sample_n, mcs_normal_sample_n, mcs_logistic_sample_n, mcs_power_sample_n, mcs_evenpower_sample_n,
+ * mcs_smoothstep_sample_n. */
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_tent_sample_n(float r, size_t n, const float *u, float *x, float *pdf);
@@ -589,6 +600,7 @@ MCS_API void mcs_normal_sample_n(float mean, float sd, size_t n, const float *u,
 MCS_API void mcs_logistic_sample_n(float mean, float scale, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_power_sample_n(float e, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_smoothstep_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf);
 #endif
 #endif
 
@@ -3306,6 +3318,56 @@ MCSI_FN mcs_f mcs_evenpower_invert(mcs_f e, mcs_f x) {
 }
 #endif
 
+/* ---- smoothstep ----
+ * P is t^3 (2 - t). All is in double, so that t has the digits that x needs wherever a and b lie. */
+
+/* The t of u within 3.6 % of itself. s is the cube root of u/2, from a third of the bits of u 2^24, which is a normal
+ * float, and t^3 (1 - t/2) = s^3 makes t = s + s^2/6 + .... */
+MCSI_CORE mcs_f mcsi_smoothstep_guess(mcs_f u) {
+    const mcs_f third = mcsi_to_float(mcsi_bits(u * 16777216.0f)) * 0.333333343f;
+    const mcs_f s = mcsi_from_bits(mcsi_trunc(third) + 640022548);
+    return s * (1.0f + s * (0.167f + s * 0.15f));
+}
+/* Halley's method, its terms divided by t, makes of an error e of t one of at most e^3: 5e-5, then 2e-13. The next
+ * multiple of 2^-24 is 2^-25 of t further at least, so that rounding cannot bring x below the last one. */
+MCSI_SAMPLE mcs_sample1 mcs_smoothstep_sample(mcs_f a, mcs_f b, mcs_f u) {
+    mcs_i ok = mcsi_scale_ok(b - a);
+    MCSI_REQUIRE(ok);
+    u = mcsi_sane_u(u, &ok);
+    const mcs_f guess = mcsi_smoothstep_guess(u);
+    const mcsi_d du = MCSI_WIDEN(u);
+    mcsi_d t = MCSI_WIDEN(guess);
+    for (int i = 0; i < 2; i++) {
+        const mcsi_d cube = t * t * t;
+        const mcsi_d slope = 3.0 - 2.0 * t;
+        const mcsi_d excess = cube * (2.0 - t) - du;
+        t = t - t * slope * excess / (2.0 * cube * slope * slope - 3.0 * (1.0 - t) * excess);
+    }
+    const mcs_f some = mcsi_sel(u > 0.0f, mcs_set(1.0f), mcs_set(0.0f));
+    t = t * MCSI_WIDEN(some);
+    const mcsi_d width = MCSI_WIDEN(b) - MCSI_WIDEN(a);
+    const mcsi_d height = (2.0 / width) * (t * t * (3.0 - 2.0 * t));
+    return mcsi_sample1(ok, MCSI_NARROW(MCSI_WIDEN(a) + width * t), MCSI_NARROW(height));
+}
+#ifdef MCSI_PUBLIC
+MCSI_FN mcs_f mcs_smoothstep_pdf(mcs_f a, mcs_f b, mcs_f x) {
+    const mcs_i ok = mcsi_scale_ok(b - a);
+    MCSI_REQUIRE(ok);
+    const mcs_f inside = mcsi_min(mcsi_max(x, a), b);
+    const mcsi_d inverse = 1.0 / (MCSI_WIDEN(b) - MCSI_WIDEN(a));
+    const mcsi_d t = (MCSI_WIDEN(inside) - MCSI_WIDEN(a)) * inverse;
+    const mcsi_d height = 2.0 * inverse * (t * t * (3.0 - 2.0 * t));
+    return mcsi_sane_result(ok & (inside == x), MCSI_NARROW(height));
+}
+MCSI_FN mcs_f mcs_smoothstep_invert(mcs_f a, mcs_f b, mcs_f x) {
+    const mcs_i ok = mcsi_scale_ok(b - a);
+    MCSI_REQUIRE(ok);
+    const mcs_f inside = mcsi_min(mcsi_max(x, a), b);
+    const mcsi_d t = (MCSI_WIDEN(inside) - MCSI_WIDEN(a)) / (MCSI_WIDEN(b) - MCSI_WIDEN(a));
+    return mcsi_inverted(ok, MCSI_NARROW(t * t * t * (2.0 - t)));
+}
+#endif
+
 #ifdef MCSI_LOOPS
 /* The loops of the densities with one parameter and of those with two. */
 #define MCSI_LOOP_LINE(NAME)                                                                     \
@@ -3332,6 +3394,7 @@ MCSI_LOOP_LINE_2(normal)
 MCSI_LOOP_LINE_2(logistic)
 MCSI_LOOP_LINE(power)
 MCSI_LOOP_LINE(evenpower)
+MCSI_LOOP_LINE_2(smoothstep)
 #undef MCSI_LOOP_LINE
 #undef MCSI_LOOP_LINE_2
 #endif
@@ -8334,6 +8397,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_sample2 MCS_(sample2)
 #define mcs_schlick MCS_(schlick)
 #define mcs_set MCS_(set)
+#define mcs_smoothstep_invert MCS_(smoothstep_invert)
+#define mcs_smoothstep_pdf MCS_(smoothstep_pdf)
+#define mcs_smoothstep_sample MCS_(smoothstep_sample)
 #define mcs_sobol MCS_(sobol)
 #define mcs_sobol_bits MCS_(sobol_bits)
 #define mcs_sphere_invert MCS_(sphere_invert)
@@ -8541,6 +8607,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_slopes MCSI_(slopes)
 #define mcsi_slopes_make MCSI_(slopes_make)
 #define mcsi_slopes_spread MCSI_(slopes_spread)
+#define mcsi_smoothstep_guess MCSI_(smoothstep_guess)
+#define mcsi_smoothstep_loop MCSI_(smoothstep_loop)
 #define mcsi_sobol_loop MCSI_(sobol_loop)
 #define mcsi_sphere_loop MCSI_(sphere_loop)
 #define mcsi_spread MCSI_(spread)
@@ -8819,6 +8887,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_sample2
 #undef mcs_schlick
 #undef mcs_set
+#undef mcs_smoothstep_invert
+#undef mcs_smoothstep_pdf
+#undef mcs_smoothstep_sample
 #undef mcs_sobol
 #undef mcs_sobol_bits
 #undef mcs_sphere_invert
@@ -9026,6 +9097,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_slopes
 #undef mcsi_slopes_make
 #undef mcsi_slopes_spread
+#undef mcsi_smoothstep_guess
+#undef mcsi_smoothstep_loop
 #undef mcsi_sobol_loop
 #undef mcsi_sphere_loop
 #undef mcsi_spread
@@ -9168,6 +9241,9 @@ MCS_API void mcs_power_sample_n(float e, size_t n, const float *u, float *x, flo
 }
 MCS_API void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
     MCSI_WIDEST(evenpower_loop, (e, n, u, x, pdf));
+}
+MCS_API void mcs_smoothstep_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf) {
+    MCSI_WIDEST(smoothstep_loop, (a, b, n, u, x, pdf));
 }
 #endif
 MCS_API void mcs_disk_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,

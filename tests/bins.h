@@ -65,6 +65,10 @@ static inline void mcst_map_constants(mcst_map *m, const mcst_row *row) {
         m->a = -m->a;
         m->coord = MCST_UNIT;
         break;
+    case MCST_BETWEEN:
+        m->b -= m->a;
+        m->coord = MCST_UNIT;
+        break;
     case MCST_SPHERE: m->k = 2; break; /* 1 - z = k s */
     case MCST_HEMISPHERE: m->k = 1; break;
     case MCST_CONE: m->k = m->a; break;
@@ -93,7 +97,7 @@ static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
     for (int i = 0; i < 3; i++) m.wo[i] = (double)p[3 + i];
     mcst_map_constants(&m, row);
     m.noise = 0x1p-24;
-    if (row->coord == MCST_WHOLELINE) m.noise *= 1 + fabs(m.a) / m.b;
+    if (row->coord == MCST_WHOLELINE || row->coord == MCST_BETWEEN) m.noise *= 1 + fabs(m.a) / m.b;
     if (row->coord == MCST_POWER || row->coord == MCST_EVENPOWER) m.noise *= 1 + m.a;
     if (row->shape == MCST_IS_BRDF) {
         /* a component of wi is off by up to 2^-25, the slope of its half-vector by that over |wo + wi| = 2 wo.h, which

@@ -165,8 +165,8 @@ int main(int argc, char **argv) {
                     const ld want = row->truth.pdf_u(p, u1, u2);
                     ld x[3] = {0, 0, 0};
                     float out[5] = {0};
-                    /* A tent's x is the difference of its radius and something: the rounding is that of the radius. */
-                    double err = 0, size = row->coord == MCST_TENT ? (double)p[0] : row->dim == 3;
+                    /* A tent's x is the difference of its radius and something, a smoothstep's is above its end: their rounding counts. */
+                    double err = 0, size = row->coord == MCST_TENT || row->coord == MCST_BETWEEN ? fabs((double)p[0]) : row->dim == 3;
                     row->truth.map(p, u1, u2, x);
                     row->fn[0].sample(p, &u1, &u2, out);
                     for (k = 0; k < 5; k++) CHECK(finite_bits(out[k]), "p %g %g: result %d", (double)p[0], (double)p[1], k);

@@ -266,6 +266,29 @@ static inline ld o_evenpower_invert(ld n, ld x) {
     return x < 0.0L ? 0.5L - m : 0.5L + m;
 }
 
+/* density 2 (3t^2 - 2t^3) / (b-a) on [a, b] with t = (x-a)/(b-a). t^3 (2-t) = u is solved by bisection, whose first
+ * bracket holds t to a factor of 2^(1/3), so that small t keep their digits. */
+static inline ld o_smoothstep_t(ld u) {
+    ld lo = cbrtl(0.5L * u);
+    ld hi = fminl(cbrtl(u), 1.0L);
+    for (int i = 0; i < 64; i++) {
+        const ld t = 0.5L * (lo + hi);
+        if (t * t * t * (2.0L - t) < u) lo = t;
+        else hi = t;
+    }
+    return 0.5L * (lo + hi);
+}
+static inline ld o_smoothstep_height(ld t) { return 2.0L * t * t * (3.0L - 2.0L * t); }
+static inline ld o_smoothstep_map(ld a, ld b, ld u) { return a + (b - a) * o_smoothstep_t(u); }
+static inline ld o_smoothstep_pdf(ld a, ld b, ld x) {
+    return x >= a && x <= b ? o_smoothstep_height((x - a) / (b - a)) / (b - a) : 0.0L;
+}
+static inline ld o_smoothstep_pdf_u(ld a, ld b, ld u) { return o_smoothstep_height(o_smoothstep_t(u)) / (b - a); }
+static inline ld o_smoothstep_invert(ld a, ld b, ld x) {
+    const ld t = (x - a) / (b - a);
+    return t * t * t * (2.0L - t);
+}
+
 /* ---- plane ---- */
 
 static inline ld o_disk_pdf(ld R, o_vec2 p) { return p.x * p.x + p.y * p.y <= R * R ? 1.0L / (O_PI * R * R) : 0.0L; }

@@ -30,7 +30,8 @@
     M(X, LINE, normal, normal, 2, -, WHOLELINE, normal, normal, 2, MCST_QUANTILE) \
     M(X, LINE, logistic, logistic, 2, -, WHOLELINE, normal, line, 2, 0)           \
     M(X, LINE, power, power, 1, -, POWER, power, line, 1, 0)                      \
-    M(X, LINE, evenpower, evenpower, 1, -, EVENPOWER, power, line, 1, 0)
+    M(X, LINE, evenpower, evenpower, 1, -, EVENPOWER, power, line, 1, 0)          \
+    M(X, LINE, smoothstep, smoothstep, 2, -, BETWEEN, ends, line, 1, 0)
 #ifndef MCST_LIST
 #define MCST_LIST(M, X)                                                                          \
     MCST_LINES(M, X)                                                                             \
@@ -78,6 +79,7 @@ enum mcst_coord {
     MCST_WHOLELINE,
     MCST_POWER,
     MCST_EVENPOWER,
+    MCST_BETWEEN, /* from the first parameter to the second */
     MCST_DISK,
     MCST_SPHERE,
     MCST_HEMISPHERE,
@@ -141,7 +143,7 @@ typedef struct {
 } mcst_claim;
 
 /* What may be given as parameters. Bad is what the header documents as outside: 1, 0, or -1 where it leaves it open;
- * both parameters of a linear density being 0 is bad, too. Valid ones are drawn from least to most; 0: there is no
+ * for what is bad of two see mcst_bad_together. Valid ones are drawn from least to most; 0: there is no
  * second one. */
 typedef struct {
     int (*bad)(int i, float v);
@@ -183,6 +185,8 @@ static const float mcst_grid_truncexp[][2] = {{3, 1},        {0, 1},      {1, 1}
 static const float mcst_grid_normal[][2] = {{0, 1}, {-3, 100}, {5, 0.01f}, {0.3f, 1e-6f}, {0, 1e-18f}, {1e10f, 1e18f}};
 static const float mcst_grid_power[][2] = {{2, 0},  {0, 0},   {1, 0},    {0.5f, 0}, {1e-3f, 0},
                                            {10, 0}, {100, 0}, {1e4f, 0}, {1e6f, 0}, {1e9f, 0}};
+static const float mcst_grid_ends[][2] = {{0, 1},      {-1, 1},    {2, 5},      {-3, -2.5f},     {1000, 1001},
+                                          {0, 1e-18f}, {0, 1e18f}, {-1e18f, 0}, {-1e-30f, 0.5f}, {-1e6f, 1e-6f}};
 static const float mcst_grid_cone[][2] = {{0.5f, 0}, {2, 0},     {1.9997f, 0}, {1.99f, 0}, {1.9f, 0},
                                           {1, 0},    {0.01f, 0}, {1e-5f, 0},   {1e-8f, 0}, {1e-20f, 0}};
 static const float mcst_grid_phong[][2] = {{10, 0},  {0, 0},    {1e-3f, 0}, {1e-2f, 0}, {0.5f, 0}, {1, 0},   {2, 0},
@@ -219,6 +223,7 @@ static inline int mcst_bad_normal(int i, float v) {
     return !(fabsf(v) <= FLT_MAX) ? 1 : fabsf(v) <= 1e30f ? 0 : -1;
 }
 static inline int mcst_bad_power(int i, float v) { return i == 0 && mcst_outside(v, 0, 1e9f); }
+static inline int mcst_bad_ends(int i, float v) { return i < 2 && !(fabsf(v) <= FLT_MAX); }
 static inline int mcst_bad_cone(int i, float v) { return i != 0 ? 0 : !(v > 0 && v <= 2) ? 1 : v < 1e-30f ? -1 : 0; }
 static inline int mcst_bad_phong(int i, float v) { return i == 0 && !(v >= 0); }
 static inline int mcst_bad_alpha(int i, float v) {
@@ -237,6 +242,7 @@ static inline int mcst_bad_exponents(int i, float v) {
 #define MCST_DOMAIN_truncexp {mcst_bad_truncexp, {1e-30, 1e-18}, {1e18, 1e18}, 0}
 #define MCST_DOMAIN_normal {mcst_bad_normal, {1e-30, 1e-18}, {1e30, 1e18}, 1}
 #define MCST_DOMAIN_power {mcst_bad_power, {1e-30, 1e-30}, {1e9, 1e9}, 0}
+#define MCST_DOMAIN_ends {mcst_bad_ends, {1e-30, 2}, {1, 9e17}, 1}
 #define MCST_DOMAIN_cone {mcst_bad_cone, {1e-30, 0}, {2, 0}, 0}
 #define MCST_DOMAIN_phong {mcst_bad_phong, {1e-30, 1e-30}, {1e9, 1e9}, 0}
 #define MCST_DOMAIN_alpha {mcst_bad_alpha, {1e-7, 1e-7}, {1e4, 1e4}, 0}
@@ -261,6 +267,8 @@ static const mcst_set mcst_chi_truncexp[] = {
 static const mcst_set mcst_chi_normal[] = {{0, 1, 0, 0, 10}, {-3, 100, 0, 0, 2}, {5, 0.01f, 0, 0, 2}};
 static const mcst_set mcst_chi_power[] = {
     {2, 0, 0, 0, 10}, {0, 0, 0, 0, 2}, {0.5f, 0, 0, 0, 2}, {10, 0, 0, 0, 2}, {100, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_ends[] = {
+    {0, 1, 0, 0, 10}, {-1, 1, 0, 0, 2}, {2, 5, 0, 0, 2}, {0, 1e-18f, 0, 0, 2}, {-1e18f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_cone[] = {
     {0.5f, 0, 0, 0, 10}, {2, 0, 0, 0, 2}, {0.01f, 0, 0, 0, 2}, {1e-8f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_phong[] = {{10, 0, 0.5f, 0.7f, 10},     {0, 0, 0.7f, 2, 2},    {1, 0, 1, 0, 2},
@@ -465,6 +473,12 @@ static inline void mcst_grid_get(const mcst_row *row, size_t i, float p[MCST_P])
     const float *g = row->grid[i % row->grid_size];
     const float *o = mcst_incidence[i / row->grid_size];
     mcst_fill(row, g[0], g[1], o[0], o[1], p);
+}
+
+/* Parameters that are bad together, while each is good. */
+static inline int mcst_bad_together(const mcst_row *row, const float *p) {
+    if (row->coord == MCST_UNIT) return p[0] == 0 && p[1] == 0;
+    return row->coord == MCST_BETWEEN && mcst_outside(p[1] - p[0], 1e-18f, 1e18f);
 }
 
 /* --- random numbers of the tests: splitmix64 (Steele, Lea, Flood 2014) -------------------------------------------- */

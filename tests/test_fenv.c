@@ -76,8 +76,8 @@ static void valid_parameters(const mcst_row *row, uint64_t *state, float set[3])
     set[0] = (d->either_sign && !(z & 2) ? -1.0f : 1.0f) * spread(state, d->least[0], d->most[0]);
     if (d->least[1] == 0) return;
     if (row->coord == MCST_UNIT && z & 2) return;
-    if (row->coord != MCST_TRUNCATED && row->coord != MCST_WHOLELINE && z & (row->coord == MCST_UNIT ? 4 : 2))
-        set[1] = set[0];
+    const int apart = row->coord == MCST_TRUNCATED || row->coord == MCST_WHOLELINE || row->coord == MCST_BETWEEN;
+    if (!apart && z & (row->coord == MCST_UNIT ? 4 : 2)) set[1] = set[0];
     else set[1] = spread(state, d->least[1], d->most[1]);
 }
 
@@ -247,6 +247,7 @@ static double line_of(const mcst_row *row, const float *p) {
     case MCST_DISK: return (double)p[0];
     case MCST_HALFLINE: return 0x1p-24 / (double)p[0];
     case MCST_TRUNCATED: return 0x1p-24 * (double)p[1];
+    case MCST_BETWEEN: return fabs((double)p[0]) + 0x1p-24 * ((double)p[1] - (double)p[0]);
     default: return 0x1p-24;
     }
 }

@@ -75,8 +75,8 @@ static float between(uint64_t *state, double lo, double hi) {
     return (float)(lo * pow(hi / lo, (double)(mcst_mix(state) >> 40) * 0x1p-24));
 }
 static void draw_set(const mcst_row *row, uint64_t *state, float p[MCST_P]) {
-    const double lo[MCST_SLOPES] = {1e-5, 1e-18, 1e-18, 1e-3, 1e-3, 1e-3, 1e-3};
-    const double hi[MCST_SLOPES] = {1, 1e18, 1e18, 1e3, 1e3, 1e9, 1e9};
+    const double lo[MCST_SLOPES] = {1e-5, 1e-18, 1e-18, 1e-3, 1e-3, 1e-3, 1e-3, 1e-30};
+    const double hi[MCST_SLOPES] = {1, 1e18, 1e18, 1e3, 1e3, 1e9, 1e9, 9e-4};
     const int own = row->coord >= MCST_SLOPES; /* a line beyond the list has its domain */
     const float a =
         between(state, own ? row->domain.least[0] : lo[row->coord], own ? row->domain.most[0] : hi[row->coord]);

@@ -92,6 +92,7 @@ static double direction_tol(const mcst_row *row, const float *p, const float *x,
 static double line_scale(const mcst_row *row, const float *p) {
     if (row->coord == MCST_TENT) return (double)p[0];
     if (row->coord == MCST_WHOLELINE) return fabs((double)p[0]) + (double)p[1];
+    if (row->coord == MCST_BETWEEN) return fabs((double)p[0]);
     return 0;
 }
 
@@ -506,10 +507,10 @@ static void check_bad_parameters(const mcst_row *row, const float *p) {
     for (int i = 0; i < 7; i++) {
         const float v = i < 6 ? bad_parameter[i] : NAN;
         for (int j = 0; j < row->params; j++) {
-            if (row->domain.bad(j, v) != 1) continue;
             float q[MCST_P];
             memcpy(q, p, sizeof q);
             q[j] = v;
+            if (row->domain.bad(j, v) != 1 && !mcst_bad_together(row, q)) continue;
             must_be_zero(row, q, fine, "bad parameter");
             pdf_must_be_zero(row, q, side, "bad parameter");
             must_assert(row, q, fine, side);

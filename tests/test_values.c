@@ -295,6 +295,13 @@ static void beyond_the_ends(void) {
               mcs_evenpower_invert(2, -1.5f) == 0 && mcs_evenpower_invert(2, 1.5f) == top,
           "powers: %g %g %g", (double)mcs_power_invert(2, 1.5f), (double)mcs_evenpower_invert(2, -1.5f),
           (double)mcs_evenpower_invert(2, 1.5f));
+    CHECK(mcs_smoothstep_pdf(2, 5, 1.9f) == 0 && mcs_smoothstep_pdf(2, 5, 5.1f) == 0 &&
+              mcs_smoothstep_invert(2, 5, -3) == 0 && mcs_smoothstep_invert(2, 5, 6) == top,
+          "smoothstep: %g %g", (double)mcs_smoothstep_invert(2, 5, -3), (double)mcs_smoothstep_invert(2, 5, 6));
+    CHECK(mcs_smoothstep_sample(2, 5, 0).x == 2 && mcs_smoothstep_sample(-3, 1e-3f, 0).x == -3 &&
+              mcs_smoothstep_sample(2, 5, top).x <= 5 && mcs_smoothstep_pdf(2, 5, 2) == 0,
+          "smoothstep at its ends: %g %g", (double)mcs_smoothstep_sample(2, 5, 0).x,
+          (double)mcs_smoothstep_sample(2, 5, top).x);
     CHECK(mcs_disk_pdf(3, 3.00001f, 0) == 0 && mcs_concentric_pdf(3, 0, -3.00001f) == 0 && mcs_disk_pdf(3, 3, 0) > 0,
           "disks, 3e-6 past the rim: %g", (double)mcs_disk_pdf(3, 3.00001f, 0));
 }

@@ -96,6 +96,31 @@ static inline text_sample text_evenpower(float n, float u) { /* the signed root:
     const float x = copysignf(powf(fabsf(v), 1 / (n + 1)), v);
     return text_line(x, 0.5f * (n + 1) * powf(fabsf(x), n));
 }
+/* pbrt's search, Newton's method within a bracket, whose ends are told by 1e-6. Where floats lie further apart it never
+ * ends; here it does after 100 steps. */
+static inline float text_smoothstep_p(float a, float b, float x) {
+    const float t = (x - a) / (b - a);
+    return 2 * t * t * t - t * t * t * t;
+}
+static inline float text_smoothstep_pdf(float a, float b, float x) {
+    const float t = (x - a) / (b - a);
+    return 2 / (b - a) * t * t * (3 - 2 * t);
+}
+static inline text_sample text_smoothstep(float a, float b, float u) {
+    float x0 = a;
+    float x1 = b;
+    if (u < 1e-6f) return text_line(a, 0);
+    float x = a + (b - a) * u;
+    for (int i = 0; i < 100; i++) {
+        if (!(x0 < x && x < x1)) x = (x0 + x1) / 2;
+        const float f = text_smoothstep_p(a, b, x) - u;
+        if (f < 0) x0 = x;
+        else x1 = x;
+        if (x1 - x0 < 1e-6f || fabsf(f) < 1e-6f) break;
+        x -= f / text_smoothstep_pdf(a, b, x);
+    }
+    return text_line(x, text_smoothstep_pdf(a, b, x));
+}
 
 /* ---- plane and directions ---- */
 

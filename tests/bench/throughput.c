@@ -7,7 +7,7 @@
  *
  * Error of the place: for directions the largest error of a component in units of 2^-24, the ulp of a unit vector's
  * largest component; for disks in ulp of the largest component of the exact point; for lines in ulp of the value, or of
- * the scale where the value is a difference (tent: r; normal, logistic: |mean| + sd). Error of the density: |pdf /
+ * the scale where the value is a difference (tent: r; normal, logistic: |mean| + sd; smoothstep: |a|). Error of the density: |pdf /
  * exact - 1| in units of 1e-6 (1 + |ln(exact / peak)|), where exact is the density at the exact point of u. Left out:
  * densities of reflected directions within 40 2^-24 of the horizon, where lost or not is a matter of rounding. Results
  * that are not finite are counted apart.
@@ -55,6 +55,7 @@ TEXT1(normal, text_normal(a, b, u))
 TEXT1(logistic, text_logistic(a, b, u))
 TEXT1(power, text_power(a, u))
 TEXT1(evenpower, text_evenpower(a, u))
+TEXT1(smoothstep, text_smoothstep(a, b, u))
 TEXT2(disk, text_disk(a, u, v))
 TEXT2(concentric, text_concentric(a, u, v))
 TEXT3(sphere, text_sphere(u, v))
@@ -152,6 +153,7 @@ static const sampler listed[] = {
     {"logistic", "logistic", ALL, 1, 2, logistic_text, 0, 1, NULL, NULL},
     {"power", "power", ALL, 10, 0, power_text, 0, 1, NULL, NULL},
     {"evenpower", "evenpower", ALL, 2, 0, evenpower_text, 0, 1, NULL, NULL},
+    {"smoothstep", "smoothstep", ALL, 2, 5, smoothstep_text, 0, 1, NULL, NULL},
     {"disk", "disk", ALL, 2, 0, disk_text, 10, 1, NULL, NULL},
     {"concentric", "concentric", ALL, 2, 0, concentric_text, 0, 1, NULL, NULL},
     {"sphere", "sphere", ALL, 0, 0, sphere_text, 0, 1, NULL, NULL},
@@ -264,6 +266,7 @@ static void make_exact(const mcst_row *row, const float *p, void (*map)(const fl
     e->peak = 0;
     e->scale = row->coord == MCST_TENT        ? (double)p[0]
                : row->coord == MCST_WHOLELINE ? fabs((double)p[0]) + (double)p[1]
+               : row->coord == MCST_BETWEEN   ? fabs((double)p[0])
                                               : 0;
     for (i = 0; i < POINTS; i++) {
         ld x[3] = {0, 0, 0};

@@ -98,14 +98,29 @@ normal_quantile(qd u) { /* bisection to a start, then Newton: the cumulative is 
     return z;
 }
 
+static inline qd smoothstep_t(qd u) { /* t^3 (2 - t) = u: bisection to a start, then Newton */
+    qd lo = 0;
+    qd hi = 1;
+    qd t = 0;
+    if (!(u > 0)) return 0;
+    for (int i = 0; i < 70; i++) {
+        t = (lo + hi) / 2;
+        if (t * t * t * (2 - t) < u) lo = t;
+        else hi = t;
+    }
+    for (int i = 0; i < 3; i++) t -= (t * t * t * (2 - t) - u) / (2 * t * t * (3 - 2 * t));
+    return t;
+}
+
 #define ST_ID(shape, row, fn, arg, base, coord, grid) ID_##row,
 enum { MCST_ROWS(ST_ID) IDS };
 
 /* Lobes beyond the list count as microfacets of the formulas below, and fail where they are not; other rows have none.
  */
 static inline int exact_has(const mcst_row *row) {
-    static const int ids[] = {ID_linear,    ID_tent, ID_exponential, ID_truncexp, ID_normal,     ID_logistic, ID_power,
-                              ID_evenpower, ID_disk, ID_concentric,  ID_sphere,   ID_hemisphere, ID_cosine,   ID_cone};
+    static const int ids[] = {ID_linear,   ID_tent,       ID_exponential, ID_truncexp, ID_normal,
+                              ID_logistic, ID_power,      ID_evenpower,   ID_disk,     ID_concentric,
+                              ID_sphere,   ID_hemisphere, ID_cosine,      ID_cone,     ID_smoothstep};
     if (row->shape == MCST_IS_LOBE || row->shape == MCST_IS_VLOBE || row->shape == MCST_IS_BRDF) return 1;
     for (size_t i = 0; i < MCST_COUNT(ids); i++)
         if (ids[i] == row - mcst_rows) return 1;
@@ -193,6 +208,7 @@ static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2
     case ID_logistic: x->x = a + b * logq(fmaxq(u1, least) / (1 - u1)); return;
     case ID_power: x->x = u1 > 0 ? expq(logq(u1) / (a + 1)) : 0; return;
     case ID_evenpower: x->x = d != 0 ? copysignq(expq(logq(fabsq(d)) / (a + 1)), d) : 0; return;
+    case ID_smoothstep: x->x = a + (b - a) * smoothstep_t(u1); return;
     case ID_disk:
         x->x = a * sqrtq(u1) * cosq(2 * pi * u2);
         x->y = a * sqrtq(u1) * sinq(2 * pi * u2);
@@ -236,6 +252,10 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
     case ID_power: return x.x < 0 || x.x > 1 ? 0 : x.x > 0 ? (a + 1) * expq(a * logq(x.x)) : a > 0 ? 0 : 1;
     case ID_evenpower:
         return fabsq(x.x) > 1 ? 0 : x.x != 0 ? (a + 1) / 2 * expq(a * logq(fabsq(x.x))) : a > 0 ? 0 : (qd)0.5;
+    case ID_smoothstep: {
+        const qd t = (x.x - a) / (b - a);
+        return t >= 0 && t <= 1 ? 2 * t * t * (3 - 2 * t) / (b - a) : 0;
+    }
     case ID_disk:
     case ID_concentric: return x.x * x.x + x.y * x.y <= a * a * (1 + (qd)1e-30) ? 1 / (pi * a * a) : 0;
     case ID_sphere: return 1 / (4 * pi);

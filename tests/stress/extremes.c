@@ -59,7 +59,8 @@ static const float line_more[][3] = {{ID_linear, 0x1p-149f, 1},     {ID_linear, 
                                      {ID_evenpower, 0x1p-149f, 0},  {ID_evenpower, 1e-30f, 0},
                                      {ID_cone, 1e-30f, 0},          {ID_cone, 0.99999994f, 0},
                                      {ID_cone, 1.9999999f, 0},      {ID_disk, 3e17f, 0},
-                                     {ID_concentric, 3e17f, 0}};
+                                     {ID_concentric, 3e17f, 0},     {ID_smoothstep, -1e24f, -9.999995e23f},
+                                     {ID_smoothstep, 1e-30f, 1}};
 static const float incidence[][2] = {{1, 0},
                                      {0.99999994f, 0},
                                      {0.99999994f, 2.2f},
@@ -255,6 +256,7 @@ static void check_where(const drawn_point *d) {
     double size = row->dim == 3 ? 1 : fmax(fabs((double)x.x), fabs((double)x.y));
     if (row->coord == MCST_TENT) size = (double)d->p[0];
     if (row->coord == MCST_WHOLELINE) size = fmax(size, fabs((double)d->p[0]) + (double)d->p[1]);
+    if (row->coord == MCST_BETWEEN) size = fmax(size, fabs((double)d->p[0]));
     const double off = (double)len(add(d->at, times(-1, x))) / EPS;
     const double limit = row->shape == MCST_IS_BRDF ? 16 : row->traits & MCST_QUANTILE ? 12 : 8;
     /* what is subnormal in units of the range has lost digits */

@@ -664,12 +664,14 @@ static void support(const mcst_row *of, double *lo, double *hi) {
         break;
     }
     case MCST_EVENPOWER: *lo = -1; break;
+    case MCST_BETWEEN: *lo = a, *hi = b; break;
     default: break;
     }
 }
 
 static double scale_of(const mcst_row *of) { /* where x is a difference, the rounding is that of its terms */
     if (of->coord == MCST_TENT) return (double)arg[0];
+    if (of->coord == MCST_BETWEEN) return fabs((double)arg[0]);
     return of->coord == MCST_WHOLELINE ? fabs((double)arg[0]) + (double)arg[1] : 0;
 }
 

@@ -46,7 +46,7 @@ static int worse(int a, int b) { return a == 1 || b == 1 ? 1 : a ? a : b; }
 static int setting_bad(const mcst_row *row, const float *p) {
     int bad = 0;
     for (int i = 0; i < row->params; i++) bad = worse(bad, st_parameter_bad(row, i, p[i]));
-    if (row->coord == MCST_UNIT && p[0] == 0 && p[1] == 0) bad = 1;
+    if (mcst_bad_together(row, p)) bad = 1;
     if (row->has_wo) bad = worse(bad, st_above_bad(p[3], p[4], p[5]));
     return bad;
 }
