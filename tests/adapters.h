@@ -75,15 +75,18 @@ MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
 #define MCST_PLANE(row, fn, args, unused)                                                         \
     MCST_FN void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
         const M_(sample2) s = M_(fn##_sample)(ARGS_##args M_(load)(u1), M_(load)(u2));            \
+        (void)p;                                                                                  \
         M_(store)(out, s.x);                                                                      \
         M_(store)(out + MCST_W, s.y);                                                             \
         M_(store)(out + 3 * MCST_W, s.pdf);                                                       \
     }                                                                                             \
     MCST_FN void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
+        (void)p;                                                                                  \
         M_(store)(out, M_(fn##_pdf)(ARGS_##args M_(load)(x), M_(load)(x + MCST_W)));              \
     }                                                                                             \
     MCST_FN void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
         const M_(vec2) u = M_(fn##_invert)(ARGS_##args M_(load)(x), M_(load)(x + MCST_W));        \
+        (void)p;                                                                                  \
         M_(store)(out, u.x);                                                                      \
         M_(store)(out + MCST_W, u.y);                                                             \
     }
@@ -146,6 +149,7 @@ MCST_ROWS(MCST_ADAPT)
     }
 #define MCST_N_PLANE(row, fn, args, unused)                                                                          \
     MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
+        (void)p;                                                                                                     \
         mcs_##fn##_sample_n(ARGS_##args n, u1, u2, out[0], out[1], out[3]);                                          \
     }
 #define MCST_N_DIRECTION(row, fn, make, lead)                                                                        \

@@ -15,6 +15,8 @@ static const char *const mcst_claim_sentences[] = {
     "pdf of u and of x within 0.45 E (normal), 0.2 E (the others)",
     /* [disk] */
     "coordinates within 2^-23 of the radius, pdf within 0.1 E",
+    /* [triangle] */
+    "coordinates within half an ulp of the exact map, for u of 0 and of 2^-125 and more; pdf exact",
     /* [sphere] */
     "unit length within 4 x 2^-24, pdf within 0.2 E.",
     /* [phong] */

@@ -334,6 +334,29 @@ static inline o_vec2 o_concentric_invert(ld R, o_vec2 p) {
     return o_v2(0.5L * (a + 1.0L), 0.5L * (b + 1.0L));
 }
 
+/* Heitz 2019, "A low-distortion map between triangle and square", listing 1; the area of the triangle of (b0, b1) is
+ * 1/2 */
+static inline o_vec2 o_triangle_map(ld u1, ld u2) {
+    o_vec2 b = o_v2(u1, u2);
+    if (b.y > b.x) {
+        b.x *= 0.5L;
+        b.y -= b.x;
+    } else {
+        b.y *= 0.5L;
+        b.x -= b.y;
+    }
+    return b;
+}
+static inline ld o_triangle_pdf(o_vec2 b) { return b.x >= 0.0L && b.y >= 0.0L && b.x + b.y <= 1.0L ? 2.0L : 0.0L; }
+static inline ld o_triangle_pdf_u(ld u1, ld u2) {
+    (void)u1;
+    (void)u2;
+    return 2.0L;
+}
+static inline o_vec2 o_triangle_invert(o_vec2 b) {
+    return b.y > b.x ? o_v2(2.0L * b.x, b.x + b.y) : o_v2(b.x + b.y, 2.0L * b.y);
+}
+
 /* ---- directions about +z ---- */
 
 static inline o_vec3 o_sphere_map(ld u1, ld u2) { return o_polar(2.0L * u1, u2); }

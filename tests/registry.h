@@ -37,6 +37,7 @@
     MCST_LINES(M, X)                                                                             \
     M(X, PLANE, disk, disk, 1, -, DISK, radius, disk, 0, 0)                                      \
     M(X, PLANE, concentric, concentric, 1, -, DISK, radius, disk, 0, MCST_SQUARE)                \
+    M(X, PLANE, triangle, triangle, 0, -, BY_TRUTH, none, triangle, 0, MCST_SQUARE)              \
     M(X, DIR, sphere, sphere, 0, -, SPHERE, none, direction, 0, MCST_WHOLE)                      \
     M(X, DIR, hemisphere, hemisphere, 0, -, HEMISPHERE, none, direction, 0, 0)                   \
     M(X, DIR, cosine, cosine, 0, -, HEMISPHERE, none, direction, 0, 0)                           \
@@ -301,6 +302,8 @@ static inline o_vec2 mcst_o2(const float *x) {
 static const mcst_claim mcst_claims_line[] = {{MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 0}}};
 static const mcst_claim mcst_claims_normal[] = {{MCST_NO_PARAMETER, {0.45, 0.45, 0, 0, 0, 0}}};
 static const mcst_claim mcst_claims_disk[] = {{MCST_NO_PARAMETER, {0.1, 0.1, 0, 0, 0, 0}}};
+/* The density is a constant that is a float: a thousandth of 1e-6 is less than half of an ulp. */
+static const mcst_claim mcst_claims_triangle[] = {{MCST_NO_PARAMETER, {0.001, 0.001, 0, 0, 0, 0}}};
 static const mcst_claim mcst_claims_direction[] = {{MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_cone[] = {{{1e-30, 0}, {2, 0}, {0.2, 0.2, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_phong_lobe[] = {

@@ -304,6 +304,32 @@ static void beyond_the_ends(void) {
           (double)mcs_smoothstep_sample(2, 5, top).x);
     CHECK(mcs_disk_pdf(3, 3.00001f, 0) == 0 && mcs_concentric_pdf(3, 0, -3.00001f) == 0 && mcs_disk_pdf(3, 3, 0) > 0,
           "disks, 3e-6 past the rim: %g", (double)mcs_disk_pdf(3, 3.00001f, 0));
+    CHECK(mcs_triangle_pdf(0, 0) == 2 && mcs_triangle_pdf(1, 0) == 2 && mcs_triangle_pdf(0.25f, 0.75f) == 2 &&
+              mcs_triangle_pdf(-0x1p-149f, 0.5f) == 0 && mcs_triangle_pdf(0.5f, -0x1p-149f) == 0 &&
+              mcs_triangle_pdf(0.5f, 0.50000006f) == 2 && mcs_triangle_pdf(0.5f, 0.5000002f) == 0,
+          "triangle: corners, and just outside");
+    const mcs_vec2 u = mcs_triangle_invert(FLT_MAX, -3);
+    CHECK(u.x == top && u.y == 0, "triangle: far outside %g %g", (double)u.x, (double)u.y);
+}
+
+/* What the header says of points of a triangle: each coordinate is the nearest float, and b2 is not negative. Half of
+ * 2^24 points are of a scrambled sequence, the others lie on the sides of the square that become the side b2 = 0. */
+static void triangle_points(void) {
+    int wide = 0;
+    int negative = 0;
+    int outside = 0;
+    for (uint32_t i = 0; i < 1u << 24; i++) {
+        const float border = (float)i * 0x1p-24f;
+        const float u1 = i & 1 ? mcs_sobol(i, 0, 7) : i & 2 ? 0.99999994f : border;
+        const float u2 = i & 1 ? mcs_sobol(i, 1, 7) : i & 2 ? border : 0.99999994f;
+        const mcs_sample2 s = mcs_triangle_sample(u1, u2);
+        const double m = 0.5 * fmin((double)u1, (double)u2);
+        wide += s.x != (float)((double)u1 - m) || s.y != (float)((double)u2 - m);
+        negative += 1 - s.x - s.y < 0;
+        outside += mcs_triangle_pdf(s.x, s.y) != 2;
+    }
+    CHECK(wide == 0 && negative == 0 && outside == 0, "%d not the nearest, %d of b2 below 0, %d outside", wide,
+          negative, outside);
 }
 
 /* A cosine to the power 0 is 1 down to the least cosine, whose tangent squared is beyond any float. */
@@ -864,6 +890,7 @@ int main(int argc, char **argv) {
     for (size_t i = 0; i < 6; i++)
         if (mcst_case("constants of %s", even[i])) constants(even[i], i < 2 ? 0.1 : 0.15);
     if (mcst_case("beyond the ends")) beyond_the_ends();
+    if (mcst_case("triangle: nearest floats, inside")) triangle_points();
     if (mcst_case("Phong's lobe of power 0 at the horizon")) even_phong();
     if (mcst_case("half of opposed directions")) opposed();
     if (mcst_case("jitter")) jitter();

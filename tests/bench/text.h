@@ -153,6 +153,19 @@ static inline text_sample text_concentric(float R, float u1, float u2) {
     s.y = R * r * sinf(phi);
     return s;
 }
+static inline text_sample text_triangle(float u1, float u2) { /* pbrt, SampleUniformTriangle */
+    text_sample s;
+    if (u1 < u2) {
+        s.x = u1 / 2;
+        s.y = u2 - s.x;
+    } else {
+        s.y = u2 / 2;
+        s.x = u1 - s.y;
+    }
+    s.z = 0;
+    s.pdf = 2;
+    return s;
+}
 static inline text_sample text_direction(float sine, float cosine, float phi, float pdf) {
     text_sample s;
     s.x = sine * cosf(phi);

@@ -118,9 +118,9 @@ enum { MCST_ROWS(ST_ID) IDS };
 /* Lobes beyond the list count as microfacets of the formulas below, and fail where they are not; other rows have none.
  */
 static inline int exact_has(const mcst_row *row) {
-    static const int ids[] = {ID_linear,   ID_tent,       ID_exponential, ID_truncexp, ID_normal,
-                              ID_logistic, ID_power,      ID_evenpower,   ID_disk,     ID_concentric,
-                              ID_sphere,   ID_hemisphere, ID_cosine,      ID_cone,     ID_smoothstep};
+    static const int ids[] = {ID_linear, ID_tent,      ID_exponential, ID_truncexp,   ID_normal, ID_logistic,
+                              ID_power,  ID_evenpower, ID_disk,        ID_concentric, ID_sphere, ID_hemisphere,
+                              ID_cosine, ID_cone,      ID_smoothstep,  ID_triangle};
     if (row->shape == MCST_IS_LOBE || row->shape == MCST_IS_VLOBE || row->shape == MCST_IS_BRDF) return 1;
     for (size_t i = 0; i < MCST_COUNT(ids); i++)
         if (ids[i] == row - mcst_rows) return 1;
@@ -220,6 +220,7 @@ static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2
         x->y = a * r * sinq(phi);
         return;
     }
+    case ID_triangle: *x = vec(u1 - fminq(u1, u2) / 2, u2 - fminq(u1, u2) / 2, 0); return;
     case ID_sphere: *x = at_versine(2 * u1, 2 * pi * u2); return;
     case ID_hemisphere: *x = at_versine(u1, 2 * pi * u2); return;
     case ID_cosine: *x = vec(sqrtq(u1) * cosq(2 * pi * u2), sqrtq(u1) * sinq(2 * pi * u2), sqrtq(1 - u1)); return;
@@ -258,6 +259,7 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
     }
     case ID_disk:
     case ID_concentric: return x.x * x.x + x.y * x.y <= a * a * (1 + (qd)1e-30) ? 1 / (pi * a * a) : 0;
+    case ID_triangle: return x.x >= 0 && x.y >= 0 && x.x + x.y <= 1 ? 2 : 0;
     case ID_sphere: return 1 / (4 * pi);
     case ID_hemisphere: return x.z > 0 ? 1 / (2 * pi) : 0;
     case ID_cosine: return x.z > 0 ? x.z / pi : 0;
