@@ -49,6 +49,8 @@ MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
 #define ARGS_0
 #define ARGS_1 LD(0),
 #define ARGS_2 LD(0), LD(1),
+#define ARGS_corners LD(0), LD(1), M_(set)(1.0f), M_(set)(3.0f),
+#define ARGS_cross LD(0), M_(set)(0.0f), M_(set)(0.0f), LD(1),
 #define MAKE_phong const M_(phong) m = M_(phong_make)(LD(0))
 #define MAKE_ward MAKE_ward_gmd
 #define MAKE_ward_gmd const M_(ward) m = M_(ward_make)(LD(0), LD(1), MCS_WARD_GMD)
@@ -197,6 +199,8 @@ MCST_ROWS(MCST_ADAPT_N)
 #undef ARGS_0
 #undef ARGS_1
 #undef ARGS_2
+#undef ARGS_corners
+#undef ARGS_cross
 #undef MAKE_phong
 #undef MAKE_ward
 #undef MAKE_ward_gmd

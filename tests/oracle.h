@@ -357,6 +357,50 @@ static inline o_vec2 o_triangle_invert(o_vec2 b) {
     return b.y > b.x ? o_v2(2.0L * b.x, b.x + b.y) : o_v2(b.x + b.y, 2.0L * b.y);
 }
 
+/* density in proportion to the bilinear height of four corners on [0, 1]^2: y by the sums of its rows, then x between the
+ * heights of that row's ends. near0 and near1 are 1 - y and y. A row of height 0 is taken as the mean of all rows. */
+typedef struct {
+    ld w00, w10, w01, w11;
+} o_quad;
+static inline o_quad o_corners(ld w00, ld w10, ld w01, ld w11) {
+    o_quad q;
+    const int flat = w00 == 0.0L && w10 == 0.0L && w01 == 0.0L && w11 == 0.0L;
+    q.w00 = flat ? 1.0L : w00;
+    q.w10 = flat ? 1.0L : w10;
+    q.w01 = flat ? 1.0L : w01;
+    q.w11 = flat ? 1.0L : w11;
+    return q;
+}
+static inline ld o_quad_sum(o_quad q) { return q.w00 + q.w10 + q.w01 + q.w11; }
+/* The heights at both ends of a row. */
+static inline o_vec2 o_quad_row(o_quad q, ld near0, ld near1) {
+    const o_vec2 ends = o_v2(q.w00 * near0 + q.w01 * near1, q.w10 * near0 + q.w11 * near1);
+    return ends.x + ends.y > 0.0L ? ends : o_v2(q.w00 + q.w01, q.w10 + q.w11);
+}
+/* The row of u2: 1 - y is the y of 1 - u2 with the rows exchanged. */
+static inline o_vec2 o_quad_row_of(o_quad q, ld u2) {
+    const ld low = q.w00 + q.w10;
+    const ld high = q.w01 + q.w11;
+    return o_quad_row(q, o_linear_map(high, low, 1.0L - u2), o_linear_map(low, high, u2));
+}
+static inline o_vec2 o_bilinear_map(o_quad q, ld u1, ld u2) {
+    const o_vec2 ends = o_quad_row_of(q, u2);
+    return o_v2(o_linear_map(ends.x, ends.y, u1), o_linear_map(q.w00 + q.w10, q.w01 + q.w11, u2));
+}
+static inline ld o_bilinear_pdf(o_quad q, o_vec2 p) {
+    if (!(p.x >= 0.0L && p.x <= 1.0L && p.y >= 0.0L && p.y <= 1.0L)) return 0.0L;
+    return 4.0L * ((1.0L - p.y) * ((1.0L - p.x) * q.w00 + p.x * q.w10) + p.y * ((1.0L - p.x) * q.w01 + p.x * q.w11)) /
+           o_quad_sum(q);
+}
+static inline ld o_bilinear_pdf_u(o_quad q, ld u1, ld u2) {
+    const o_vec2 ends = o_quad_row_of(q, u2);
+    return o_linear_pdf_u(ends.x, ends.y, u1) * o_linear_pdf_u(q.w00 + q.w10, q.w01 + q.w11, u2);
+}
+static inline o_vec2 o_bilinear_invert(o_quad q, o_vec2 p) {
+    const o_vec2 ends = o_quad_row(q, 1.0L - p.y, p.y);
+    return o_v2(o_linear_invert(ends.x, ends.y, p.x), o_linear_invert(q.w00 + q.w10, q.w01 + q.w11, p.y));
+}
+
 /* ---- directions about +z ---- */
 
 static inline o_vec3 o_sphere_map(ld u1, ld u2) { return o_polar(2.0L * u1, u2); }

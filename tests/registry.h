@@ -38,6 +38,8 @@
     M(X, PLANE, disk, disk, 1, -, DISK, radius, disk, 0, 0)                                      \
     M(X, PLANE, concentric, concentric, 1, -, DISK, radius, disk, 0, MCST_SQUARE)                \
     M(X, PLANE, triangle, triangle, 0, -, BY_TRUTH, none, triangle, 0, MCST_SQUARE)              \
+    M(X, PLANE, bilinear, bilinear, corners, -, BY_TRUTH, corners, bilinear, 1, MCST_SQUARE)     \
+    M(X, PLANE, bilinear_cross, bilinear, cross, -, BY_TRUTH, corners, bilinear, 1, MCST_SQUARE) \
     M(X, DIR, sphere, sphere, 0, -, SPHERE, none, direction, 0, MCST_WHOLE)                      \
     M(X, DIR, hemisphere, hemisphere, 0, -, HEMISPHERE, none, direction, 0, 0)                   \
     M(X, DIR, cosine, cosine, 0, -, HEMISPHERE, none, direction, 0, 0)                           \
@@ -188,6 +190,9 @@ static const float mcst_grid_power[][2] = {{2, 0},  {0, 0},   {1, 0},    {0.5f, 
                                            {10, 0}, {100, 0}, {1e4f, 0}, {1e6f, 0}, {1e9f, 0}};
 static const float mcst_grid_ends[][2] = {{0, 1},      {-1, 1},    {2, 5},      {-3, -2.5f},     {1000, 1001},
                                           {0, 1e-18f}, {0, 1e18f}, {-1e18f, 0}, {-1e-30f, 0.5f}, {-1e6f, 1e-6f}};
+/* Two of four heights; the others stand in adapters.h. */
+static const float mcst_grid_corners[][2] = {{2, 5}, {1, 3},     {1, 1},    {0, 0},         {0, 4},
+                                             {4, 0}, {1e-6f, 1}, {1e6f, 3}, {1e30f, 2e30f}, {1e-30f, 3e-30f}};
 static const float mcst_grid_cone[][2] = {{0.5f, 0}, {2, 0},     {1.9997f, 0}, {1.99f, 0}, {1.9f, 0},
                                           {1, 0},    {0.01f, 0}, {1e-5f, 0},   {1e-8f, 0}, {1e-20f, 0}};
 static const float mcst_grid_phong[][2] = {{10, 0},  {0, 0},    {1e-3f, 0}, {1e-2f, 0}, {0.5f, 0}, {1, 0},   {2, 0},
@@ -225,6 +230,8 @@ static inline int mcst_bad_normal(int i, float v) {
 }
 static inline int mcst_bad_power(int i, float v) { return i == 0 && mcst_outside(v, 0, 1e9f); }
 static inline int mcst_bad_ends(int i, float v) { return i < 2 && !(fabsf(v) <= FLT_MAX); }
+/* A bad height makes the density uniform. */
+static inline int mcst_bad_corners(int i, float v) { return i < 2 && !(v >= 0 && v <= FLT_MAX) ? -1 : 0; }
 static inline int mcst_bad_cone(int i, float v) { return i != 0 ? 0 : !(v > 0 && v <= 2) ? 1 : v < 1e-30f ? -1 : 0; }
 static inline int mcst_bad_phong(int i, float v) { return i == 0 && !(v >= 0); }
 static inline int mcst_bad_alpha(int i, float v) {
@@ -244,6 +251,7 @@ static inline int mcst_bad_exponents(int i, float v) {
 #define MCST_DOMAIN_normal {mcst_bad_normal, {1e-30, 1e-18}, {1e30, 1e18}, 1}
 #define MCST_DOMAIN_power {mcst_bad_power, {1e-30, 1e-30}, {1e9, 1e9}, 0}
 #define MCST_DOMAIN_ends {mcst_bad_ends, {1e-30, 2}, {1, 9e17}, 1}
+#define MCST_DOMAIN_corners {mcst_bad_corners, {1e-45, 1e-45}, {3.4e38, 3.4e38}, 0}
 #define MCST_DOMAIN_cone {mcst_bad_cone, {1e-30, 0}, {2, 0}, 0}
 #define MCST_DOMAIN_phong {mcst_bad_phong, {1e-30, 1e-30}, {1e9, 1e9}, 0}
 #define MCST_DOMAIN_alpha {mcst_bad_alpha, {1e-7, 1e-7}, {1e4, 1e4}, 0}
@@ -270,6 +278,8 @@ static const mcst_set mcst_chi_power[] = {
     {2, 0, 0, 0, 10}, {0, 0, 0, 0, 2}, {0.5f, 0, 0, 0, 2}, {10, 0, 0, 0, 2}, {100, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_ends[] = {
     {0, 1, 0, 0, 10}, {-1, 1, 0, 0, 2}, {2, 5, 0, 0, 2}, {0, 1e-18f, 0, 0, 2}, {-1e18f, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_corners[] = {
+    {2, 5, 0, 0, 10}, {0, 0, 0, 0, 2}, {0, 4, 0, 0, 2}, {4, 0, 0, 0, 2}, {1e6f, 1, 0, 0, 2}};
 static const mcst_set mcst_chi_cone[] = {
     {0.5f, 0, 0, 0, 10}, {2, 0, 0, 0, 2}, {0.01f, 0, 0, 0, 2}, {1e-8f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_phong[] = {{10, 0, 0.5f, 0.7f, 10},     {0, 0, 0.7f, 2, 2},    {1, 0, 1, 0, 2},
@@ -304,6 +314,7 @@ static const mcst_claim mcst_claims_normal[] = {{MCST_NO_PARAMETER, {0.45, 0.45,
 static const mcst_claim mcst_claims_disk[] = {{MCST_NO_PARAMETER, {0.1, 0.1, 0, 0, 0, 0}}};
 /* The density is a constant that is a float: a thousandth of 1e-6 is less than half of an ulp. */
 static const mcst_claim mcst_claims_triangle[] = {{MCST_NO_PARAMETER, {0.001, 0.001, 0, 0, 0, 0}}};
+static const mcst_claim mcst_claims_bilinear[] = {{MCST_NO_PARAMETER, {0.7, 0.5, 0, 0, 0, 0}}};
 static const mcst_claim mcst_claims_direction[] = {{MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_cone[] = {{{1e-30, 0}, {2, 0}, {0.2, 0.2, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_phong_lobe[] = {
@@ -406,6 +417,8 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_COUNT_0 0
 #define MCST_COUNT_1 1
 #define MCST_COUNT_2 2
+#define MCST_COUNT_corners 2
+#define MCST_COUNT_cross 2
 #define MCST_COUNT_phong 1
 #define MCST_COUNT_ward 2
 #define MCST_COUNT_ward_gmd 2

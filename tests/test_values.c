@@ -304,12 +304,33 @@ static void beyond_the_ends(void) {
           (double)mcs_smoothstep_sample(2, 5, top).x);
     CHECK(mcs_disk_pdf(3, 3.00001f, 0) == 0 && mcs_concentric_pdf(3, 0, -3.00001f) == 0 && mcs_disk_pdf(3, 3, 0) > 0,
           "disks, 3e-6 past the rim: %g", (double)mcs_disk_pdf(3, 3.00001f, 0));
+    CHECK(mcs_bilinear_pdf(1, 2, 3, 4, -0.1f, 0.5f) == 0 && mcs_bilinear_pdf(1, 2, 3, 4, 0.5f, 1.1f) == 0 &&
+              mcs_bilinear_pdf(1, 2, 3, 4, 1, 1) > 0 && mcs_bilinear_invert(1, 2, 3, 4, 2, -1).x == top &&
+              mcs_bilinear_invert(1, 2, 3, 4, 2, -1).y == 0,
+          "bilinear: %g %g", (double)mcs_bilinear_pdf(1, 2, 3, 4, 1, 1),
+          (double)mcs_bilinear_invert(1, 2, 3, 4, 2, -1).x);
     CHECK(mcs_triangle_pdf(0, 0) == 2 && mcs_triangle_pdf(1, 0) == 2 && mcs_triangle_pdf(0.25f, 0.75f) == 2 &&
               mcs_triangle_pdf(-0x1p-149f, 0.5f) == 0 && mcs_triangle_pdf(0.5f, -0x1p-149f) == 0 &&
               mcs_triangle_pdf(0.5f, 0.50000006f) == 2 && mcs_triangle_pdf(0.5f, 0.5000002f) == 0,
           "triangle: corners, and just outside");
     const mcs_vec2 u = mcs_triangle_invert(FLT_MAX, -3);
     CHECK(u.x == top && u.y == 0, "triangle: far outside %g %g", (double)u.x, (double)u.y);
+}
+
+/* Without a good height the density is uniform: each of four bad heights, at each corner, and four zeros. */
+static void bilinear_uniform(void) {
+    static const float bad[] = {-1, -0x1p-149f, NAN, INFINITY};
+    for (int i = 0; i < 17; i++) {
+        float w[4] = {1, 2, 3, 4};
+        if (i < 16) w[i / 4] = bad[i % 4];
+        else memset(w, 0, sizeof w);
+        const mcs_sample2 s = mcs_bilinear_sample(w[0], w[1], w[2], w[3], 0.25f, 0.625f);
+        const mcs_vec2 u = mcs_bilinear_invert(w[0], w[1], w[2], w[3], 0.25f, 0.625f);
+        CHECK(s.x == 0.25f && s.y == 0.625f && s.pdf == 1 && u.x == 0.25f && u.y == 0.625f &&
+                  mcs_bilinear_pdf(w[0], w[1], w[2], w[3], 0.25f, 0.625f) == 1,
+              "heights %g %g %g %g: (%g, %g), pdf %g", (double)w[0], (double)w[1], (double)w[2], (double)w[3],
+              (double)s.x, (double)s.y, (double)s.pdf);
+    }
 }
 
 /* What the header says of points of a triangle: each coordinate is the nearest float, and b2 is not negative. Half of
@@ -890,6 +911,7 @@ int main(int argc, char **argv) {
     for (size_t i = 0; i < 6; i++)
         if (mcst_case("constants of %s", even[i])) constants(even[i], i < 2 ? 0.1 : 0.15);
     if (mcst_case("beyond the ends")) beyond_the_ends();
+    if (mcst_case("bilinear without a good height")) bilinear_uniform();
     if (mcst_case("triangle: nearest floats, inside")) triangle_points();
     if (mcst_case("Phong's lobe of power 0 at the horizon")) even_phong();
     if (mcst_case("half of opposed directions")) opposed();

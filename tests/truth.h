@@ -6,6 +6,8 @@
 #define OA_0
 #define OA_1 (ld) p[0],
 #define OA_2 (ld) p[0], (ld)p[1],
+#define OA_corners o_corners((ld)p[0], (ld)p[1], 1.0L, 3.0L),
+#define OA_cross o_corners((ld)p[0], 0.0L, 0.0L, (ld)p[1]),
 #define OA_phong OA_1
 #define OA_ward OA_2
 #define OA_ward_gmd OA_2 0,

@@ -16,6 +16,8 @@
 #define FORM_ARGS_0
 #define FORM_ARGS_1 a,
 #define FORM_ARGS_2 a, b,
+#define FORM_ARGS_corners a, b, M_(set)(1.0f), M_(set)(3.0f),
+#define FORM_ARGS_cross a, M_(set)(0.0f), M_(set)(0.0f), b,
 #define FORM_MAKE_phong const M_(phong) m = M_(phong_make)(a)
 #define FORM_MAKE_ward const M_(ward) m = M_(ward_make)(a, b, MCS_WARD_GMD)
 #define FORM_MAKE_ward_gmd FORM_MAKE_ward
@@ -63,6 +65,8 @@ bench_form *const B_(forms)[] = {MCST_ROWS(FORM_NAME)};
 #undef FORM_ARGS_0
 #undef FORM_ARGS_1
 #undef FORM_ARGS_2
+#undef FORM_ARGS_corners
+#undef FORM_ARGS_cross
 #undef FORM_MAKE_phong
 #undef FORM_MAKE_ward
 #undef FORM_MAKE_ward_gmd

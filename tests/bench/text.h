@@ -153,6 +153,14 @@ static inline text_sample text_concentric(float R, float u1, float u2) {
     s.y = R * r * sinf(phi);
     return s;
 }
+static inline text_sample text_bilinear(float w00, float w10, float w01, float w11, float u1, float u2) {
+    const text_sample y = text_linear(w00 + w10, w01 + w11, u2);
+    text_sample s = text_linear((1 - y.x) * w00 + y.x * w01, (1 - y.x) * w10 + y.x * w11, u1);
+    s.y = y.x;
+    s.pdf =
+        4 * ((1 - s.y) * ((1 - s.x) * w00 + s.x * w10) + s.y * ((1 - s.x) * w01 + s.x * w11)) / (w00 + w10 + w01 + w11);
+    return s;
+}
 static inline text_sample text_triangle(float u1, float u2) { /* pbrt, SampleUniformTriangle */
     text_sample s;
     if (u1 < u2) {

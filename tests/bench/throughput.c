@@ -58,6 +58,7 @@ TEXT1(evenpower, text_evenpower(a, u))
 TEXT1(smoothstep, text_smoothstep(a, b, u))
 TEXT2(disk, text_disk(a, u, v))
 TEXT2(concentric, text_concentric(a, u, v))
+TEXT2(bilinear, text_bilinear(a, b, 1, 3, u, v))
 TEXT2(triangle, text_triangle(u, v))
 TEXT3(sphere, text_sphere(u, v))
 TEXT3(hemisphere, text_hemisphere(u, v))
@@ -157,6 +158,7 @@ static const sampler listed[] = {
     {"smoothstep", "smoothstep", ALL, 2, 5, smoothstep_text, 0, 1, NULL, NULL},
     {"disk", "disk", ALL, 2, 0, disk_text, 10, 1, NULL, NULL},
     {"concentric", "concentric", ALL, 2, 0, concentric_text, 0, 1, NULL, NULL},
+    {"bilinear", "bilinear", ALL, 2, 5, bilinear_text, 0, 1, NULL, NULL},
     {"triangle", "triangle", ALL, 0, 0, triangle_text, 0, 1, NULL, NULL},
     {"sphere", "sphere", ALL, 0, 0, sphere_text, 0, 1, NULL, NULL},
     {"hemisphere", "hemisphere", ALL, 0, 0, hemisphere_text, 0, 1, NULL, NULL},
