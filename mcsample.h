@@ -753,7 +753,7 @@ MCS_FN float mcs_cone_from_sin2(float sin2);
  * A frame around a surface normal. In local coordinates the normal is +z, as all samplers of this header expect.
  *
  * accuracy  orthonormal within 4 ulp for a unit normal
- * cost      1 division, no branch
+ * cost      1 division, no branch; from a tangent 1 square root and 2 divisions more
  * source    Duff et al. 2017, "Building an orthonormal basis, revisited", listing 3 */
 
 /* Three unit vectors in world coordinates, orthogonal and right-handed. */
@@ -766,6 +766,11 @@ typedef struct {
 /* The frame of the unit normal n. s and t turn smoothly with n, except where n.z changes its sign. A bad n gives the
  * axes of the world; an n that is not of unit length gives a frame that is skewed. */
 MCS_FN mcs_frame mcs_frame_make(mcs_vec3 n);
+/* The frame of the unit normal n whose s lies along the tangent as far as n allows: s is the tangent less its part
+ * along n, brought to unit length, each coordinate within 2^-23. The tangent may have any length. One that is 0 or not
+ * finite, or within an angle of 1e-6 of n or -n, gives the frame of mcs_frame_make(n). A bad n counts as +z; an n that
+ * is not of unit length gives a frame that is skewed. */
+MCS_FN mcs_frame mcs_frame_from_tangent(mcs_vec3 n, mcs_vec3 tangent);
 /* v in world coordinates, for v in local ones. Components of v beyond 1e37 and NaN count as 0. */
 MCS_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v);
 /* v in local coordinates, for v in world ones. Components of v beyond 1e37 and NaN count as 0. */
@@ -2659,6 +2664,11 @@ MCSI_CORE mcs_vec3 mcsi_vec3(mcs_f x, mcs_f y, mcs_f z) {
     v.z = z;
     return v;
 }
+#ifdef MCSI_PUBLIC
+MCSI_CORE mcs_vec3 mcsi_sel3(mcs_i m, mcs_vec3 a, mcs_vec3 b) {
+    return mcsi_vec3(mcsi_sel(m, a.x, b.x), mcsi_sel(m, a.y, b.y), mcsi_sel(m, a.z, b.z));
+}
+#endif
 MCSI_CORE mcs_f mcsi_dot(mcs_vec3 a, mcs_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 /* The dot product in double, for where it cancels. */
 MCSI_CORE mcs_f mcsi_exact_dot(mcs_vec3 a, mcs_vec3 b) {
@@ -3829,6 +3839,43 @@ MCSI_FN mcs_frame mcs_frame_make(mcs_vec3 n) {
     f.n = n;
     return f;
 }
+#ifdef MCSI_PUBLIC
+/* With the tangent T, scaled to a largest component of 1, s is the unit vector of p = (n.n) T - (T.n) n. It is computed
+ * in double, as it cancels where T is nearly along n. Its length takes one step of Newton's method for 1/sqrt. A T that
+ * is not finite makes p NaN, and one of length 0 makes it 0. */
+MCSI_FN mcs_frame mcs_frame_from_tangent(mcs_vec3 n, mcs_vec3 tangent) {
+    mcs_frame f = mcs_frame_make(n);
+    const mcs_f largest = mcsi_max(mcsi_max(mcsi_abs(tangent.x), mcsi_abs(tangent.y)), mcsi_abs(tangent.z));
+    const mcs_f one = mcs_set(1.0f);
+    const mcsi_d scale = 1.0 / MCSI_WIDEN(mcsi_sel(largest > 0.0f, largest, one));
+    const mcsi_d t_x = scale * MCSI_WIDEN(tangent.x);
+    const mcsi_d t_y = scale * MCSI_WIDEN(tangent.y);
+    const mcsi_d t_z = scale * MCSI_WIDEN(tangent.z);
+    const mcsi_d n_x = MCSI_WIDEN(f.n.x);
+    const mcsi_d n_y = MCSI_WIDEN(f.n.y);
+    const mcsi_d n_z = MCSI_WIDEN(f.n.z);
+    const mcsi_d n2 = n_x * n_x + n_y * n_y + n_z * n_z;
+    const mcsi_d t2 = t_x * t_x + t_y * t_y + t_z * t_z;
+    const mcsi_d t_n = t_x * n_x + t_y * n_y + t_z * n_z;
+    const mcsi_d p_x = n2 * t_x - t_n * n_x;
+    const mcsi_d p_y = n2 * t_y - t_n * n_y;
+    const mcsi_d p_z = n2 * t_z - t_n * n_z;
+    const mcsi_d p2 = p_x * p_x + p_y * p_y + p_z * p_z; /* |T|^2 |n|^4 sin^2 of their angle */
+    const mcs_f length2 = MCSI_NARROW(p2);
+    const mcs_i apart = length2 > MCSI_NARROW(1e-12 * (t2 * n2 * n2));
+    const mcsi_d r = MCSI_WIDEN(1.0f / mcsi_sqrt(mcsi_sel(apart, length2, one)));
+    const mcsi_d inverse = r * (1.5 - 0.5 * p2 * r * r);
+    const mcsi_d s_x = p_x * inverse;
+    const mcsi_d s_y = p_y * inverse;
+    const mcsi_d s_z = p_z * inverse;
+    const mcs_vec3 s = mcsi_vec3(MCSI_NARROW(s_x), MCSI_NARROW(s_y), MCSI_NARROW(s_z));
+    const mcs_vec3 t = mcsi_vec3(MCSI_NARROW(n_y * s_z - n_z * s_y), MCSI_NARROW(n_z * s_x - n_x * s_z),
+                                 MCSI_NARROW(n_x * s_y - n_y * s_x));
+    f.s = mcsi_sel3(apart, s, f.s);
+    f.t = mcsi_sel3(apart, t, f.t);
+    return f;
+}
+#endif
 /* mcsi_to_world and mcsi_to_local are for vectors that are known to be finite. */
 MCSI_CORE mcs_vec3 mcsi_to_world(const mcs_frame *f, mcs_vec3 v) {
     return mcsi_vec3(f->s.x * v.x + f->t.x * v.y + f->n.x * v.z, f->s.y * v.x + f->t.y * v.y + f->n.y * v.z,
@@ -8525,6 +8572,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_exponential_sample MCS_(exponential_sample)
 #define mcs_f MCSI_F
 #define mcs_frame MCS_(frame)
+#define mcs_frame_from_tangent MCS_(frame_from_tangent)
 #define mcs_frame_make MCS_(frame_make)
 #define mcs_ggx MCS_(ggx)
 #define mcs_ggx_bounded_h_invert MCS_(ggx_bounded_h_invert)
@@ -8793,6 +8841,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_secant2 MCSI_(secant2)
 #define mcsi_seen_light_loop MCSI_(seen_light_loop)
 #define mcsi_sel MCSI_(sel)
+#define mcsi_sel3 MCSI_(sel3)
 #define mcsi_side MCSI_(side)
 #define mcsi_side_load MCSI_(side_load)
 #define mcsi_sincos_turns MCSI_(sincos_turns)
@@ -9029,6 +9078,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_exponential_sample
 #undef mcs_f
 #undef mcs_frame
+#undef mcs_frame_from_tangent
 #undef mcs_frame_make
 #undef mcs_ggx
 #undef mcs_ggx_bounded_h_invert
@@ -9297,6 +9347,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_secant2
 #undef mcsi_seen_light_loop
 #undef mcsi_sel
+#undef mcsi_sel3
 #undef mcsi_side
 #undef mcsi_side_load
 #undef mcsi_sincos_turns

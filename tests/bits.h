@@ -14,8 +14,8 @@
 /* clang-format off */
 #ifndef BITS_WIDE
 #define BITS_WIDE(X) \
-    X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(to_world) X(to_local) X(reflect) \
-    X(reflect_pdf) X(half) X(cos_d) X(schlick) X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) \
+    X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(frame_from_tangent) X(to_world) X(to_local) \
+    X(reflect) X(reflect_pdf) X(half) X(cos_d) X(schlick) X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) \
     X(ashikhmin_make) X(is_mirror) X(ggx_d) X(ggx_g1) X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
 #define BITS_WORDS(X) \
     X(hash) X(sobol_bits) X(load) X(store)
@@ -112,6 +112,10 @@ FN(cone_from_sin2) { PUT(0, M_(cone_from_sin2)(IN(6))); }
 
 FN(frame_make) {
     const M_(frame) f = M_(frame_make)(IN3(3));
+    B_(put3)(out, 0, f.s), B_(put3)(out, 3, f.t), B_(put3)(out, 6, f.n);
+}
+FN(frame_from_tangent) {
+    const M_(frame) f = M_(frame_from_tangent)(IN3(3), IN3(8));
     B_(put3)(out, 0, f.s), B_(put3)(out, 3, f.t), B_(put3)(out, 6, f.n);
 }
 FN(to_world) {

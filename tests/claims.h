@@ -21,6 +21,8 @@ static const char *const mcst_claim_sentences[] = {
     "coordinates within half an ulp of the exact map, for u of 0 and of 2^-125 and more; pdf exact",
     /* [sphere] */
     "unit length within 4 x 2^-24, pdf within 0.2 E.",
+    /* [frame] */
+    "brought to unit length, each coordinate within 2^-23",
     /* [phong] */
     "pdf of u 0.4 E (n below 1: 1.2 E, below 0.1: 2.9 E), of w and eval 0.6 E, weight 0.3e-6, |w| 4 x "
     "2^-24",

@@ -140,6 +140,13 @@ static inline o_vec3 o_half(o_vec3 wo, o_vec3 wi) { return o_unit(o_add(wo, wi))
 static inline ld o_cos_d(o_vec3 wo, o_vec3 wi) { return 0.5L * o_len(o_add(wo, wi)); }
 static inline ld o_schlick(ld f0, ld cos_d) { return f0 + (1.0L - f0) * powl(1.0L - cos_d, 5.0L); }
 
+/* Its x axis is the tangent less what of it is along n, its y axis n x s. */
+static inline void o_frame_from_tangent(o_vec3 n, o_vec3 tangent, o_vec3 *s, o_vec3 *t) {
+    const o_vec3 up = o_unit(n);
+    *s = o_unit(o_add(tangent, o_scale(-o_dot(tangent, up), up)));
+    *t = o_cross(n, *s);
+}
+
 /* What every half-vector sampler does after h: density of wi from that of h, 0 when lost. */
 static inline ld o_reflected_pdf(o_vec3 wo, o_vec3 h, ld pdf_h) {
     const ld d = o_dot(wo, h);

@@ -93,6 +93,79 @@ static const mcs_vec3 bad_normals[] = {
     {INFINITY, NAN, -INFINITY},
 };
 
+/* s and t are rounded once, eps/2 for a coordinate; what double loses is 1e-9 of that at most, at an angle of 1e-6. */
+static void check_tangent(mcs_vec3 n, mcs_vec3 tangent) {
+    const mcs_frame f = mcs_frame_from_tangent(n, tangent);
+    o_vec3 s, t;
+    o_frame_from_tangent(o_v3(n.x, n.y, n.z), o_v3(tangent.x, tangent.y, tangent.z), &s, &t);
+    const double off =
+        fmax(fmax(fabs((double)(f.s.x - s.x)), fabs((double)(f.s.y - s.y))), fabs((double)(f.s.z - s.z)));
+    const double across =
+        fmax(fmax(fabs((double)(f.t.x - t.x)), fabs((double)(f.t.y - t.y))), fabs((double)(f.t.z - t.z)));
+    CHECK(off <= 0.51 * eps && across <= 0.51 * eps + 1e-9 && f.n.x == n.x && f.n.y == n.y && f.n.z == n.z,
+          "n (%a, %a, %a), tangent (%a, %a, %a): off by %g and %g", (double)n.x, (double)n.y, (double)n.z,
+          (double)tangent.x, (double)tangent.y, (double)tangent.z, off / eps, across / eps);
+    const double d = 10 * eps + fabs(dot(n, n) - 1);
+    CHECK(fabs(dot(f.s, f.s) - 1) <= d && fabs(dot(f.t, f.t) - 1) <= d && fabs(dot(f.s, f.t)) <= d &&
+              fabs(dot(f.s, n)) <= d && fabs(dot(f.t, n)) <= d,
+          "n (%a, %a, %a), tangent (%a, %a, %a): not orthonormal", (double)n.x, (double)n.y, (double)n.z,
+          (double)tangent.x, (double)tangent.y, (double)tangent.z);
+}
+
+static int same3(mcs_vec3 a, mcs_vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+static void check_no_tangent(mcs_vec3 n, mcs_vec3 tangent) {
+    const mcs_frame f = mcs_frame_from_tangent(n, tangent);
+    const mcs_frame want = mcs_frame_make(n);
+    CHECK(same3(f.s, want.s) && same3(f.t, want.t) && same3(f.n, want.n),
+          "n (%a, %a, %a), tangent (%a, %a, %a): not that of mcs_frame_make", (double)n.x, (double)n.y, (double)n.z,
+          (double)tangent.x, (double)tangent.y, (double)tangent.z);
+}
+
+static mcs_vec3 scaled(double k, mcs_vec3 a, double l, mcs_vec3 b) {
+    mcs_vec3 v;
+    v.x = (float)(k * a.x + l * b.x);
+    v.y = (float)(k * a.y + l * b.y);
+    v.z = (float)(k * a.z + l * b.z);
+    return v;
+}
+
+/* The tangents of `bad_normals` that have a length are good ones. */
+static void test_tangents(void) {
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 157);
+    const mcs_vec3 zero = {0, 0, 0};
+    for (int i = 0; i < 300000; i++) {
+        const mcs_vec3 n = random_unit(&r);
+        const mcs_vec3 tangent = random_unit(&r);
+        const double size = pow(10, 70.0 * mcs_pcg32_float(&r) - 32);
+        const double beside = pow(10, -5.0 * mcs_pcg32_float(&r));
+        check_tangent(n, tangent);
+        check_tangent(n, scaled(size, tangent, 0, zero));
+        const mcs_vec3 close = scaled(i & 1 ? 1 : -1, n, beside, tangent);
+        o_vec3 s, t;
+        const o_vec3 up = o_unit(o_v3(n.x, n.y, n.z));
+        o_frame(up, &s, &t);
+        const o_vec3 to = o_v3(close.x, close.y, close.z);
+        const ld angle = hypotl(o_dot(s, to), o_dot(t, to)) / o_len(to);
+        if (angle > 1.001e-6L) check_tangent(n, close);
+        if (angle < 0.999e-6L) check_no_tangent(n, close);
+        check_no_tangent(n, scaled(size, n, 0, zero));
+    }
+    for (size_t i = 0; i < sizeof odd_normals / sizeof *odd_normals; i++) {
+        for (size_t k = 0; k < sizeof bad_normals / sizeof *bad_normals; k++) {
+            const mcs_vec3 bad = bad_normals[k];
+            const mcs_frame f = mcs_frame_from_tangent(bad, odd_normals[i]);
+            CHECK(finite3(f.s) && finite3(f.t) && same3(f.n, mcs_frame_make(bad).n), "bad normal %d", (int)k);
+            if (!finite3(bad) || same3(bad, zero)) check_no_tangent(odd_normals[i], bad);
+        }
+    }
+    const mcs_vec3 up = {0, 0, 1};
+    const mcs_vec3 tiny = {0, 1e-45f, 0};
+    const mcs_vec3 huge = {FLT_MAX, -FLT_MAX, FLT_MAX};
+    check_tangent(up, tiny);
+    check_tangent(up, huge);
+}
+
 static void test_frame(void) {
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 101);
     if (mcst_case("orthonormal: 1e6 random normals"))
@@ -869,6 +942,7 @@ int main(int argc, char **argv) {
     mcst_group("frame");
     test_frame();
     if (mcst_case("vectors of 1e37, and beyond")) test_huge_vectors();
+    if (mcst_case("from a tangent, of any length and down to 1e-6 from the normal")) test_tangents();
     mcst_group("cone");
     for (int i = 0; i < 4; i++)
         if (mcst_case("rim of k = %g", (double)cones[i])) test_cone_rim(cones[i]);

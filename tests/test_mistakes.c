@@ -159,8 +159,10 @@ static void check_row(const mcst_row *row) {
 
 static void check_vectors(void) {
     const mcs_vec3 unit = {0.48f, 0.6f, 0.64f};
+    const mcs_vec3 tangent = {3, 0, 1};
     const mcs_ggx m = mcs_ggx_make(0.3f, 0.3f);
     TELLS("mcs_frame_make", mcs_frame_make(w));
+    TELLS("mcs_frame_from_tangent", mcs_frame_from_tangent(w, tangent));
     TELLS("mcs_reflect, wo", mcs_reflect(w, unit));
     TELLS("mcs_reflect, h", mcs_reflect(unit, w));
     TELLS("mcs_half, wo", mcs_half(w, unit));

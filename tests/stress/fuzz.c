@@ -207,6 +207,8 @@ static void fuzz_vectors(bytes *b) {
     const float q = take_float(b);
     const float r = take_float(b);
     const mcs_vec3 h = mcs_half(v, w);
+    const mcs_frame g = mcs_frame_from_tangent(v, any);
+    MUST(finite3(g.s) && finite3(g.t) && finite3(g.n));
     MUST(finite3(f.s) && finite3(f.t) && finite3(f.n));
     MUST(finite3(mcs_to_world(&f, any)) && finite3(mcs_to_local(&f, any)));
     MUST(finite3(mcs_reflect(v, w)) && finite3(mcs_reflect(any, w)) && finite3(mcs_half(any, w)));
