@@ -47,10 +47,10 @@
  *               at alpha 0.01, in the worst thousandth of the samples.
  *
  * weight        It is f cos(theta_i) / pdf in closed form, for a reflectance and a Fresnel factor of 1: multiply by
- *               mcs_schlick or by your own. X_weight belongs to the float wi that it is given. The weight of a sample
- *               is computed from the half-vector of the exact point and from the cosine of the rounded wi, and what is
- *               stated of its accuracy compares it with that. Near the horizon the exact point itself has another
- *               weight, as the rounding of wi is a large part of so small a cosine.
+ *               mcs_schlick, one of [fresnel], or your own. X_weight belongs to the float wi that it is given. The
+ *               weight of a sample is computed from the half-vector of the exact point and from the cosine of the
+ *               rounded wi, and what is stated of its accuracy compares it with that. Near the horizon the exact point
+ *               itself has another weight, as the rounding of wi is a large part of so small a cosine.
  *
  * Lost samples  A lobe around a half-vector or around the mirror direction may reflect below the surface. Such a sample
  *               has pdf 0 and weight 0: add 0 to the estimate and count the sample. The density over the upper
@@ -120,7 +120,8 @@
  *   [triangle]    points on a triangle                                     lights made of triangles
  *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte surfaces, spherical lights
  *   [frame]       local and world coordinates                              every shaded point
- *   [microfacet]  half-vectors, mirroring, Fresnel                         BRDFs of your own
+ *   [microfacet]  half-vectors, mirroring, Schlick's Fresnel               BRDFs of your own
+ *   [fresnel]     exact reflectances, refraction                           glass, water, metals
  *   [phong] [ward] [beckmann] [ggx] [ashikhmin]   five glossy lobes        glossy surfaces; start with [ggx]
  *   [mis]         weights of two strategies                                a light and a lobe together
  *   [tables]      densities given as numbers                               one of many lights, measured curves
@@ -174,7 +175,7 @@
  *                     where this file was pasted into another one, so that it cannot include itself.
  * MCS_NO_BATCH        No array functions but mcs_pcg32_fill_n.
  * MCS_NO_1D           No [1d] and no [square].
- * MCS_NO_LOBES        No [microfacet], no BRDFs and no [product].
+ * MCS_NO_LOBES        No [microfacet], no [fresnel], no BRDFs and no [product].
  * MCS_NO_TABLES       No [tables], no [env] and no [product].
  *
  * These change how functions are compiled.
@@ -802,6 +803,38 @@ MCS_FN float mcs_schlick(float f0, float cos_d);
 
 #endif
 
+/* ==== [fresnel] reflectance and refraction of smooth surfaces =====================================================
+ * What part of unpolarised light a smooth surface reflects, and where the rest goes. For a microfacet the surface is
+ * that of the half-vector: pass mcs_cos_d, or wo.h, as the cosine.
+ *
+ *   cos_i     the cosine between the direction that is given and the normal, taken within [-1,1]
+ *   eta       the index of refraction behind the surface over that in front, where the normal points: 1.5 for glass in
+ *             air. It belongs to the surface and stays as it is for light from behind, whose cosine is below 0: the
+ *             functions then turn it round themselves. In [1e-3, 1e3].
+ *   k         the extinction coefficient of a metal over the index in front; in [0, 1e3]. Below 1e-9 it counts as 0.
+ *
+ * bad       NaN, and an eta or k out of its range, give the reflectance 0 and the direction (0, 0, 0).
+ * accuracy  reflectance within 1.6e-6 (dielectric), 1.2e-6 (conductor) of itself, refracted directions within 2^-23 by
+ *           coordinate, their length within 4 x 2^-24, for eta in [1/3, 3] and all cosines: grazing, at the critical
+ *           angle, and where eta is nearly 1. The same holds for other eta, but not next to the critical angle.
+ * cost      dielectric 1 square root, 2 divisions; conductor 2 square roots, 3 divisions; refraction 2 square roots, 3
+ *           divisions
+ * source    Born and Wolf 1999, "Principles of Optics", sections 1.5 and 14.2 */
+#ifndef MCS_NO_LOBES
+
+/* The reflectance of glass, water and the like. 1 at total reflection, which is for |cos_i| at and below the critical
+ * cosine on the side of the higher index; 0 for eta = 1. The rest to 1 is transmitted. */
+MCS_FN float mcs_fresnel_dielectric(float cos_i, float eta);
+/* The reflectance of a metal of the index eta + ik, seen from the front: a cos_i below 0 counts as 0, which gives 1.
+ * Without extinction the metal is a dielectric. */
+MCS_FN float mcs_fresnel_conductor(float cos_i, float eta, float k);
+/* w refracted at h, a half-vector or the normal. Both w and the result point away from the surface, on two sides of it.
+ * w may be on either side of h, and lengths within (1/2, 2) do not matter. (0, 0, 0) says that there is none, because
+ * the reflection is total. */
+MCS_FN mcs_vec3 mcs_refract(mcs_vec3 w, mcs_vec3 h, float eta);
+
+#endif
+
 /* ==== The five BRDFs below: what they have in common ================================================================
  * Which to use:
  *
@@ -837,7 +870,7 @@ MCS_FN float mcs_schlick(float f0, float cos_d);
  *   x, y, z          in array forms, the components of wi, or of h in functions named _h. Arrays hold n floats each, of
  *                    any alignment. A result may be NULL, or be one of the inputs.
  *
- * Fresnel's factor is 1 in f and in the weights: multiply by mcs_schlick, or by your own.
+ * Fresnel's factor is 1 in f and in the weights: multiply by mcs_schlick, by one of [fresnel], or by your own.
  *
  * lost samples   A sample whose wi is below the surface has density 0 and weight 0: add 0 to the estimate and count the
  *                sample. So the density of wi integrates to less than 1 over the upper hemisphere; do not renormalise
@@ -4016,6 +4049,128 @@ MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d
         mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                   \
         MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(&material, eye, mcsi_in(&b, 0), mcsi_in(&b, 1))); }        \
     }
+#endif
+
+/* ==== [fresnel] bodies ============================================================================================
+ * n_i and n_t are the indices on the side of the given direction and on the other one: 1 and eta, or eta and 1 from
+ * behind. With c = cos_i and q = n_t cos_t, the amplitudes of the two polarisations are (n_i c - q) / (n_i c + q) and
+ * (n_t^2 c - n_i q) / (n_t^2 c + n_i q). Both numerators cancel where the indices are alike, and the second one near
+ * Brewster's angle. Multiplied by the divisors they do not:
+ *
+ *   n_i^2 c^2 - q^2         = -(n_t^2 - n_i^2)
+ *   n_t^4 c^2 - n_i^2 q^2   = (n_t^2 - n_i^2) (n_t^2 c^2 - n_i^2 (1 - c^2))
+ *
+ * What is left to cancel are differences of squares. The square of a float is exact in double, so that they are as good
+ * as exact there; in float, q^2 = n_t^2 - n_i^2 (1 - c^2) would lose q near the critical angle. */
+#ifdef MCSI_PUBLIC
+
+MCSI_CORE mcs_i mcsi_eta_ok(mcs_f eta) { return (eta >= 1e-3f) & (eta <= 1e3f); }
+
+MCSI_FN mcs_f mcs_fresnel_dielectric(mcs_f cos_i, mcs_f eta) {
+    mcs_i ok = mcsi_eta_ok(eta);
+    MCSI_REQUIRE(ok);
+    ok = ok & (cos_i == cos_i);
+    const mcs_f zero = mcs_set(0.0f);
+    const mcs_f one = mcs_set(1.0f);
+    const mcs_f ratio = mcsi_sel(ok, eta, one);
+    const mcs_f n_i = mcsi_sel(cos_i < 0.0f, ratio, one);
+    const mcs_f n_t = mcsi_sel(cos_i < 0.0f, one, ratio);
+    const mcs_f c = mcsi_min(mcsi_abs(cos_i), one);
+    const mcsi_d c2 = MCSI_WIDEN(c) * MCSI_WIDEN(c);
+    const mcsi_d i2 = MCSI_WIDEN(n_i) * MCSI_WIDEN(n_i);
+    const mcsi_d t2 = MCSI_WIDEN(n_t) * MCSI_WIDEN(n_t);
+    const mcs_f contrast = MCSI_NARROW(t2 - i2);
+    const mcs_f q2 = MCSI_NARROW((t2 - i2) + i2 * c2);
+    const mcs_i partial = (q2 > 0.0f) & (contrast != 0.0f);
+    const mcs_f q = mcsi_sqrt(mcsi_sel(partial, q2, one));
+    const mcs_f divisor_s = n_i * c + q;
+    const mcs_f divisor_p = MCSI_NARROW(t2) * c + n_i * q;
+    const mcs_f r_s = contrast / (divisor_s * divisor_s);
+    const mcs_f r_p = contrast * MCSI_NARROW(t2 * c2 - i2 * (1.0 - c2)) / (divisor_p * divisor_p);
+    const mcs_f whole = mcsi_sel(contrast == 0.0f, zero, one);
+    return mcsi_sel(partial, mcsi_min(0.5f * (r_s * r_s + r_p * r_p), one), whole);
+}
+
+/* With e = (eta + ik)^2 in place of n_t^2, n_i = 1 and w = q^2 = e - (1 - c^2), now all complex, the same two products
+ * are 1 - e and (e - 1) (e c^2 - (1 - c^2)). The squares of the divisors' absolute values are sums of positive terms,
+ * where a is the real part of q:
+ *
+ *   |c + q|^2     = c^2 + |w| + 2 c a
+ *   |e c + q|^2   = |e|^2 c^2 + |w| + 2 c a (|w| + 1 - c^2) */
+MCSI_FN mcs_f mcs_fresnel_conductor(mcs_f cos_i, mcs_f eta, mcs_f k) {
+    mcs_i ok = mcsi_eta_ok(eta) & (k >= 0.0f) & (k <= 1e3f);
+    MCSI_REQUIRE(ok);
+    ok = ok & (cos_i == cos_i);
+    const mcs_f zero = mcs_set(0.0f);
+    const mcs_f one = mcs_set(1.0f);
+    const mcs_f c = mcsi_min(mcsi_max(cos_i, zero), one);
+    const mcsi_d n = MCSI_WIDEN(mcsi_sel(ok, eta, one));
+    const mcsi_d extinction = MCSI_WIDEN(mcsi_sel(ok & (k >= 1e-9f), k, zero));
+    const mcsi_d c2 = MCSI_WIDEN(c) * MCSI_WIDEN(c);
+    const mcsi_d n2 = n * n;
+    const mcsi_d k2 = extinction * extinction;
+    const mcsi_d e_y = 2.0 * n * extinction;
+    const mcsi_d w_x = ((n2 - 1.0) + c2) - k2;
+    const mcsi_d b_x = (n2 - k2) * c2 - (1.0 - c2);
+    const mcsi_d b_y = e_y * c2;
+    const mcs_f contrast = MCSI_NARROW(((n - 1.0) * (n - 1.0) + k2) * ((n + 1.0) * (n + 1.0) + k2)); /* |e - 1|^2 */
+    const mcs_f brewster = MCSI_NARROW(b_x * b_x + b_y * b_y);
+    const mcs_f w_abs = mcsi_sqrt(MCSI_NARROW(w_x * w_x + e_y * e_y));
+    const mcs_f real = MCSI_NARROW(w_x);
+    /* The real and the imaginary part of q, or the other way round. */
+    const mcs_f larger = mcsi_sqrt(0.5f * (w_abs + mcsi_abs(real)));
+    const mcs_f smaller = MCSI_NARROW(0.5 * e_y) / mcsi_sel(larger > 0.0f, larger, one);
+    const mcs_f ca = 2.0f * c * mcsi_sel(real >= 0.0f, larger, smaller);
+    const mcs_i differs = contrast > 0.0f;
+    const mcs_f divisor_s = mcsi_sel(differs, (c * c + w_abs) + ca, one);
+    const mcs_f e_c = MCSI_NARROW((n2 + k2) * (n2 + k2) * c2);
+    const mcs_f divisor_p = mcsi_sel(differs, (e_c + w_abs) + ca * (w_abs + MCSI_NARROW(1.0 - c2)), one);
+    const mcs_f r_s = contrast / (divisor_s * divisor_s);
+    const mcs_f r_p = contrast * brewster / (divisor_p * divisor_p);
+    return mcsi_min(0.5f * (r_s + r_p), one);
+}
+
+/* With the cosine c = w.h / (|w| |h|) the refracted direction is
+ *
+ *   -(n_i |h|^2 w + (+-q |w| |h| - n_i w.h) h) / (n_t |w| |h|^2), the sign that of c.
+ *
+ * All sums are in double: what w and h lack to unit length would move q near the critical angle by a thousand times as
+ * much. q and the length of w take one step of Newton's method. */
+MCSI_FN mcs_vec3 mcs_refract(mcs_vec3 w, mcs_vec3 h, mcs_f eta) {
+    mcs_i ok = mcsi_eta_ok(eta);
+    MCSI_REQUIRE(ok);
+    w = mcsi_sane_direction(w, &ok);
+    h = mcsi_sane_direction(h, &ok);
+    const mcs_f zero = mcs_set(0.0f);
+    const mcs_f one = mcs_set(1.0f);
+    const mcsi_d w_x = MCSI_WIDEN(w.x);
+    const mcsi_d w_y = MCSI_WIDEN(w.y);
+    const mcsi_d w_z = MCSI_WIDEN(w.z);
+    const mcsi_d h_x = MCSI_WIDEN(h.x);
+    const mcsi_d h_y = MCSI_WIDEN(h.y);
+    const mcsi_d h_z = MCSI_WIDEN(h.z);
+    const mcsi_d w2 = w_x * w_x + w_y * w_y + w_z * w_z;
+    const mcsi_d h2 = h_x * h_x + h_y * h_y + h_z * h_z;
+    const mcsi_d w_h = w_x * h_x + w_y * h_y + w_z * h_z;
+    const mcs_f ratio = mcsi_sel(ok, eta, one);
+    const mcs_i behind = MCSI_NARROW(w_h) < 0.0f;
+    const mcsi_d n_i = MCSI_WIDEN(mcsi_sel(behind, ratio, one));
+    const mcsi_d n_t = MCSI_WIDEN(mcsi_sel(behind, one, ratio));
+    const mcsi_d q2 = (n_t * n_t - n_i * n_i) * (w2 * h2) + n_i * n_i * (w_h * w_h);
+    const mcs_i some = MCSI_NARROW(q2) > 0.0f;
+    const mcs_f root = mcsi_sqrt(mcsi_sel(some, MCSI_NARROW(q2), zero));
+    const mcs_f signed_root = mcsi_sel(behind, -root, root);
+    const mcsi_d q = MCSI_WIDEN(signed_root);
+    const mcsi_d slope = MCSI_WIDEN(mcsi_sel(some, mcs_set(0.5f), zero) / mcsi_sel(some, signed_root, one));
+    const mcsi_d along_w = n_i * h2;
+    const mcsi_d along_h = q + (q2 - q * q) * slope - n_i * w_h;
+    const mcsi_d r = MCSI_WIDEN(1.0f / mcsi_sqrt(MCSI_NARROW(w2)));
+    const mcsi_d scale = r * (0.5 * w2 * r * r - 1.5) / (n_t * h2);
+    const mcs_vec3 refracted = mcsi_vec3(MCSI_NARROW(scale * (along_w * w_x + along_h * h_x)),
+                                         MCSI_NARROW(scale * (along_w * w_y + along_h * h_y)),
+                                         MCSI_NARROW(scale * (along_w * w_z + along_h * h_z)));
+    return mcsi_sel3(ok & (some | (eta == 1.0f)), refracted, mcsi_vec3(zero, zero, zero));
+}
 #endif
 
 /* ==== [phong] bodies ============================================================================================== */
@@ -8574,6 +8729,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_frame MCS_(frame)
 #define mcs_frame_from_tangent MCS_(frame_from_tangent)
 #define mcs_frame_make MCS_(frame_make)
+#define mcs_fresnel_conductor MCS_(fresnel_conductor)
+#define mcs_fresnel_dielectric MCS_(fresnel_dielectric)
 #define mcs_ggx MCS_(ggx)
 #define mcs_ggx_bounded_h_invert MCS_(ggx_bounded_h_invert)
 #define mcs_ggx_bounded_h_pdf MCS_(ggx_bounded_h_pdf)
@@ -8633,6 +8790,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_r2 MCS_(r2)
 #define mcs_reflect MCS_(reflect)
 #define mcs_reflect_pdf MCS_(reflect_pdf)
+#define mcs_refract MCS_(refract)
 #define mcs_sample1 MCS_(sample1)
 #define mcs_sample2 MCS_(sample2)
 #define mcs_schlick MCS_(schlick)
@@ -8728,6 +8886,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_env_direction MCSI_(env_direction)
 #define mcsi_env_directions_loop MCSI_(env_directions_loop)
 #define mcsi_env_point MCSI_(env_point)
+#define mcsi_eta_ok MCSI_(eta_ok)
 #define mcsi_evenpower_loop MCSI_(evenpower_loop)
 #define mcsi_exact_dot MCSI_(exact_dot)
 #define mcsi_exp_both MCSI_(exp_both)
@@ -9080,6 +9239,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_frame
 #undef mcs_frame_from_tangent
 #undef mcs_frame_make
+#undef mcs_fresnel_conductor
+#undef mcs_fresnel_dielectric
 #undef mcs_ggx
 #undef mcs_ggx_bounded_h_invert
 #undef mcs_ggx_bounded_h_pdf
@@ -9139,6 +9300,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_r2
 #undef mcs_reflect
 #undef mcs_reflect_pdf
+#undef mcs_refract
 #undef mcs_sample1
 #undef mcs_sample2
 #undef mcs_schlick
@@ -9234,6 +9396,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_env_direction
 #undef mcsi_env_directions_loop
 #undef mcsi_env_point
+#undef mcsi_eta_ok
 #undef mcsi_evenpower_loop
 #undef mcsi_exact_dot
 #undef mcsi_exp_both

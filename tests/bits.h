@@ -15,8 +15,9 @@
 #ifndef BITS_WIDE
 #define BITS_WIDE(X) \
     X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(frame_from_tangent) X(to_world) X(to_local) \
-    X(reflect) X(reflect_pdf) X(half) X(cos_d) X(schlick) X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) \
-    X(ashikhmin_make) X(is_mirror) X(ggx_d) X(ggx_g1) X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
+    X(reflect) X(reflect_pdf) X(half) X(cos_d) X(schlick) X(fresnel_dielectric) X(fresnel_conductor) X(refract) \
+    X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) X(ashikhmin_make) X(is_mirror) X(ggx_d) X(ggx_g1) \
+    X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
 #define BITS_WORDS(X) \
     X(hash) X(sobol_bits) X(load) X(store)
 #define BITS_SCALAR(X) \
@@ -131,6 +132,21 @@ FN(reflect_pdf) { PUT(0, M_(reflect_pdf)(IN(0), IN(6))); }
 FN(half) { B_(put3)(out, 0, M_(half)(IN3(3), IN3(8))); }
 FN(cos_d) { PUT(0, M_(cos_d)(IN3(3), IN3(8))); }
 FN(schlick) { PUT(0, M_(schlick)(IN(6), IN(7))); }
+/* A parameter is mostly no index of refraction: a random number makes one of 1/2 to 5/2. */
+FN(fresnel_dielectric) {
+    const F_ eta = 0.5f + 2.0f * IN(7);
+    PUT(0, M_(fresnel_dielectric)(IN(10), IN(0))), PUT(1, M_(fresnel_dielectric)(IN(10), eta));
+    PUT(2, M_(fresnel_dielectric)(IN(6), eta)), PUT(3, M_(fresnel_dielectric)(-IN(6), eta));
+}
+FN(fresnel_conductor) {
+    const F_ eta = 0.5f + 2.0f * IN(7);
+    PUT(0, M_(fresnel_conductor)(IN(10), IN(0), IN(1))), PUT(1, M_(fresnel_conductor)(IN(10), eta, IN(1)));
+    PUT(2, M_(fresnel_conductor)(IN(10), eta, IN(6))), PUT(3, M_(fresnel_conductor)(IN(6), eta, IN(0)));
+}
+FN(refract) {
+    B_(put3)(out, 0, M_(refract)(IN3(3), IN3(8), IN(0)));
+    B_(put3)(out, 3, M_(refract)(IN3(3), IN3(8), 0.5f + 2.0f * IN(7)));
+}
 
 /* A prepared material is opaque: it is seen through its functions. */
 #define MAKE(name, ...)                                                   \

@@ -147,6 +147,51 @@ static inline void o_frame_from_tangent(o_vec3 n, o_vec3 tangent, o_vec3 *s, o_v
     *t = o_cross(n, *s);
 }
 
+/* ---- Fresnel, refraction: textbook forms, with the index behind the surface over that in front ---- */
+
+/* Snell's law: the squared cosine behind the surface, below 0 for total reflection. */
+static inline ld o_snell(ld cos_i, ld index) { return 1.0L - (1.0L - cos_i) * (1.0L + cos_i) / (index * index); }
+static inline ld o_relative_index(ld cos_i, ld eta) { return cos_i < 0.0L ? 1.0L / eta : eta; }
+/* The mean of the squared amplitudes of both polarisations. */
+static inline ld o_fresnel_dielectric(ld cos_i, ld eta) {
+    const ld c = fabsl(cos_i);
+    const ld n = o_relative_index(cos_i, eta);
+    if (n == 1.0L) return 0.0L;
+    const ld cos2_t = o_snell(c, n);
+    if (cos2_t <= 0.0L) return 1.0L;
+    const ld t = sqrtl(cos2_t);
+    const ld r_s = (c - n * t) / (c + n * t);
+    const ld r_p = (n * c - t) / (n * c + t);
+    return 0.5L * (r_s * r_s + r_p * r_p);
+}
+/* The same amplitudes for the index n + ik. With e = (n + ik)^2 and the root q of e - sin^2, in polar coordinates, they
+ * are (c - q) / (c + q) and (e c - q) / (e c + q). */
+static inline ld o_fresnel_conductor(ld c, ld n, ld k) {
+    if (n == 1.0L && k == 0.0L) return 0.0L;
+    const ld e_x = n * n - k * k;
+    const ld e_y = 2.0L * n * k;
+    const ld w_x = (n * n - 1.0L) + c * c - k * k;
+    const ld root = sqrtl(hypotl(w_x, e_y));
+    const ld angle = 0.5L * atan2l(e_y, w_x);
+    const ld q_x = w_x < 0.0L && e_y == 0.0L ? 0.0L : root * cosl(angle);
+    const ld q_y = root * sinl(angle);
+    const ld r_s = hypotl(c - q_x, q_y) / hypotl(c + q_x, q_y);
+    const ld r_p = hypotl(e_x * c - q_x, e_y * c - q_y) / hypotl(e_x * c + q_x, e_y * c + q_y);
+    return 0.5L * (r_s * r_s + r_p * r_p);
+}
+/* What of w is along the surface is turned round and divided by the index; the rest is the cosine behind it. */
+static inline o_vec3 o_refract(o_vec3 w, o_vec3 h, ld eta) {
+    const o_vec3 in = o_unit(w);
+    const o_vec3 up = o_unit(h);
+    const ld c = o_dot(in, up);
+    const ld n = o_relative_index(c, eta);
+    const ld cos2_t = o_snell(c, n);
+    if (cos2_t <= 0.0L && n != 1.0L) return o_vec(0.0L, 0.0L, 0.0L);
+    const o_vec3 along = o_add(in, o_scale(-c, up));
+    const ld cos_t = sqrtl(fmaxl(cos2_t, 0.0L));
+    return o_add(o_scale(-1.0L / n, along), o_scale(c < 0.0L ? cos_t : -cos_t, up));
+}
+
 /* What every half-vector sampler does after h: density of wi from that of h, 0 when lost. */
 static inline ld o_reflected_pdf(o_vec3 wo, o_vec3 h, ld pdf_h) {
     const ld d = o_dot(wo, h);

@@ -169,10 +169,38 @@ static void check_vectors(void) {
     TELLS("mcs_half, wi", mcs_half(unit, w));
     TELLS("mcs_cos_d, wo", mcs_cos_d(w, unit));
     TELLS("mcs_cos_d, wi", mcs_cos_d(unit, w));
+    TELLS("mcs_refract, w", mcs_refract(w, unit, 1.5f));
+    TELLS("mcs_refract, h", mcs_refract(unit, w, 1.5f));
     TELLS("mcs_ggx_d", mcs_ggx_d(&m, w));
     TELLS("mcs_ggx_g1", mcs_ggx_g1(&m, w));
     TELLS("mcs_ggx_g2, wo", mcs_ggx_g2(&m, w, unit));
     TELLS("mcs_ggx_g2, wi", mcs_ggx_g2(&m, unit, w));
+}
+
+/* Calls FUNCTION with a good index of refraction and with wrong ones. */
+#define TELLS_ETA(name, call)                                                   \
+    do {                                                                        \
+        float eta = 1.5f;                                                       \
+        asserted = 0;                                                           \
+        (void)(call);                                                           \
+        CHECK(!asserted, name " tells of a good index");                        \
+        for (int i_ = 0; i_ < 4; i_++) {                                        \
+            eta = wrong_eta[i_];                                                \
+            asserted = 0;                                                       \
+            (void)(call);                                                       \
+            CHECK(asserted > 0, name " says nothing of index %g", (double)eta); \
+        }                                                                       \
+    } while (0)
+
+static void check_indices(void) {
+    const mcs_vec3 unit = {0.48f, 0.6f, 0.64f};
+    const float wrong_eta[] = {0, -1.5f, 1.1e3f, NAN};
+    TELLS_ETA("mcs_fresnel_dielectric", mcs_fresnel_dielectric(0.5f, eta));
+    TELLS_ETA("mcs_fresnel_conductor", mcs_fresnel_conductor(0.5f, eta, 3));
+    TELLS_ETA("mcs_refract", mcs_refract(unit, unit, eta));
+    asserted = 0;
+    mcs_fresnel_conductor(0.5f, 0.2f, -3);
+    CHECK(asserted > 0, "negative extinction");
 }
 
 static void check_tables(void) {
@@ -299,6 +327,7 @@ int main(int argc, char **argv) {
         if (mcst_case("%s", mcst_rows[i].name)) check_row(&mcst_rows[i]);
     mcst_group("mistakes elsewhere");
     if (mcst_case("functions of directions")) check_vectors();
+    if (mcst_case("indices of refraction")) check_indices();
     if (mcst_case("tables and maps")) check_tables();
     if (mcst_case("products")) check_products();
     if (mcst_case("turned by 100 frames")) check_turns();

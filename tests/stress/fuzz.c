@@ -208,7 +208,11 @@ static void fuzz_vectors(bytes *b) {
     const float r = take_float(b);
     const mcs_vec3 h = mcs_half(v, w);
     const mcs_frame g = mcs_frame_from_tangent(v, any);
+    const mcs_vec3 t = mcs_refract(v, w, p);
     MUST(finite3(g.s) && finite3(g.t) && finite3(g.n));
+    MUST(finite3(t) && finite3(mcs_refract(any, w, q)));
+    MUST(proper(mcs_fresnel_dielectric(p, q)) && mcs_fresnel_dielectric(p, q) <= 1);
+    MUST(proper(mcs_fresnel_conductor(p, q, r)) && mcs_fresnel_conductor(p, q, r) <= 1);
     MUST(finite3(f.s) && finite3(f.t) && finite3(f.n));
     MUST(finite3(mcs_to_world(&f, any)) && finite3(mcs_to_local(&f, any)));
     MUST(finite3(mcs_reflect(v, w)) && finite3(mcs_reflect(any, w)) && finite3(mcs_half(any, w)));

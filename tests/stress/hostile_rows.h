@@ -207,25 +207,42 @@ static void put(float out[3][LANES], mcs8_vec3 v) {
     memcpy(out[2], &v.z, sizeof v.z);
 }
 
-enum { COS_D, SCHLICK, BALANCE, POWER_, MIX, REFLECT_PDF, GGX_D, GGX_G1, GGX_G2, FROM_SIN2, VALUES };
-static const float value_top[VALUES] = {2, 1, 1, 1, FLT_MAX, FLT_MAX, FLT_MAX, 1, 1, 1};
-static const char *const value_name[VALUES] = {"cos_d",       "schlick", "mis_balance", "mis_power", "mix_pdf",
-                                               "reflect_pdf", "ggx_d",   "ggx_g1",      "ggx_g2",    "cone_from_sin2"};
+enum {
+    COS_D,
+    SCHLICK,
+    BALANCE,
+    POWER_,
+    MIX,
+    REFLECT_PDF,
+    GGX_D,
+    GGX_G1,
+    GGX_G2,
+    FROM_SIN2,
+    DIELECTRIC,
+    CONDUCTOR,
+    VALUES
+};
+static const float value_top[VALUES] = {2, 1, 1, 1, FLT_MAX, FLT_MAX, FLT_MAX, 1, 1, 1, 1, 1};
+static const char *const value_name[VALUES] = {"cos_d",   "schlick",        "mis_balance", "mis_power",
+                                               "mix_pdf", "reflect_pdf",    "ggx_d",       "ggx_g1",
+                                               "ggx_g2",  "cone_from_sin2", "dielectric",  "conductor"};
 
-/* in: arguments as in `arguments`, in order; out: the frame, two turned directions, the mirrored one, the half-vector.
- */
-static void check_lane_of_vectors(float in[11][LANES], float out[7][3][LANES], float value[VALUES][LANES], int l,
+/* in: arguments as in `arguments`, in order; out: the frame, two turned directions, the mirrored one, the half-vector,
+ * the refracted one, the frame of a tangent. */
+enum { VECTORS = 11 };
+static void check_lane_of_vectors(float in[11][LANES], float out[VECTORS][3][LANES], float value[VALUES][LANES], int l,
                                   tally *t) {
     const double n2 = dot(out[2], out[2], l);
     int sound = 1;
-    for (int i = 0; i < 7; i++)
+    for (int i = 0; i < VECTORS; i++)
         for (int j = 0; j < 3; j++) sound &= finite(t, out[i][j][l]);
     CHECK(sound, "frame, reflect or half of %a %a %a and %a %a %a", (double)in[3][l], (double)in[4][l],
           (double)in[5][l], (double)in[8][l], (double)in[9][l], (double)in[10][l]);
     /* a frame is as orthonormal as n is unit: to 4 ulp beyond that */
-    for (int i = 0; i < 3; i++) {
-        const double l2 = dot(out[i], out[i], l);
-        const double across = dot(out[i], out[(i + 1) % 3], l);
+    for (int i = 0; i < 6; i++) {
+        float(*const frame)[3][LANES] = i < 3 ? out : out + 8;
+        const double l2 = dot(frame[i % 3], frame[i % 3], l);
+        const double across = dot(frame[i % 3], frame[(i + 1) % 3], l);
         const int due = fabs(n2 - 1) <= 0x1p-22;
         const int unit = fabs(sqrt(l2) - 1) <= 4 * 0x1p-23 && fabs(across) <= 4 * 0x1p-23;
         t->not_unit += due && !unit;
@@ -249,7 +266,7 @@ static void check_lane_of_vectors(float in[11][LANES], float out[7][3][LANES], f
 
 static void check_vectors(uint64_t seed, long rounds, tally *t) {
     const mcst_row *row = mcst_find("ggx");
-    float in[11][LANES], out[7][3][LANES];
+    float in[11][LANES], out[VECTORS][3][LANES];
     for (long k = 0; k < rounds; k++) {
         for (int l = 0; l < LANES; l++) {
             arguments a;
@@ -267,6 +284,11 @@ static void check_vectors(uint64_t seed, long rounds, tally *t) {
         put(out[4], mcs8_to_local(&f, w));
         put(out[5], mcs8_reflect(v, w));
         put(out[6], mcs8_half(v, w));
+        put(out[7], mcs8_refract(v, w, eight(in[0])));
+        f = mcs8_frame_from_tangent(v, w);
+        put(out[8], f.s);
+        put(out[9], f.t);
+        put(out[10], f.n);
         mcs8_f r[VALUES];
         r[COS_D] = mcs8_cos_d(v, w);
         r[SCHLICK] = mcs8_schlick(eight(in[6]), eight(in[10]));
@@ -278,11 +300,13 @@ static void check_vectors(uint64_t seed, long rounds, tally *t) {
         r[GGX_G1] = mcs8_ggx_g1(&m, w);
         r[GGX_G2] = mcs8_ggx_g2(&m, v, w);
         r[FROM_SIN2] = mcs8_cone_from_sin2(eight(in[7]));
+        r[DIELECTRIC] = mcs8_fresnel_dielectric(eight(in[10]), eight(in[0]));
+        r[CONDUCTOR] = mcs8_fresnel_conductor(eight(in[10]), eight(in[0]), eight(in[1]));
         float value[VALUES][LANES];
         memcpy(value, r, sizeof value);
         for (int l = 0; l < LANES; l++) check_lane_of_vectors(in, out, value, l, t);
     }
-    t->evaluations += (double)rounds * LANES * (7 + VALUES);
+    t->evaluations += (double)rounds * LANES * (VECTORS - 2 + VALUES);
 }
 
 static void check_numbers(uint64_t seed, long rounds, tally *t) {
