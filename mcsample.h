@@ -1,10 +1,10 @@
 /* mcsample.h, version 0.1.0: Monte Carlo sampling for rendering in one C header.
  *
  * The header draws points and directions from the densities that a renderer needs, and it tells the density of any
- * point. It covers lines, disks and spheres of directions, the Phong, Ward, Beckmann, GGX and Ashikhmin-Shirley lobes,
- * tables of numbers, environment maps, and the product of a map with a lobe. Random numbers, well-spread points,
- * weights for multiple importance sampling and a running mean that knows its error come with it. The licence (MIT)
- * stands at the end.
+ * point. It covers lines, disks and spheres of directions, phase functions, the Phong, Ward, Beckmann, GGX and
+ * Ashikhmin-Shirley lobes, tables of numbers, environment maps, and the product of a map with a lobe. Random numbers,
+ * well-spread points, weights for multiple importance sampling and a running mean that knows its error come with it.
+ * The licence (MIT) stands at the end.
  *
  * ---- How to include it ----
  *
@@ -119,6 +119,7 @@
  *   [disk]        points on a disk                                         lenses, round lights
  *   [triangle]    points on a triangle                                     lights made of triangles
  *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte surfaces, spherical lights
+ *   [media]       henyey_greenstein, rayleigh, von_mises_fisher            fog, skin, clear air; guiding
  *   [frame]       local and world coordinates                              every shaded point
  *   [microfacet]  half-vectors, mirroring, Schlick's Fresnel               BRDFs of your own
  *   [fresnel]     exact reflectances, refraction                           glass, water, metals
@@ -175,6 +176,7 @@
  *                     where this file was pasted into another one, so that it cannot include itself.
  * MCS_NO_BATCH        No array functions but mcs_pcg32_fill_n.
  * MCS_NO_1D           No [1d] and no [square].
+ * MCS_NO_MEDIA        No [media].
  * MCS_NO_LOBES        No [microfacet], no [fresnel], no BRDFs and no [product].
  * MCS_NO_TABLES       No [tables], no [env] and no [product].
  *
@@ -749,6 +751,71 @@ MCS_API void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *
 /* The k of a cone, from sin^2(theta_max), for theta_max up to 90 degrees. A sphere of radius r at the distance d is
  * seen within mcs_cone_from_sin2(r r / (d d)). sin2 is taken within [0, 1], NaN as 0. */
 MCS_FN float mcs_cone_from_sin2(float sin2);
+
+/* ==== [media] directions about +z for media and guiding: henyey_greenstein, rayleigh, von_mises_fisher ============
+ * Maps from the unit square to directions, of densities that depend on z alone. u2 is the azimuth, 2 pi u2 from +x to
+ * +y. u1 = 0 is +z, u1 near 1 is -z. The maps are continuous but for the seam at azimuth 0.
+ *
+ *   w         a direction
+ *
+ * +z is the direction in which the light, or the path, was going before it was scattered: mcs_frame_make(d) is the
+ * frame of a ray that goes along d. Where wo points back along the path, as it does elsewhere in this header, d is -wo.
+ * The density is the phase function itself, so that a sample has the weight 1, times the albedo of the medium.
+ *
+ * density   per solid angle; 0 for bad input
+ * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24, pdf of u within 0.2 E,
+ *           of w within 0.6 E (henyey_greenstein), 0.2 E (rayleigh), 0.4 E (von_mises_fisher). 1 E is a relative error
+ *           of 1e-6 (1 + |ln(pdf/peak)|). x and y keep their relative accuracy at both poles.
+ * cost      1 square root, 2 divisions (von_mises_fisher 4) and 1 sincos; inverses take 1 arctangent
+ * source    Henyey and Greenstein 1941, "Diffuse radiation in the galaxy"; Frisvad 2011, "Importance sampling the
+ *           Rayleigh phase function"; Fisher 1953, "Dispersion on a sphere"; Jakob 2012, "Numerically stable sampling
+ *           of the von Mises-Fisher distribution on S2" */
+#ifndef MCS_NO_MEDIA
+
+/* ---- henyey_greenstein: fog, clouds and skin by one parameter ----
+ * z          1 - 2 u1 (1 - g)^2 (1 + g (1 - u1)) / (1 + g - 2 g u1)^2
+ * g          the mean of z, in [-1, 1]. Above 0 light goes on, to +z; below 0 it is thrown back, to -z. 0 makes the
+ *            density that of sphere. At 1 all light goes to +z and at -1 to -z: that direction has the density FLT_MAX,
+ *            others have 0, and the inverse, for which any u1 would do, is that of sphere.
+ * density    (1 - g^2) / (4 pi (1 + g^2 - 2 g z)^1.5)
+ * functions  mcs_henyey_greenstein_sample, mcs_henyey_greenstein_pdf, mcs_henyey_greenstein_invert,
+ *            mcs_henyey_greenstein_sample_n for arrays */
+MCS_FN mcs_dir mcs_henyey_greenstein_sample(float g, float u1, float u2);
+MCS_FN float mcs_henyey_greenstein_pdf(float g, mcs_vec3 w);
+MCS_FN mcs_vec2 mcs_henyey_greenstein_invert(float g, mcs_vec3 w);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_henyey_greenstein_sample_n(float g, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                            float *z, float *pdf);
+#endif
+
+/* ---- rayleigh: particles much smaller than the wavelength, as in clear air ----
+ * z          the real root of z^3 + 3 z = 4 - 8 u1, which is A - 1/A where A^3 = c + sqrt(c^2 + 1) and c = 2 - 4 u1
+ * density    3 (1 + z^2) / (16 pi)
+ * functions  mcs_rayleigh_sample, mcs_rayleigh_pdf, mcs_rayleigh_invert, mcs_rayleigh_sample_n for arrays */
+MCS_FN mcs_dir mcs_rayleigh_sample(float u1, float u2);
+MCS_FN float mcs_rayleigh_pdf(mcs_vec3 w);
+MCS_FN mcs_vec2 mcs_rayleigh_invert(mcs_vec3 w);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_rayleigh_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                   float *pdf);
+#endif
+
+/* ---- von_mises_fisher: the Gaussian of directions, about the direction to which a path is guided ----
+ * z          1 + ln(1 - u1 (1 - e^(-2 kappa))) / kappa
+ * kappa      the sharpness, in [0, 1e8]: about 1 / (the standard deviation of x and y)^2 where it is large. 0 makes the
+ *            density that of sphere.
+ * density    kappa e^(-kappa (1 - z)) / (2 pi (1 - e^(-2 kappa)))
+ * functions  mcs_von_mises_fisher_sample, mcs_von_mises_fisher_pdf, mcs_von_mises_fisher_invert,
+ *            mcs_von_mises_fisher_sample_n for arrays */
+MCS_FN mcs_dir mcs_von_mises_fisher_sample(float kappa, float u1, float u2);
+MCS_FN float mcs_von_mises_fisher_pdf(float kappa, mcs_vec3 w);
+MCS_FN mcs_vec2 mcs_von_mises_fisher_invert(float kappa, mcs_vec3 w);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_von_mises_fisher_sample_n(float kappa, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                           float *z, float *pdf);
+#endif
+
+#endif
 
 /* ==== [frame] local and world coordinates =========================================================================
  * A frame around a surface normal. In local coordinates the normal is +z, as all samplers of this header expect.
@@ -2652,6 +2719,7 @@ MCS_FN float mcsi_project(double a, double b, float t) {
 #define MCSI_1_PI 0.318309873f
 #define MCSI_1_2PI 0.159154937f
 #define MCSI_1_4PI 0.0795774683f
+#define MCSI_3_16PI 0.0596831031f
 
 /* ==== [vectors] points and directions ============================================================================= */
 
@@ -3855,6 +3923,238 @@ MCSI_LOOP void mcsi_cone_loop(float k, size_t n, const float *u1, const float *u
     MCSI_EACH(b) { mcsi_out_dir(&b, mcs_cone_sample(mcs_set(k), mcsi_in(&b, 0), mcsi_in(&b, 1))); }
 }
 #endif
+
+#ifndef MCS_NO_MEDIA
+/* ==== [media] bodies ==============================================================================================
+ * A map has to know 1 - |z| with its relative accuracy, or the sine of the angle has few digits near the pole: half of
+ * them where the rounding of z is all that is known. So each sampler computes the distance t of z from the nearer pole,
+ * and `front` says whether that is +z. It does so in double, and so is the square t (2 - t) of the sine: with each of
+ * them rounded but once, a coordinate is off by little more than its azimuth's sine and cosine. */
+
+/* A direction at the distance t in [0, 1] of z from the pole +z, or -z where `front` is below 0. */
+MCSI_CORE mcs_dir mcsi_around_pole(mcs_i ok, mcs_f front, mcs_f t, mcs_f sin2, mcs_f turns, mcs_f pdf) {
+    const mcs_f z = 1.0f - t;
+    return mcsi_around_z(ok, mcsi_sqrt(sin2), mcsi_sel(front < 0.0f, -z, z), turns, pdf);
+}
+
+/* ---- henyey_greenstein ----
+ * With s^2 = 1 + g^2 - 2 g z, P(z) = u1 is s = (1 - g^2) / q, where q = 1 + g - 2 g u1. From that follow
+ *
+ *   1 - z = 2 u1 ((1 - g) / q)^2 (1 + g (1 - u1))
+ *   1 + z = 2 (1 - u1) ((1 + g) / q)^2 (1 - g u1)
+ *
+ * Sums of terms of one sign cancel nowhere: with v = 1 - u1, a = (1 - g) u1 and b = (1 + g) v, q is a + b, and the last
+ * factors are u1 + b and v + a. */
+
+/* Good is |g| <= 1. Where |g| is 1 the density is all at one pole, and is called sharp. g is 0 there, and where bad. */
+typedef struct {
+    mcs_i ok, sharp;
+    mcs_f g;
+    mcs_f pole; /* 1 or -1, where sharp: z of that pole */
+} mcsi_henyey_greenstein;
+
+MCSI_CORE mcsi_henyey_greenstein mcsi_henyey_greenstein_make(mcs_f g) {
+    mcsi_henyey_greenstein d;
+    d.ok = mcsi_abs(g) <= 1.0f;
+    MCSI_REQUIRE(d.ok);
+    d.sharp = mcsi_abs(g) == 1.0f;
+    d.g = mcsi_sel(mcsi_abs(g) < 1.0f, g, mcs_set(0.0f));
+    d.pole = mcsi_with_sign(mcs_set(1.0f), g);
+    return d;
+}
+MCSI_SAMPLE mcs_dir mcs_henyey_greenstein_sample(mcs_f g, mcs_f u1, mcs_f u2) {
+    const mcsi_henyey_greenstein d = mcsi_henyey_greenstein_make(g);
+    mcs_i ok = d.ok;
+    const mcsi_d u = MCSI_WIDEN(mcsi_sane_u(u1, &ok));
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcsi_d below = 1.0 - MCSI_WIDEN(d.g);
+    const mcsi_d above = 1.0 + MCSI_WIDEN(d.g);
+    const mcsi_d v = 1.0 - u;
+    const mcsi_d a = below * u;
+    const mcsi_d b = above * v;
+    const mcsi_d q = a + b;
+    const mcsi_d inverse = 1.0 / q;
+    const mcsi_d minus_z = 2.0 * (a * inverse) * (below * inverse) * (u + b); /* 1 - z */
+    const mcsi_d plus_z = 2.0 * (b * inverse) * (above * inverse) * (v + a);  /* 1 + z */
+    const mcsi_d root = q * (1.0 / (below * above));
+    const mcs_f pdf = MCSI_NARROW(0.07957747154594767 * q * (root * root)); /* 1/(4 pi) */
+    const mcs_f zero = mcs_set(0.0f);
+    const mcs_f front = mcsi_sel(d.sharp, d.pole, MCSI_NARROW(plus_z - minus_z));
+    const mcs_f t = mcsi_sel(d.sharp, zero, mcsi_min(MCSI_NARROW(minus_z), MCSI_NARROW(plus_z)));
+    const mcs_f sin2 = mcsi_sel(d.sharp, zero, MCSI_NARROW(minus_z * plus_z));
+    return mcsi_around_pole(ok, front, t, sin2, u2, mcsi_sel(d.sharp, mcs_set(FLT_MAX), pdf));
+}
+#ifdef MCSI_PUBLIC
+/* 1 - z where g > 0 and 1 + z elsewhere: from the pole of the peak. */
+MCSI_CORE mcs_f mcsi_henyey_greenstein_off_peak(mcs_f pole, mcs_vec3 w) {
+    w.z = mcsi_sel(pole < 0.0f, -w.z, w.z);
+    return mcsi_one_minus_z(w);
+}
+/* s^2, which is (1 - |g|)^2 + 2 |g| m for the m above. */
+MCSI_CORE mcs_f mcsi_henyey_greenstein_s2(mcs_f g, mcs_f m) {
+    const mcs_f size = mcsi_abs(g);
+    return (1.0f - size) * (1.0f - size) + 2.0f * size * m;
+}
+MCSI_FN mcs_f mcs_henyey_greenstein_pdf(mcs_f g, mcs_vec3 w) {
+    const mcsi_henyey_greenstein d = mcsi_henyey_greenstein_make(g);
+    mcs_i ok = d.ok;
+    w = mcsi_sane_direction(w, &ok);
+    const mcs_f m = mcsi_henyey_greenstein_off_peak(d.pole, w);
+    const mcs_f s2 = mcsi_henyey_greenstein_s2(d.g, m);
+    const mcs_f pdf = MCSI_1_4PI * ((1.0f - d.g) * (1.0f + d.g)) / (s2 * mcsi_sqrt(s2));
+    const mcs_f at_pole = mcsi_sel(m > 0.0f, mcs_set(0.0f), mcs_set(FLT_MAX));
+    return mcsi_sane_result(ok, mcsi_sel(d.sharp, at_pole, pdf));
+}
+/* The integral of the density from +z is (1 + g) (1 - z) / (s (s + 1 - g)). */
+MCSI_FN mcs_vec2 mcs_henyey_greenstein_invert(mcs_f g, mcs_vec3 w) {
+    const mcsi_henyey_greenstein d = mcsi_henyey_greenstein_make(g);
+    mcs_i ok = d.ok;
+    w = mcsi_sane_direction(w, &ok);
+    const mcs_f s = mcsi_sqrt(mcsi_henyey_greenstein_s2(d.g, mcsi_henyey_greenstein_off_peak(d.pole, w)));
+    const mcs_f u1 = (1.0f + d.g) / s * (mcsi_one_minus_z(w) / (s + (1.0f - d.g)));
+    return mcsi_uv(ok, u1, mcsi_atan2_turns(w.y, w.x));
+}
+#endif
+
+/* ---- rayleigh ----
+ * With v the smaller of u1 and 1 - u1, P(z) = u1 is t (6 - t (3 - t)) = 8 v. Cardano's formula gives z, but few digits
+ * of t near the pole. Newton's method gives them all: (4/3) v (1 + v) is the root at both ends, and within 0.014 of it
+ * in between. The first step leaves 8e-5 of that, the second 3e-9, and less near the pole. The second step takes what
+ * is missing in double. */
+
+MCSI_SAMPLE mcs_dir mcs_rayleigh_sample(mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcs_f v = mcsi_min(u1, 1.0f - u1);
+    const mcs_f start = 1.33333337f * v * (1.0f + v);
+    const mcs_f left = 8.0f * v - start * (6.0f - start * (3.0f - start));
+    const mcs_f closer = start + left / (6.0f - start * (6.0f - 3.0f * start));
+    const mcsi_d d = MCSI_WIDEN(closer);
+    const mcsi_d missing = 8.0 * MCSI_WIDEN(v) - d * (6.0 - d * (3.0 - d));
+    const mcsi_d t = d + MCSI_WIDEN(MCSI_NARROW(missing) / (6.0f - closer * (6.0f - 3.0f * closer)));
+    const mcsi_d sin2 = t * (2.0 - t);
+    const mcs_f pdf = MCSI_NARROW(0.05968310365946075 * (2.0 - sin2)); /* 3/(16 pi) */
+    return mcsi_around_pole(ok, 0.5f - u1, MCSI_NARROW(t), MCSI_NARROW(sin2), u2, pdf);
+}
+#ifdef MCSI_PUBLIC
+MCSI_FN mcs_f mcs_rayleigh_pdf(mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    w = mcsi_sane_direction(w, &ok);
+    return mcsi_sane_result(ok, MCSI_3_16PI * (1.0f + w.z * w.z));
+}
+/* The same cubic, of the distance from +z. */
+MCSI_FN mcs_vec2 mcs_rayleigh_invert(mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    w = mcsi_sane_direction(w, &ok);
+    const mcs_f m = mcsi_one_minus_z(w);
+    return mcsi_uv(ok, 0.125f * m * (6.0f - m * (3.0f - m)), mcsi_atan2_turns(w.y, w.x));
+}
+#endif
+
+/* ---- von_mises_fisher ----
+ * With e = e^(-2 kappa), P(z) = u1 is e^(-kappa (1 - z)) = 1 - u1 (1 - e). Seen from -z it is
+ * e^(kappa (1 + z)) = 1 + (1 - u1) (1 - e) / e. The sampler takes the logarithm of the one that belongs to the nearer
+ * pole, and 1 - e and the logarithm are such of numbers near 1 (expm1, log1p) where kappa is small. Both are in double
+ * but by short series: what they leave out is below 2^-28 of them. */
+
+/* Where kappa is below 1e-8 the density is uniform to float precision and called flat; kappa is 1 there. */
+typedef struct {
+    mcs_i ok, flat;
+    mcs_f kappa;
+    mcs_f minus_2_kappa; /* but at least -80, where e counts for nothing */
+} mcsi_von_mises_fisher;
+
+MCSI_CORE mcsi_von_mises_fisher mcsi_von_mises_fisher_make(mcs_f kappa) {
+    mcsi_von_mises_fisher d;
+    d.ok = (kappa >= 0.0f) & (kappa <= 1e8f);
+    MCSI_REQUIRE(d.ok);
+    d.flat = mcsi_sel(d.ok, kappa, mcs_set(0.0f)) < 1e-8f;
+    d.kappa = mcsi_sel(d.flat, mcs_set(1.0f), kappa);
+    d.minus_2_kappa = mcsi_max(-2.0f * d.kappa, mcs_set(-80.0f));
+    return d;
+}
+/* e - 1 is 2^k (e^r - 1) + (2^k - 1) with |r| <= ln(2)/2, and e^r - 1 Taylor's series to r^8. 1 + x is 2^k m with m in
+ * [sqrt(1/2), sqrt(2)), and ln(m) twice the inverse hyperbolic tangent of (m - 1)/(m + 1), whose series goes to the
+ * ninth power. m - 1 is x 2^-k + (2^-k - 1). */
+MCSI_SAMPLE mcs_dir mcs_von_mises_fisher_sample(mcs_f kappa, mcs_f u1, mcs_f u2) {
+    const mcsi_von_mises_fisher d = mcsi_von_mises_fisher_make(kappa);
+    mcs_i ok = d.ok;
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    mcs_i k;
+    const mcs_f whole = mcsi_to_grid(d.minus_2_kappa * 1.44269504f, 1.0f, 12582912.0f, &k);
+    const mcsi_d r = MCSI_WIDEN(d.minus_2_kappa) - MCSI_WIDEN(whole) * 0.6931471805599453;
+    const mcsi_d tail = 1.0 + r * (1.0 / 5) * (1.0 + r * (1.0 / 6) * (1.0 + r * (1.0 / 7) * (1.0 + r * (1.0 / 8))));
+    const mcsi_d exp_r_minus_1 = r * (1.0 + r * (1.0 / 2) * (1.0 + r * (1.0 / 3) * (1.0 + r * (1.0 / 4) * tail)));
+    const mcsi_d power = MCSI_WIDEN(mcsi_from_bits((k + 127) << 23));
+    const mcsi_d e = power * (1.0 + exp_r_minus_1);
+    const mcsi_d one_minus_e = (1.0 - power) - power * exp_r_minus_1;
+    const mcs_f v = 1.0f - u1;
+    const mcs_f front = mcsi_sel(d.flat, v - u1, v * v - u1 * u1 * MCSI_NARROW(e));
+    const mcsi_d ahead = MCSI_WIDEN(mcsi_sel(front < 0.0f, mcs_set(0.0f), mcs_set(1.0f)));
+    const mcsi_d nearer_u = MCSI_WIDEN(mcsi_sel(front < 0.0f, v, -u1));
+    const mcsi_d x = nearer_u * one_minus_e * (ahead + (1.0 - ahead) * (1.0 / e));
+    const mcs_i k_bits = mcsi_exponent_bits(mcsi_bits(MCSI_NARROW(1.0 + x)));
+    const mcsi_d scale = MCSI_WIDEN(mcsi_from_bits(0x3f800000 - k_bits));
+    const mcsi_d m_minus_1 = x * scale + (scale - 1.0);
+    const mcsi_d s = m_minus_1 / (2.0 + m_minus_1);
+    const mcsi_d ss = s * s;
+    const mcsi_d half_log_m = s * (1.0 + ss * (1.0 / 3 + ss * (1.0 / 5 + ss * (1.0 / 7 + ss * (1.0 / 9)))));
+    const mcsi_d logarithm = MCSI_INT_WIDEN(k_bits >> 23) * 0.6931471805599453 + 2.0 * half_log_m;
+    const mcsi_d distance = (1.0 - 2.0 * ahead) * logarithm * (1.0 / MCSI_WIDEN(d.kappa));
+    const mcs_f flat_t = 2.0f * mcsi_min(u1, v);
+    const mcs_f t = mcsi_sel(d.flat, flat_t, MCSI_NARROW(distance));
+    const mcs_f sin2 = mcsi_sel(d.flat, flat_t * (2.0f - flat_t), MCSI_NARROW(distance * (2.0 - distance)));
+    const mcsi_d norm = MCSI_WIDEN(d.kappa) * 0.15915494309189535 / one_minus_e; /* 1/(2 pi) */
+    const mcs_f pdf = MCSI_NARROW(norm * (1.0 - MCSI_WIDEN(u1) * one_minus_e));
+    return mcsi_around_pole(ok, front, t, sin2, u2, mcsi_sel(d.flat, mcs_set(MCSI_1_4PI), pdf));
+}
+#ifdef MCSI_PUBLIC
+MCSI_FN mcs_f mcs_von_mises_fisher_pdf(mcs_f kappa, mcs_vec3 w) {
+    const mcsi_von_mises_fisher d = mcsi_von_mises_fisher_make(kappa);
+    mcs_i ok = d.ok;
+    w = mcsi_sane_direction(w, &ok);
+    mcs_f e_minus_1;
+    mcsi_exp_both(d.minus_2_kappa, &e_minus_1);
+    const mcs_f norm = MCSI_1_2PI * (d.kappa / -e_minus_1);
+    const mcs_f pdf = norm * mcsi_exp_neg(-d.kappa * mcsi_one_minus_z(w));
+    return mcsi_sane_result(ok, mcsi_sel(d.flat, mcs_set(MCSI_1_4PI), pdf));
+}
+MCSI_FN mcs_vec2 mcs_von_mises_fisher_invert(mcs_f kappa, mcs_vec3 w) {
+    const mcsi_von_mises_fisher d = mcsi_von_mises_fisher_make(kappa);
+    mcs_i ok = d.ok;
+    w = mcsi_sane_direction(w, &ok);
+    const mcs_f m = mcsi_one_minus_z(w);
+    mcs_f e_minus_1;
+    mcsi_exp_both(d.minus_2_kappa, &e_minus_1);
+    mcs_f minus_p; /* of a density that goes on beyond -z */
+    mcsi_exp_both(-mcsi_min(mcsi_max(d.kappa * m, mcs_set(0.0f)), mcs_set(80.0f)), &minus_p);
+    const mcs_f u1 = mcsi_sel(d.flat, 0.5f * m, minus_p / e_minus_1);
+    return mcsi_uv(ok, u1, mcsi_atan2_turns(w.y, w.x));
+}
+#endif
+
+#ifdef MCSI_LOOPS
+/* The loops of those with one parameter. */
+#define MCSI_LOOP_ABOUT_Z(NAME)                                                                                \
+    MCSI_LOOP void mcsi_##NAME##_loop(float a, size_t n, const float *u1, const float *u2, float *x, float *y, \
+                                      float *z, float *pdf) {                                                  \
+        mcsi_batch b;                                                                                          \
+        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                           \
+        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcs_set(a), mcsi_in(&b, 0), mcsi_in(&b, 1))); }    \
+    }
+MCSI_LOOP_ABOUT_Z(henyey_greenstein)
+MCSI_LOOP_ABOUT_Z(von_mises_fisher)
+#undef MCSI_LOOP_ABOUT_Z
+MCSI_LOOP void mcsi_rayleigh_loop(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                  float *pdf) {
+    mcsi_batch b;
+    mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);
+    MCSI_EACH(b) { mcsi_out_dir(&b, mcs_rayleigh_sample(mcsi_in(&b, 0), mcsi_in(&b, 1))); }
+}
+#endif
+#endif /* MCS_NO_MEDIA */
 
 /* ==== [frame] bodies ==============================================================================================
  * sign, a and b are those of the paper, listing 3: a = -1/(sign + n.z), b = n.x n.y a. The sign of n.z is also that of
@@ -8760,6 +9060,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_hemisphere_invert MCS_(hemisphere_invert)
 #define mcs_hemisphere_pdf MCS_(hemisphere_pdf)
 #define mcs_hemisphere_sample MCS_(hemisphere_sample)
+#define mcs_henyey_greenstein_invert MCS_(henyey_greenstein_invert)
+#define mcs_henyey_greenstein_pdf MCS_(henyey_greenstein_pdf)
+#define mcs_henyey_greenstein_sample MCS_(henyey_greenstein_sample)
 #define mcs_i MCSI_I
 #define mcs_is_mirror MCS_(is_mirror)
 #define mcs_linear_invert MCS_(linear_invert)
@@ -8788,6 +9091,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_power_pdf MCS_(power_pdf)
 #define mcs_power_sample MCS_(power_sample)
 #define mcs_r2 MCS_(r2)
+#define mcs_rayleigh_invert MCS_(rayleigh_invert)
+#define mcs_rayleigh_pdf MCS_(rayleigh_pdf)
+#define mcs_rayleigh_sample MCS_(rayleigh_sample)
 #define mcs_reflect MCS_(reflect)
 #define mcs_reflect_pdf MCS_(reflect_pdf)
 #define mcs_refract MCS_(refract)
@@ -8820,6 +9126,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_u01_open MCS_(u01_open)
 #define mcs_vec2 MCS_(vec2)
 #define mcs_vec3 MCS_(vec3)
+#define mcs_von_mises_fisher_invert MCS_(von_mises_fisher_invert)
+#define mcs_von_mises_fisher_pdf MCS_(von_mises_fisher_pdf)
+#define mcs_von_mises_fisher_sample MCS_(von_mises_fisher_sample)
 #define mcs_ward MCS_(ward)
 #define mcs_ward_eval MCS_(ward_eval)
 #define mcs_ward_h_invert MCS_(ward_h_invert)
@@ -8836,6 +9145,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_angles MCSI_(angles)
 #define mcsi_any MCSI_(any)
 #define mcsi_anywhere MCSI_(anywhere)
+#define mcsi_around_pole MCSI_(around_pole)
 #define mcsi_around_z MCSI_(around_z)
 #define mcsi_ashikhmin_draw MCSI_(ashikhmin_draw)
 #define mcsi_ashikhmin_eval_loop MCSI_(ashikhmin_eval_loop)
@@ -8934,6 +9244,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_ggx_vndf_pdf_loop MCSI_(ggx_vndf_pdf_loop)
 #define mcsi_ggx_vndf_sample_loop MCSI_(ggx_vndf_sample_loop)
 #define mcsi_hemisphere_loop MCSI_(hemisphere_loop)
+#define mcsi_henyey_greenstein MCSI_(henyey_greenstein)
+#define mcsi_henyey_greenstein_loop MCSI_(henyey_greenstein_loop)
+#define mcsi_henyey_greenstein_make MCSI_(henyey_greenstein_make)
+#define mcsi_henyey_greenstein_off_peak MCSI_(henyey_greenstein_off_peak)
+#define mcsi_henyey_greenstein_s2 MCSI_(henyey_greenstein_s2)
 #define mcsi_in MCSI_(in)
 #define mcsi_in_radii MCSI_(in_radii)
 #define mcsi_inverted MCSI_(inverted)
@@ -8982,6 +9297,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_q MCSI_Q
 #define mcsi_quotient MCSI_(quotient)
 #define mcsi_rarely MCSI_(rarely)
+#define mcsi_rayleigh_loop MCSI_(rayleigh_loop)
 #define mcsi_region_points_loop MCSI_(region_points_loop)
 #define mcsi_region_values_loop MCSI_(region_values_loop)
 #define mcsi_reverse_bits MCSI_(reverse_bits)
@@ -9054,6 +9370,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_vec2 MCSI_(vec2)
 #define mcsi_vec3 MCSI_(vec3)
 #define mcsi_visibility MCSI_(visibility)
+#define mcsi_von_mises_fisher MCSI_(von_mises_fisher)
+#define mcsi_von_mises_fisher_loop MCSI_(von_mises_fisher_loop)
+#define mcsi_von_mises_fisher_make MCSI_(von_mises_fisher_make)
 #define mcsi_ward_eval_loop MCSI_(ward_eval_loop)
 #define mcsi_ward_h_loop MCSI_(ward_h_loop)
 #define mcsi_ward_pdf_loop MCSI_(ward_pdf_loop)
@@ -9270,6 +9589,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_hemisphere_invert
 #undef mcs_hemisphere_pdf
 #undef mcs_hemisphere_sample
+#undef mcs_henyey_greenstein_invert
+#undef mcs_henyey_greenstein_pdf
+#undef mcs_henyey_greenstein_sample
 #undef mcs_i
 #undef mcs_is_mirror
 #undef mcs_linear_invert
@@ -9298,6 +9620,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_power_pdf
 #undef mcs_power_sample
 #undef mcs_r2
+#undef mcs_rayleigh_invert
+#undef mcs_rayleigh_pdf
+#undef mcs_rayleigh_sample
 #undef mcs_reflect
 #undef mcs_reflect_pdf
 #undef mcs_refract
@@ -9330,6 +9655,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_u01_open
 #undef mcs_vec2
 #undef mcs_vec3
+#undef mcs_von_mises_fisher_invert
+#undef mcs_von_mises_fisher_pdf
+#undef mcs_von_mises_fisher_sample
 #undef mcs_ward
 #undef mcs_ward_eval
 #undef mcs_ward_h_invert
@@ -9346,6 +9674,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_angles
 #undef mcsi_any
 #undef mcsi_anywhere
+#undef mcsi_around_pole
 #undef mcsi_around_z
 #undef mcsi_ashikhmin_draw
 #undef mcsi_ashikhmin_eval_loop
@@ -9444,6 +9773,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_ggx_vndf_pdf_loop
 #undef mcsi_ggx_vndf_sample_loop
 #undef mcsi_hemisphere_loop
+#undef mcsi_henyey_greenstein
+#undef mcsi_henyey_greenstein_loop
+#undef mcsi_henyey_greenstein_make
+#undef mcsi_henyey_greenstein_off_peak
+#undef mcsi_henyey_greenstein_s2
 #undef mcsi_in
 #undef mcsi_in_radii
 #undef mcsi_inverted
@@ -9492,6 +9826,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_q
 #undef mcsi_quotient
 #undef mcsi_rarely
+#undef mcsi_rayleigh_loop
 #undef mcsi_region_points_loop
 #undef mcsi_region_values_loop
 #undef mcsi_reverse_bits
@@ -9564,6 +9899,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_vec2
 #undef mcsi_vec3
 #undef mcsi_visibility
+#undef mcsi_von_mises_fisher
+#undef mcsi_von_mises_fisher_loop
+#undef mcsi_von_mises_fisher_make
 #undef mcsi_ward_eval_loop
 #undef mcsi_ward_h_loop
 #undef mcsi_ward_pdf_loop
@@ -9706,6 +10044,20 @@ MCS_API void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *
                                float *pdf) {
     MCSI_WIDEST(cone_loop, (k, n, u1, u2, x, y, z, pdf));
 }
+#ifndef MCS_NO_MEDIA
+MCS_API void mcs_henyey_greenstein_sample_n(float g, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                            float *z, float *pdf) {
+    MCSI_WIDEST(henyey_greenstein_loop, (g, n, u1, u2, x, y, z, pdf));
+}
+MCS_API void mcs_rayleigh_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
+                                   float *pdf) {
+    MCSI_WIDEST(rayleigh_loop, (n, u1, u2, x, y, z, pdf));
+}
+MCS_API void mcs_von_mises_fisher_sample_n(float kappa, size_t n, const float *u1, const float *u2, float *x, float *y,
+                                           float *z, float *pdf) {
+    MCSI_WIDEST(von_mises_fisher_loop, (kappa, n, u1, u2, x, y, z, pdf));
+}
+#endif
 #ifndef MCS_NO_LOBES
 MCS_API void mcs_phong_lobe_sample_n(const mcs_phong *m, size_t n, const float *u1, const float *u2, float *x, float *y,
                                      float *z, float *pdf) {

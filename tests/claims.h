@@ -25,6 +25,9 @@ static const char *const mcst_claim_sentences[] = {
     "brought to unit length, each coordinate within 2^-23",
     "reflectance within 1.6e-6 (dielectric), 1.2e-6 (conductor) of itself, refracted directions within 2^-23 by "
     "coordinate, their length within 4 x 2^-24, for eta in [1/3, 3] and all cosines",
+    /* [media] */
+    "unit length within 4 x 2^-24, pdf of u within 0.2 E, of w within 0.6 E (henyey_greenstein), 0.2 E "
+    "(rayleigh), 0.4 E (von_mises_fisher).",
     /* [phong] */
     "pdf of u 0.4 E (n below 1: 1.2 E, below 0.1: 2.9 E), of w and eval 0.6 E, weight 0.3e-6, |w| 4 x "
     "2^-24",

@@ -497,6 +497,93 @@ static inline ld o_cone_pdf_u(ld k, ld u1, ld u2) {
 }
 static inline o_vec2 o_cone_invert(ld k, o_vec3 w) { return o_v2(o_one_minus_cos(w) / k, o_turn(w.y, w.x)); }
 
+/* ---- directions where light is scattered ---- */
+
+/* The direction at the distances minus_z = 1 - z and plus_z = 1 + z from the poles, by the nearer one. */
+static inline o_vec3 o_between_poles(ld minus_z, ld plus_z, ld u2) {
+    o_vec3 w = o_polar(fminl(minus_z, plus_z), u2);
+    w.z = plus_z < minus_z ? -w.z : w.z;
+    return w;
+}
+static inline o_vec3 o_upside_down(o_vec3 w) { return o_vec(w.x, w.y, -w.z); }
+
+/* Henyey and Greenstein 1941: density (1 - g^2) / (4 pi s^3), s^2 = 1 + g^2 - 2 g z, |g| below 1. The integral of it from
+ * the front to z is (1 - g^2)/(2 g) (1/(1 - g) - 1/s), u where s = (1 - g^2) / (1 + g - 2 g u). Then 1 - z is
+ * (s^2 - (1 - g)^2) / (2 g), and the difference of s and 1 - g is (1 - g) 2 g u / (1 + g - 2 g u). */
+static inline ld o_henyey_greenstein_divisor(ld g, ld u) { return 1.0L + g - 2.0L * g * u; }
+static inline ld o_henyey_greenstein_minus_z(ld g, ld u) {
+    const ld divisor = o_henyey_greenstein_divisor(g, u);
+    const ld s = (1.0L - g) * (1.0L + g) / divisor;
+    return (1.0L - g) * u / divisor * (s + (1.0L - g));
+}
+static inline o_vec3 o_henyey_greenstein_map(ld g, ld u1, ld u2) {
+    return o_between_poles(o_henyey_greenstein_minus_z(g, u1), o_henyey_greenstein_minus_z(-g, 1.0L - u1), u2);
+}
+/* From the pole of the peak s^2 is (1 - |g|)^2 + 2 |g| m. */
+static inline ld o_henyey_greenstein_s(ld g, o_vec3 w) {
+    const ld m = o_one_minus_cos(g < 0.0L ? o_upside_down(w) : w);
+    return sqrtl((1.0L - fabsl(g)) * (1.0L - fabsl(g)) + 2.0L * fabsl(g) * m);
+}
+static inline ld o_henyey_greenstein_pdf(ld g, o_vec3 w) {
+    return (1.0L - g) * (1.0L + g) / (4.0L * O_PI * powl(o_henyey_greenstein_s(g, w), 3.0L));
+}
+static inline ld o_henyey_greenstein_pdf_u(ld g, ld u1, ld u2) {
+    (void)u2;
+    return powl(o_henyey_greenstein_divisor(g, u1), 3.0L) / (4.0L * O_PI * powl((1.0L - g) * (1.0L + g), 2.0L));
+}
+static inline o_vec2 o_henyey_greenstein_invert(ld g, o_vec3 w) {
+    const ld s = o_henyey_greenstein_s(g, w);
+    const ld whole = fabsl(g) > 0.1L ? (1.0L + g) / (2.0L * g) * (s - (1.0L - g)) / s
+                                     : (1.0L + g) * o_one_minus_cos(w) / (s * (s + (1.0L - g)));
+    return o_v2(whole, o_turn(w.y, w.x));
+}
+
+/* Rayleigh: density 3 (1 + z^2) / (16 pi), whose integral from the front to z is 1/2 - (3 z + z^3)/8. Frisvad 2011: z is
+ * A - 1/A where A^3 = c + sqrt(c^2 + 1), c = 2 - 4 u. At the front A is the golden ratio, g here. The distance 1 - z is
+ * (g - A) (1 + 1/(g A)), and g - A is the difference of the cubes over g^2 + g A + A^2; sqrt(5) - sqrt(c^2 + 1) is the
+ * difference of the squares, 16 u (1 - u), over the sum. */
+static inline ld o_rayleigh_minus_z(ld u) {
+    const ld g = 0.5L + 0.5L * sqrtl(5.0L);
+    const ld c = 2.0L - 4.0L * u;
+    const ld root = sqrtl(c * c + 1.0L);
+    const ld a = cbrtl(c + root);
+    const ld cubes = 4.0L * u + 16.0L * u * (1.0L - u) / (sqrtl(5.0L) + root);
+    return cubes / (g * g + g * a + a * a) * (1.0L + 1.0L / (g * a));
+}
+static inline o_vec3 o_rayleigh_map(ld u1, ld u2) {
+    return u1 < 0.5L ? o_polar(o_rayleigh_minus_z(u1), u2) : o_upside_down(o_polar(o_rayleigh_minus_z(1.0L - u1), u2));
+}
+static inline ld o_rayleigh_pdf(o_vec3 w) { return 3.0L / (16.0L * O_PI) * (1.0L + w.z * w.z / o_dot(w, w)); }
+static inline ld o_rayleigh_pdf_u(ld u1, ld u2) { return o_rayleigh_pdf(o_rayleigh_map(u1, u2)); }
+static inline o_vec2 o_rayleigh_invert(o_vec3 w) {
+    const ld z = w.z / o_len(w);
+    return o_v2(0.5L - (3.0L * z + z * z * z) / 8.0L, o_turn(w.y, w.x));
+}
+
+/* Von Mises and Fisher: density k e^(k z) / (4 pi sinh k), whose integral from the front to z is
+ * (e^k - e^(k z)) / (e^k - e^-k). Jakob 2012 divides both by e^k; from the back 1 + z is the logarithm of e^k times as
+ * much. Beyond 40, e^-k counts for nothing, and the back is never seen. */
+static inline ld o_von_mises_fisher_tail(ld k, ld u) { return u * expm1l(-2.0L * k); } /* e^(k (z - 1)) - 1 */
+static inline o_vec3 o_von_mises_fisher_map(ld k, ld u1, ld u2) {
+    if (k == 0.0L) return o_sphere_map(u1, u2);
+    const ld minus_z = -log1pl(o_von_mises_fisher_tail(k, u1)) / k;
+    return o_between_poles(minus_z, k < 40.0L ? log1pl((1.0L - u1) * expm1l(2.0L * k)) / k : 2.0L - minus_z, u2);
+}
+static inline ld o_von_mises_fisher_pdf(ld k, o_vec3 w) {
+    if (k == 0.0L) return 1.0L / (4.0L * O_PI);
+    if (k < 40.0L) return k / (4.0L * O_PI * sinhl(k)) * expl(k * w.z / o_len(w));
+    return k / (2.0L * O_PI) * expl(-k * o_one_minus_cos(w));
+}
+static inline ld o_von_mises_fisher_pdf_u(ld k, ld u1, ld u2) {
+    (void)u2;
+    if (k == 0.0L) return 1.0L / (4.0L * O_PI);
+    return k / (2.0L * O_PI) * (1.0L + o_von_mises_fisher_tail(k, u1)) / -expm1l(-2.0L * k);
+}
+static inline o_vec2 o_von_mises_fisher_invert(ld k, o_vec3 w) {
+    const ld m = o_one_minus_cos(w);
+    return o_v2(k == 0.0L ? 0.5L * m : expm1l(-k * m) / expm1l(-2.0L * k), o_turn(w.y, w.x));
+}
+
 /* ---- Phong: density (n+1) cos^n / (2 pi) ---- */
 
 static inline o_vec3 o_phong_lobe_map(ld n, ld u1, ld u2) { return o_polar(-expm1l(log1pl(-u1) / (n + 1.0L)), u2); }

@@ -32,6 +32,10 @@
     M(X, LINE, power, power, 1, -, POWER, power, line, 1, 0)                      \
     M(X, LINE, evenpower, evenpower, 1, -, EVENPOWER, power, line, 1, 0)          \
     M(X, LINE, smoothstep, smoothstep, 2, -, BETWEEN, ends, line, 1, 0)
+#define MCST_MEDIA(M, X)                                                                                 \
+    M(X, DIR, henyey_greenstein, henyey_greenstein, 1, -, BY_TRUTH, asymmetry, asymmetry, 1, MCST_WHOLE) \
+    M(X, DIR, rayleigh, rayleigh, 0, -, SPHERE, none, direction, 0, MCST_WHOLE)                          \
+    M(X, DIR, von_mises_fisher, von_mises_fisher, 1, -, BY_TRUTH, sharpness, sharpness, 1, MCST_WHOLE)
 #ifndef MCST_LIST
 #define MCST_LIST(M, X)                                                                          \
     MCST_LINES(M, X)                                                                             \
@@ -44,6 +48,7 @@
     M(X, DIR, hemisphere, hemisphere, 0, -, HEMISPHERE, none, direction, 0, 0)                   \
     M(X, DIR, cosine, cosine, 0, -, HEMISPHERE, none, direction, 0, 0)                           \
     M(X, DIR, cone, cone, 1, -, CONE, cone, cone, 0, MCST_WHOLE)                                 \
+    MCST_MEDIA(M, X)                                                                             \
     M(X, LOBE, phong_lobe, phong_lobe, phong, -, COSPOWER, phong, phong_lobe, 1, 0)              \
     M(X, BRDF, phong, phong, phong, phong, COSPOWER, phong, phong, 1, MCST_ABOUT_R)              \
     M(X, LOBE, ward_h, ward_h, ward, -, SLOPES, alpha, gauss_h, 3, MCST_GAUSS)                   \
@@ -195,6 +200,14 @@ static const float mcst_grid_corners[][2] = {{2, 5}, {1, 3},     {1, 1},    {0, 
                                              {4, 0}, {1e-6f, 1}, {1e6f, 3}, {1e30f, 2e30f}, {1e-30f, 3e-30f}};
 static const float mcst_grid_cone[][2] = {{0.5f, 0}, {2, 0},     {1.9997f, 0}, {1.99f, 0}, {1.9f, 0},
                                           {1, 0},    {0.01f, 0}, {1e-5f, 0},   {1e-8f, 0}, {1e-20f, 0}};
+static const float mcst_grid_asymmetry[][2] = {
+    {0.5f, 0},    {0, 0},      {0.9f, 0},     {-0.3f, 0},       {-0.8f, 0},       {0.99f, 0},
+    {-0.999f, 0}, {1e-3f, 0},  {-1e-30f, 0},  {0.1f, 0},        {1e-8f, 0},       {-0.03f, 0},
+    {0.9999f, 0}, {-1e-6f, 0}, {-0.9999f, 0}, {0.99999994f, 0}, {-0.99999994f, 0}};
+static const float mcst_grid_sharpness[][2] = {{1, 0},     {0, 0},     {1e-30f, 0}, {1e-9f, 0}, {1e-8f, 0}, {3e-8f, 0},
+                                               {1e-6f, 0}, {1e-3f, 0}, {0.1f, 0},   {0.34f, 0}, {0.5f, 0},  {3, 0},
+                                               {8, 0},     {16, 0},    {30, 0},     {40, 0},    {50, 0},    {100, 0},
+                                               {1e4f, 0},  {1e6f, 0},  {1e8f, 0}};
 static const float mcst_grid_phong[][2] = {{10, 0},  {0, 0},    {1e-3f, 0}, {1e-2f, 0}, {0.5f, 0}, {1, 0},   {2, 0},
                                            {100, 0}, {1e3f, 0}, {1e4f, 0},  {1e5f, 0},  {1e6f, 0}, {1e9f, 0}};
 static const float mcst_grid_alpha[][2] = {{0.5f, 0.2f},   {0.2f, 0.5f},   {1, 1},         {0.3f, 0.3f},
@@ -233,6 +246,8 @@ static inline int mcst_bad_ends(int i, float v) { return i < 2 && !(fabsf(v) <= 
 /* A bad height makes the density uniform. */
 static inline int mcst_bad_corners(int i, float v) { return i < 2 && !(v >= 0 && v <= FLT_MAX) ? -1 : 0; }
 static inline int mcst_bad_cone(int i, float v) { return i != 0 ? 0 : !(v > 0 && v <= 2) ? 1 : v < 1e-30f ? -1 : 0; }
+static inline int mcst_bad_asymmetry(int i, float v) { return i == 0 && mcst_outside(v, -1, 1); }
+static inline int mcst_bad_sharpness(int i, float v) { return i == 0 && mcst_outside(v, 0, 1e8f); }
 static inline int mcst_bad_phong(int i, float v) { return i == 0 && !(v >= 0); }
 static inline int mcst_bad_alpha(int i, float v) {
     (void)i;
@@ -253,6 +268,8 @@ static inline int mcst_bad_exponents(int i, float v) {
 #define MCST_DOMAIN_ends {mcst_bad_ends, {1e-30, 2}, {1, 9e17}, 1}
 #define MCST_DOMAIN_corners {mcst_bad_corners, {1e-45, 1e-45}, {3.4e38, 3.4e38}, 0}
 #define MCST_DOMAIN_cone {mcst_bad_cone, {1e-30, 0}, {2, 0}, 0}
+#define MCST_DOMAIN_asymmetry {mcst_bad_asymmetry, {1e-30, 0}, {0.99999994, 0}, 1}
+#define MCST_DOMAIN_sharpness {mcst_bad_sharpness, {1e-30, 0}, {1e8, 0}, 0}
 #define MCST_DOMAIN_phong {mcst_bad_phong, {1e-30, 1e-30}, {1e9, 1e9}, 0}
 #define MCST_DOMAIN_alpha {mcst_bad_alpha, {1e-7, 1e-7}, {1e4, 1e4}, 0}
 #define MCST_DOMAIN_exponents {mcst_bad_exponents, {1e-30, 1e-30}, {1e9, 1e9}, 0}
@@ -282,6 +299,10 @@ static const mcst_set mcst_chi_corners[] = {
     {2, 5, 0, 0, 10}, {0, 0, 0, 0, 2}, {0, 4, 0, 0, 2}, {4, 0, 0, 0, 2}, {1e6f, 1, 0, 0, 2}};
 static const mcst_set mcst_chi_cone[] = {
     {0.5f, 0, 0, 0, 10}, {2, 0, 0, 0, 2}, {0.01f, 0, 0, 0, 2}, {1e-8f, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_asymmetry[] = {
+    {0.5f, 0, 0, 0, 10}, {0, 0, 0, 0, 2}, {0.9f, 0, 0, 0, 2}, {-0.8f, 0, 0, 0, 2}, {0.999f, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_sharpness[] = {{1, 0, 0, 0, 10}, {0, 0, 0, 0, 2},   {0.1f, 0, 0, 0, 2},
+                                              {10, 0, 0, 0, 2}, {100, 0, 0, 0, 2}, {1e6f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_phong[] = {{10, 0, 0.5f, 0.7f, 10},     {0, 0, 0.7f, 2, 2},    {1, 0, 1, 0, 2},
                                           {100, 0, 0.0871557f, -2, 2}, {1e4f, 0, 0.7f, 1, 2}, {50, 0, 1e-3f, 1.1f, 2},
                                           {1e6f, 0, 0.3f, -1, 2}};
@@ -317,6 +338,8 @@ static const mcst_claim mcst_claims_triangle[] = {{MCST_NO_PARAMETER, {0.001, 0.
 static const mcst_claim mcst_claims_bilinear[] = {{MCST_NO_PARAMETER, {0.7, 0.5, 0, 0, 0, 0}}};
 static const mcst_claim mcst_claims_direction[] = {{MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_cone[] = {{{1e-30, 0}, {2, 0}, {0.2, 0.2, 0, 0, 0, 4}}};
+static const mcst_claim mcst_claims_asymmetry[] = {{{-1, 0}, {0.99999994, 0}, {0.2, 0.6, 0, 0, 0, 4}}};
+static const mcst_claim mcst_claims_sharpness[] = {{{0, 0}, {1e8, 0}, {0.2, 0.4, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_phong_lobe[] = {
     {{1, 0}, {1e9, 0}, {0.4, 0, 0, 0, 0, 0}},
     {{0.1, 0}, {1, 0}, {1.2, 0, 0, 0, 0, 0}},

@@ -271,6 +271,78 @@ static void constants(const char *name, double bound) {
     }
 }
 
+/* Densities of the truth are the slopes of its maps: u1 over 1 - z, by the azimuths. Bins by the truth could not tell. A
+ * central difference of 2e-7 is off by the square of 1e-7 over the distance of u1 from 0 and 1, which is 1e-2 or more; a
+ * power of g near 1 is three times as steep. Distances from the nearer pole have 2^-62 of themselves or more. */
+static void slopes(const mcst_row *row, const float *p) {
+    const ld step = 1e-7L;
+    for (int k = 1; k < 100; k++) {
+        const ld u1 = k / 100.0L;
+        ld m[2];
+        ld middle[3];
+        row->truth.map(p, u1, 0.3L, middle);
+        for (int i = 0; i < 2; i++) {
+            ld x[3];
+            row->truth.map(p, i ? u1 + step : u1 - step, 0.3L, x);
+            m[i] =
+                middle[2] > 0 ? o_one_minus_cos(o_vec(x[0], x[1], x[2])) : -o_one_minus_cos(o_vec(x[0], x[1], -x[2]));
+        }
+        const ld want = 2 * step / (2 * O_PI * (m[1] - m[0]));
+        const ld got = row->truth.pdf_u(p, u1, 0.3L);
+        CHECK(fabsl(got / want - 1) <= 1e-8L, "u1 = %Lg: density %.9Lg, slope %.9Lg", u1, got, want);
+    }
+}
+
+/* At |g| = 1 all is at one pole. At 0 the density is that of sphere, to the bit, and so is the map, but for the rounding
+ * of a sine. */
+static void ends_of_henyey_greenstein(void) {
+    static const float some[] = {0, 0x1p-149f, 0x1p-24f, 0.3f, 0.5f, 0.9f, 1 - 0x1p-24f};
+    const mcs_vec3 aside = {0x1p-20f, 0, 1};
+    const mcs_vec3 aside_below = {0, 0x1p-20f, -1};
+    for (int i = 0; i < 49; i++) {
+        const float u1 = some[i / 7];
+        const float u2 = some[i % 7];
+        for (int k = -1; k < 2; k += 2) {
+            const float g = (float)k;
+            const mcs_dir s = mcs_henyey_greenstein_sample(g, u1, u2);
+            CHECK(s.w.x == 0 && s.w.y == 0 && s.w.z == g && s.pdf == FLT_MAX, "g = %g, u %g %g: %g %g %g, pdf %g",
+                  (double)g, (double)u1, (double)u2, (double)s.w.x, (double)s.w.y, (double)s.w.z, (double)s.pdf);
+            CHECK(mcs_henyey_greenstein_pdf(g, s.w) == FLT_MAX, "g = %g: pdf at the pole", (double)g);
+            CHECK(mcs_henyey_greenstein_pdf(-g, s.w) == 0, "g = %g: pdf at the other pole", (double)-g);
+        }
+        const mcs_dir even = mcs_sphere_sample(u1, u2);
+        const mcs_dir s = mcs_henyey_greenstein_sample(0, u1, u2);
+        CHECK(s.pdf == even.pdf && mcs_henyey_greenstein_pdf(0, s.w) == even.pdf && s.w.z == even.w.z &&
+                  fabsf(s.w.x - even.w.x) <= 2 * (float)EPS && fabsf(s.w.y - even.w.y) <= 2 * (float)EPS,
+              "g = 0, u %g %g: pdf %.9g, z %.9g, not %.9g", (double)u1, (double)u2, (double)s.pdf, (double)s.w.z,
+              (double)even.w.z);
+    }
+    CHECK(mcs_henyey_greenstein_pdf(1, aside) == 0 && mcs_henyey_greenstein_pdf(-1, aside_below) == 0,
+          "beside the poles");
+}
+
+/* Where kappa is below 1e-8 all is that of sphere, but for the rounding of a sine; where it is not, still nearly so. */
+static void ends_of_von_mises_fisher(void) {
+    static const float some[] = {0, 0x1p-149f, 0x1p-24f, 0.3f, 0.5f, 0.9f, 1 - 0x1p-24f};
+    static const float flat[] = {0, 0x1p-149f, 1e-20f, 0.99999994e-8f, 1.00000011e-8f};
+    for (int i = 0; i < 49 * 5; i++) {
+        const float u1 = some[i % 7];
+        const float u2 = some[i / 7 % 7];
+        const float kappa = flat[i / 49];
+        const mcs_dir even = mcs_sphere_sample(u1, u2);
+        const mcs_dir s = mcs_von_mises_fisher_sample(kappa, u1, u2);
+        CHECK(fabsf(s.w.x - even.w.x) <= 2 * (float)EPS && fabsf(s.w.y - even.w.y) <= 2 * (float)EPS &&
+                  fabsf(s.w.z - even.w.z) <= 2 * (float)EPS,
+              "kappa %g, u %g %g: z %.9g, not %.9g", (double)kappa, (double)u1, (double)u2, (double)s.w.z,
+              (double)even.w.z);
+        CHECK(relative(s.pdf, (ld)even.pdf) <= 2e-7L &&
+                  relative(mcs_von_mises_fisher_pdf(kappa, s.w), (ld)even.pdf) <= 3e-7L,
+              "kappa %g: pdf %.9g", (double)kappa, (double)s.pdf);
+        CHECK(kappa >= 1e-8f || (s.pdf == even.pdf && mcs_von_mises_fisher_pdf(kappa, s.w) == even.pdf),
+              "kappa %g: pdf %.9g", (double)kappa, (double)s.pdf);
+    }
+}
+
 /* Outside the support densities are 0 and inverses are the nearer end. Rims take in the rounding of what lies on them,
  * 5e-7. */
 static void beyond_the_ends(void) {
@@ -885,6 +957,21 @@ static void black_rows(void) {
     surface_free(&s);
 }
 
+static void media_values(void) {
+    static const char *const media[] = {"henyey_greenstein", "rayleigh", "von_mises_fisher"};
+    mcst_group("values, media");
+    for (size_t i = 0; i < MCST_COUNT(media); i++) {
+        const mcst_row *row = mcst_find(media[i]);
+        for (size_t j = 0; j < mcst_grid_count(row); j++) {
+            float p[MCST_P];
+            mcst_grid_get(row, j, p);
+            if (mcst_case("slopes of %s %g", media[i], (double)p[0])) slopes(row, p);
+        }
+    }
+    if (mcst_case("Henyey-Greenstein at its ends")) ends_of_henyey_greenstein();
+    if (mcst_case("von Mises-Fisher at its end")) ends_of_von_mises_fisher();
+}
+
 int main(int argc, char **argv) {
     static const uint32_t heights[] = {5, 64, 1000, 4099};
     static const char *const visible[] = {"ggx_vndf_h", "ggx_vndf", "ggx_bounded_h", "ggx_bounded"};
@@ -907,6 +994,7 @@ int main(int argc, char **argv) {
     for (size_t i = 0; i < MCST_COUNT(halves); i++)
         if (mcst_case("%s %g %g", halves[i].row, (double)halves[i].a, (double)halves[i].b))
             cancelling_cosines(mcst_find(halves[i].row), halves[i].a, halves[i].b);
+    media_values();
     mcst_group("values, others");
     for (size_t i = 0; i < 6; i++)
         if (mcst_case("constants of %s", even[i])) constants(even[i], i < 2 ? 0.1 : 0.15);

@@ -202,6 +202,27 @@ static inline text_sample text_cone(float k, float u1, float u2) {
     return text_direction(sqrtf(1 - z * z), z, 2 * TEXT_PI * u2, 1 / (2 * TEXT_PI * (1 - least)));
 }
 
+/* ---- phase functions ---- */
+
+static inline text_sample text_henyey_greenstein(float g, float u1, float u2) {
+    const float s = (1 - g * g) / (1 + g - 2 * g * u1);
+    const float z = fabsf(g) < 1e-3f ? 1 - 2 * u1 : (1 + g * g - s * s) / (2 * g);
+    const float sine = sqrtf(fmaxf(0, 1 - z * z));
+    return text_direction(sine, z, 2 * TEXT_PI * u2, (1 - g * g) / (4 * TEXT_PI * s * s * s));
+}
+static inline text_sample text_rayleigh(float u1, float u2) {
+    const float c = 2 - 4 * u1;
+    const float a = cbrtf(c + sqrtf(c * c + 1));
+    const float z = a - 1 / a;
+    return text_direction(sqrtf(fmaxf(0, 1 - z * z)), z, 2 * TEXT_PI * u2, 3 / (16 * TEXT_PI) * (1 + z * z));
+}
+static inline text_sample text_von_mises_fisher(float kappa, float u1, float u2) {
+    const float e = expf(-2 * kappa);
+    const float z = kappa > 0 ? 1 + logf((1 - u1) + u1 * e) / kappa : 1 - 2 * u1;
+    const float pdf = kappa > 0 ? kappa / (2 * TEXT_PI * (1 - e)) * expf(kappa * (z - 1)) : 1 / (4 * TEXT_PI);
+    return text_direction(sqrtf(fmaxf(0, 1 - z * z)), z, 2 * TEXT_PI * u2, pdf);
+}
+
 /* ---- lobes ---- */
 
 static inline text_sample text_phong_lobe(float n, float u1, float u2) {

@@ -118,9 +118,25 @@ enum { MCST_ROWS(ST_ID) IDS };
 /* Lobes beyond the list count as microfacets of the formulas below, and fail where they are not; other rows have none.
  */
 static inline int exact_has(const mcst_row *row) {
-    static const int ids[] = {ID_linear, ID_tent,      ID_exponential, ID_truncexp,   ID_normal, ID_logistic,
-                              ID_power,  ID_evenpower, ID_disk,        ID_concentric, ID_sphere, ID_hemisphere,
-                              ID_cosine, ID_cone,      ID_smoothstep,  ID_triangle};
+    static const int ids[] = {ID_linear,
+                              ID_tent,
+                              ID_exponential,
+                              ID_truncexp,
+                              ID_normal,
+                              ID_logistic,
+                              ID_power,
+                              ID_evenpower,
+                              ID_disk,
+                              ID_concentric,
+                              ID_sphere,
+                              ID_hemisphere,
+                              ID_cosine,
+                              ID_cone,
+                              ID_henyey_greenstein,
+                              ID_rayleigh,
+                              ID_von_mises_fisher,
+                              ID_smoothstep,
+                              ID_triangle};
     if (row->shape == MCST_IS_LOBE || row->shape == MCST_IS_VLOBE || row->shape == MCST_IS_BRDF) return 1;
     for (size_t i = 0; i < MCST_COUNT(ids); i++)
         if (ids[i] == row - mcst_rows) return 1;
@@ -225,6 +241,18 @@ static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2
     case ID_hemisphere: *x = at_versine(u1, 2 * pi * u2); return;
     case ID_cosine: *x = vec(sqrtq(u1) * cosq(2 * pi * u2), sqrtq(u1) * sinq(2 * pi * u2), sqrtq(1 - u1)); return;
     case ID_cone: *x = at_versine(a * u1, 2 * pi * u2); return;
+    case ID_henyey_greenstein: {
+        const qd root = (1 - a * a) / (1 + a - 2 * a * u1);
+        *x = at_versine((1 - a) * u1 * (root + 1 - a) / (1 + a - 2 * a * u1), 2 * pi * u2);
+        return;
+    }
+    case ID_rayleigh: { /* the root by Newton's method, from that of the lower powers */
+        qd m = 4 * u1 / 3;
+        for (int i = 0; i < 40; i++) m -= (m * (6 - m * (3 - m)) - 8 * u1) / (6 - m * (6 - 3 * m));
+        *x = at_versine(m, 2 * pi * u2);
+        return;
+    }
+    case ID_von_mises_fisher: *x = at_versine(a > 0 ? -log1pq(u1 * expm1q(-2 * a)) / a : 2 * u1, 2 * pi * u2); return;
     case ID_phong_lobe: *x = at_versine(-expm1q(log1pq(-u1) / (a + 1)), 2 * pi * u2); return;
     case ID_phong: { /* Duff et al. 2017 */
         const q3 l = at_versine(-expm1q(log1pq(-u1) / (a + 1)), 2 * pi * u2);
@@ -269,6 +297,13 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
         const qd m = x.z > 0 ? r2 / (l * (l + x.z)) : 1 - x.z / l;
         return m <= a ? 1 / (2 * pi * a) : 0;
     }
+    case ID_henyey_greenstein: {
+        const qd s2 = 1 + a * a - 2 * a * x.z / len(x);
+        return (1 - a * a) / (4 * pi * s2 * sqrtq(s2));
+    }
+    case ID_rayleigh: return 3 * (1 + x.z * x.z / dot(x, x)) / (16 * pi);
+    case ID_von_mises_fisher:
+        return a > 0 ? a * expq(a * (x.z / len(x) - 1)) / (-2 * pi * expm1q(-2 * a)) : 1 / (4 * pi);
     case ID_phong_lobe: return x.z > 0 ? (a + 1) / (2 * pi) * expq(-a / 2 * log1pq(tan2_of(x))) : 0;
     case ID_phong: {
         const q3 r = vec(-s->wo.x, -s->wo.y, s->wo.z);
