@@ -695,9 +695,9 @@ MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, f
  *   w         a direction
  *
  * density   per solid angle; 0 below the horizon (hemisphere, cosine), outside the cone, and for bad input
- * accuracy  every coordinate within 2^-23 of the exact map, unit length within 4 x 2^-24, pdf within 0.2 E. 1 E is a
- *           relative error of 1e-6 (1 + |ln(pdf/peak)|). x and y keep their relative accuracy at the poles, down to a
- *           u1 of 2^-126 (k u1 of a cone).
+ * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24, pdf within 0.2 E. 1 E
+ *           is a relative error of 1e-6 (1 + |ln(pdf/peak)|). x and y keep their relative accuracy at the poles, down
+ *           to a u1 of 2^-126 (k u1 of a cone).
  * cost      1 square root and 1 sincos; inverses take 1 arctangent
  * source    Malley 1988 (cosine) */
 
