@@ -972,8 +972,20 @@ static void media_values(void) {
     if (mcst_case("von Mises-Fisher at its end")) ends_of_von_mises_fisher();
 }
 
-int main(int argc, char **argv) {
+/* The cases of maps. */
+static void map_values(void) {
     static const uint32_t heights[] = {5, 64, 1000, 4099};
+    mcst_group("values, rows of a map");
+    for (size_t i = 0; i < MCST_COUNT(heights); i++)
+        if (mcst_case("%u rows", heights[i])) rows_beside_borders(heights[i]);
+    if (mcst_case("borders of rows")) borders_of_rows();
+    mcst_group("values, texels of a map");
+    if (mcst_case("one lit texel")) lone_texels();
+    if (mcst_case("rows of two levels")) rows_of_two_levels();
+    if (mcst_case("borders of texels")) borders_of_texels();
+    if (mcst_case("even maps by arrays")) texels_of_even_maps();
+}
+int main(int argc, char **argv) {
     static const char *const visible[] = {"ggx_vndf_h", "ggx_vndf", "ggx_bounded_h", "ggx_bounded"};
     static const char *const even[] = {"disk", "concentric", "sphere", "hemisphere", "cosine", "cone"};
     static const struct {
@@ -1015,15 +1027,7 @@ int main(int argc, char **argv) {
     if (mcst_case("ends of tables")) ends_of_tables();
     if (mcst_case("zeros behind the last entry")) zeros_behind();
     if (mcst_case("alias shares of 2^23 + 1 entries")) alias_of_many();
-    mcst_group("values, rows of a map");
-    for (size_t i = 0; i < MCST_COUNT(heights); i++)
-        if (mcst_case("%u rows", heights[i])) rows_beside_borders(heights[i]);
-    if (mcst_case("borders of rows")) borders_of_rows();
-    mcst_group("values, texels of a map");
-    if (mcst_case("one lit texel")) lone_texels();
-    if (mcst_case("rows of two levels")) rows_of_two_levels();
-    if (mcst_case("borders of texels")) borders_of_texels();
-    if (mcst_case("even maps by arrays")) texels_of_even_maps();
+    map_values();
     mcst_group("values, product");
     if (mcst_case("share of the lobe")) share_of_the_lobe();
     if (mcst_case("tiny tiles")) tiny_tiles();
