@@ -97,9 +97,9 @@ examples: ## build and run every numbered example, build the renderer and check 
 	echo "$$passed passed, $$failed failed"; \
 	test $$failed = 0 && test $$passed != 0
 
-demo: $(RENDER) ## render the default scene with every strategy into build/demo, print the strategy table
+demo: $(RENDER) ## render the default scene with every strategy into build/demo, print the strategy table; DEMO='--spp 8' is quicker
 	@mkdir -p $(BUILD)/demo
-	$(RENDER) --strategy all --out $(BUILD)/demo/spheres
+	$(RENDER) --strategy all $(DEMO) --out $(BUILD)/demo/spheres
 
 hygiene: ## warnings in every language standard, index, macros, symbols, what including the header costs
 	@BUILD='$(BUILD)' JOBS='$(JOBS)' sh tests/hygiene.sh
