@@ -128,6 +128,7 @@
  *   [tables]      densities given as numbers                               one of many lights, measured curves
  *   [env]         environment maps                                         light from all around
  *   [product]     map times lobe times cosine                              light from all around on a given surface
+ *   [region]      what a part of a scene learns of its light               the same where things stand in the way
  *   [estimator]   mean, variance, standard error                           every estimate
  *
  * The rest is for maintainers.
@@ -8025,7 +8026,8 @@ MCSI_CORE mcsi_side mcsi_side_load(const float *corner) {
 /* Upper bound of each tile's weight: light times the largest of its value and its corner values. Behind the bounds
  * follows the largest one of each row. Then raises values that are too low, and lowers a value by a part of its excess
  * over the mean of its warp: beside the peak of a narrow lobe, the value at the mean direction overestimates the tile.
- * Last, the weights of rows by these values: by them it shows which bounds are large, as most bounds overestimate. */
+ * Last, it adds up the weights of rows by these values. A bound counts as large beside their sum, as most bounds
+ * overestimate. */
 MCSI_CORE void mcsi_tile_bounds(const mcsi_product_lists *l) {
     const size_t rows = l->rows;
     const size_t cols = l->cols;

@@ -8,6 +8,16 @@
 
 enum { ARENA_GUARD = 64, ARENA_FILL = 0xa5 };
 
+/* Memory of a test, which ends without. */
+static inline void *memory(size_t bytes) {
+    void *p = malloc(bytes);
+    if (!p) {
+        fprintf(stderr, "out of memory\n");
+        exit(2);
+    }
+    return p;
+}
+
 typedef struct {
     unsigned char *raw, *at;
     size_t bytes;
@@ -16,11 +26,7 @@ typedef struct {
 static inline arena arena_make(size_t bytes) {
     arena a;
     a.bytes = bytes;
-    a.raw = (unsigned char *)malloc(bytes + 2 * ARENA_GUARD);
-    if (!a.raw) {
-        fprintf(stderr, "out of memory\n");
-        exit(2);
-    }
+    a.raw = (unsigned char *)memory(bytes + 2 * ARENA_GUARD);
     memset(a.raw, ARENA_FILL, bytes + 2 * ARENA_GUARD);
     a.at = a.raw + ARENA_GUARD;
     return a;

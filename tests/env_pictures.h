@@ -98,11 +98,7 @@ static inline float v_sun_rows(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
 }
 
 static inline void draw(picture *p) {
-    p->lum = (float *)malloc((size_t)p->w * p->h * sizeof *p->lum);
-    if (!p->lum) {
-        fprintf(stderr, "out of memory\n");
-        exit(2);
-    }
+    p->lum = (float *)memory((size_t)p->w * p->h * sizeof *p->lum);
     for (uint32_t r = 0; r < p->h; r++)
         for (uint32_t c = 0; c < p->w; c++) p->lum[(size_t)r * p->w + c] = p->value(c, r, p->w, p->h);
 }

@@ -22,14 +22,6 @@ static inline double scale(void) {
     return f > 0 ? f : 1;
 }
 static inline float hash01(uint32_t i, uint32_t stream) { return mcs_u01(mcs_philox(mcst.seed, i, stream).v[0]); }
-static inline void *memory(size_t bytes) {
-    void *p = malloc(bytes);
-    if (!p) {
-        fprintf(stderr, "out of memory\n");
-        exit(2);
-    }
-    return p;
-}
 
 /* ---- pictures ---- */
 

@@ -4,19 +4,11 @@
 #ifndef MCST_FIREFLIES_WORTH_H
 #define MCST_FIREFLIES_WORTH_H
 #include <math.h>
+#include "arena.h"
 #include "registry.h"
 
 static const double pi = 3.14159265358979323846;
 enum { TILE_ROWS = 16 };
-
-static inline void *memory(size_t bytes) {
-    void *p = malloc(bytes);
-    if (!p) {
-        fprintf(stderr, "out of memory\n");
-        exit(2);
-    }
-    return p;
-}
 
 /* ---- pictures ---- */
 

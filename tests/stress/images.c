@@ -160,15 +160,6 @@ typedef struct {
     ld *weight, *between;      /* a row of weights; of what is filtered across rows */
 } picture;
 
-static void *get(size_t bytes) {
-    void *p = malloc(bytes);
-    if (!p) {
-        fprintf(stderr, "out of memory\n");
-        exit(2);
-    }
-    return p;
-}
-
 /* What a texel counts as: +infinity as FLT_MAX, NaN and negative numbers as 0. */
 static ld light(float x) { return x > FLT_MAX ? (ld)FLT_MAX : x > 0 ? (ld)x : 0; }
 /* The weights of a row of texels, which is how the header defines them: the texel, filtered by (1 2 1)/4 both ways with
@@ -221,12 +212,12 @@ static picture make(const struct subject *s, enum mode mode) {
     float *to;
     p.pixels = arena_make((size_t)w * h * sizeof *to);
     to = (float *)(void *)p.pixels.at;
-    p.row = (ld *)get(h * sizeof *p.row);
-    p.lit = (uint32_t *)get(h * sizeof *p.lit);
-    p.cosine = (double *)get(w * sizeof *p.cosine);
-    p.sine = (double *)get(w * sizeof *p.sine);
-    p.weight = (ld *)get(w * sizeof *p.weight);
-    p.between = (ld *)get(w * sizeof *p.between);
+    p.row = (ld *)memory(h * sizeof *p.row);
+    p.lit = (uint32_t *)memory(h * sizeof *p.lit);
+    p.cosine = (double *)memory(w * sizeof *p.cosine);
+    p.sine = (double *)memory(w * sizeof *p.sine);
+    p.weight = (ld *)memory(w * sizeof *p.weight);
+    p.between = (ld *)memory(w * sizeof *p.between);
     for (uint32_t y = 0; y < h; y++)
         for (uint32_t x = 0; x < w; x++) to[(size_t)y * w + x] = s->value(x, y, w, h);
     for (uint32_t x = 0; x < w; x++) {
@@ -670,7 +661,7 @@ static void check_image(const struct subject *subject, enum mode mode) {
     memset(&to, 0, sizeof to);
     source map;
     memset(&map, 0, sizeof map);
-    t.x = (float *)get(4 * (size_t)w * sizeof *t.x);
+    t.x = (float *)memory(4 * (size_t)w * sizeof *t.x);
     t.y = t.x + w;
     t.z = t.y + w;
     t.pdf = t.z + w;
