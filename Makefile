@@ -81,6 +81,10 @@ stress-today: ## the two parts of make stress whose day it is, at full size: som
 cross: ## the same bits on other machines: cross compilers and qemu-user where installed; ONLY=name picks one
 	@BUILD='$(BUILD)' sh tests/cross.sh $(ONLY)
 
+cuda: ## on a graphics processor: the same bits, chi-square, samples per second; without one it only compiles
+	@if command -v $(NVCC) >/dev/null; then $(SUBMAKE) cuda-binaries && $(CUDA)/bits && MCS_TEST_SCALE=0.1 $(CUDA)/samplers; \
+	else echo 'SKIPPED: ALL OF IT: $(NVCC) is not installed'; fi
+
 analyze: ## valgrind, memory sanitizer, -fanalyzer, clang-tidy, cppcheck, where installed; ONLY=name picks one
 	@BUILD='$(BUILD)' sh tests/analyze.sh $(ONLY)
 
@@ -168,6 +172,21 @@ $(STRESS_PARTS:%=$(BUILD)/stress/%.ok): $(BUILD)/stress/%.ok: $(STRESS_BINS)
 	@echo 'stress: $* ...'
 	@$(BUILD)/tests/stress/$(firstword $(subst -, ,$*)) $(call STRESS_FILTER,$*) > $(@:.ok=.txt); status=$$?; cat $(@:.ok=.txt); test $$status = 0 && touch $@
 
+# ---- a graphics processor. The bits are those of the host where nothing is fused; samplers are measured as users compile them.
+NVCC ?= nvcc
+CUDA = $(BUILD)/cuda
+CUDA_FLAGS = -x cu -arch=native -O2 -Wno-deprecated-gpu-targets -diag-suppress 20014 -I. -Itests
+
+cuda-binaries: $(CUDA)/bits $(CUDA)/samplers
+
+$(CUDA)/bits: tests/test_bits.c mcsample.h $(wildcard tests/*.h)
+	@mkdir -p $(@D)
+	$(NVCC) $(CUDA_FLAGS) --fmad=false -Xcompiler $(EXACT) $< -o $@
+
+$(CUDA)/samplers: tests/cuda.cu mcsample.h $(wildcard tests/*.h)
+	@mkdir -p $(@D)
+	$(NVCC) $(CUDA_FLAGS) $< -o $@
+
 # ---- benchmarks: what a user's build gives, -O2 without -march. Everything below $(BUILD)/bench.
 BENCH = $(BUILD)/bench
 BENCH_FLAGS = $(CFLAGS) -std=gnu17 $(WARNINGS) -Wno-unused-function -I. -Itests -Itests/bench -DBENCH_FLAGS='"$(CFLAGS) -std=gnu17"'
@@ -212,4 +231,4 @@ $(BENCH)/%: tests/bench/%.c $(BENCH_HEADERS)
 	$(CC) $(BENCH_FLAGS) $< -o $@ $(LIBS)
 
 FORCE:
-.PHONY: test stress stress-today stress-whole cross analyze mutants examples demo hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries
+.PHONY: test cuda cuda-binaries stress stress-today stress-whole cross analyze mutants examples demo hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries

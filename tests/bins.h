@@ -18,11 +18,12 @@
 
 enum { MCST_S = 20, MCST_T = 40, MCST_LINE_BINS = 100, MCST_CELLS = MCST_S * MCST_T };
 
+enum mcst_frame { MCST_SELF, MCST_HALF, MCST_MIRROR };
 typedef struct {
     const mcst_row *row;
     const float *p;
     enum mcst_coord coord;
-    enum { MCST_SELF, MCST_HALF, MCST_MIRROR } frame;
+    enum mcst_frame frame;
     int s_bins, t_bins;
     double a, b, k;                    /* the constants of the coordinates, see mcst_map_make */
     double noise;                      /* relative change of the density when the point is rounded to floats */
