@@ -428,20 +428,12 @@ MCST_HD static void bits_picture(uint32_t seed, uint32_t n, float *f) {
                               : mcs_u01(h) * (h % 8 == 1 ? 1e4f : 1.0f);
     }
 }
+/* Zeros. Their number of bytes stands in front of them, for those who copy them. */
 static void *bits_memory(size_t bytes) {
-#ifdef __CUDACC__
-    void *p = NULL;
-    if (!gpu::present()) p = calloc(1, bytes);
-    else if (cudaMallocManaged(&p, bytes) == cudaSuccess) memset(p, 0, bytes); /* for host and kernels */
-    else p = NULL;
-#else
-    void *p = calloc(1, bytes);
-#endif
-    if (!p) {
-        fprintf(stderr, "out of memory\n");
-        exit(2);
-    }
-    return p;
+    uint64_t *const p = (uint64_t *)memory(bytes + 2 * sizeof *p);
+    memset(p, 0, bytes + 2 * sizeof *p);
+    p[0] = bytes;
+    return p + 2;
 }
 MCST_HD static void bits_put_texel(float *out, int i, mcs_texel t) {
     bits1_put3(out, i, t.w), PUT(i + 3, t.pdf), PUT_WORD(i + 4, t.col), PUT_WORD(i + 5, t.row);
@@ -462,7 +454,8 @@ static void bits_map_build(int kind, bits_map *m) {
     static const float surface[BITS_SURFACES][4] = {
         {1, 1, 1, 0.8f}, {0.6f, 0.3f, 0.3f, 0.5f}, {0.01f, 0.02f, 0, 0.9f}, {1, 1, 1, -0.1f}};
     const uint32_t w = size[kind][0], h = size[kind][1], rows = kind == BITS_RGB ? 32 : 16;
-    float *const f = (float *)bits_memory((size_t)w * h * 7 * sizeof *f);
+    float *const f = (float *)memory((size_t)w * h * 7 * sizeof *f);
+    memset(f, 0, (size_t)w * h * 7 * sizeof *f);
     mcs_image im = mcs_image_make(f, w, h, 1);
     size_t bytes = mcs_env_bytes(w, h);
     uint32_t i;

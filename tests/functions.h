@@ -5,6 +5,7 @@
 #define MCST_FUNCTIONS_H
 #define MCST_WIDE
 #include "registry.h"
+#include "arena.h"
 #include "index.h"
 
 /* --- the hash: FNV-1a, 64 bits, over the bit patterns, low byte first --------------------------------------------- */

@@ -178,19 +178,43 @@ static const kernel rest[] = {BITS_WIDE(GPU_OTHER) BITS_WORDS(GPU_OTHER) BITS_SC
                                   BITS_HOST(GPU_NONE) BITS_ARRAYS(GPU_NONE)};
 static int has(target t) { return t.form == OTHER ? rest[t.at] != NULL : t.form < SAMPLE_N; }
 
+/* p becomes a copy of it in memory of the device. */
+static cudaError_t copy(void **p) {
+    const void *const from = *p;
+    const size_t bytes = (size_t)((const uint64_t *)from)[-2];
+    const cudaError_t e = cudaMalloc(p, bytes);
+    return e == cudaSuccess ? cudaMemcpy(*p, from, bytes, cudaMemcpyHostToDevice) : e;
+}
+static cudaError_t copy_map(int k) {
+    bits_map m = *bits_map_at(k);
+    cudaError_t e = copy((void **)&m.env);
+    if (e == cudaSuccess) e = copy((void **)&m.window);
+    if (e == cudaSuccess) e = copy((void **)&m.tiles);
+    if (e == cudaSuccess) e = copy((void **)&m.region);
+    for (int i = 0; i < BITS_PRODUCTS && e == cudaSuccess; i++) e = copy((void **)&m.product[i]);
+    if (e == cudaSuccess) e = cudaMemcpyToSymbol(bits_gpu_maps, &m, sizeof m, (size_t)k * sizeof m);
+    return e;
+}
+static cudaError_t copy_maps() {
+    cudaError_t e = cudaSuccess;
+    for (int k = 0; k < BITS_MAPS && e == cudaSuccess; k++) e = copy_map(k);
+    return e;
+}
+
 static const char *evaluate(target t) {
-    float *in = NULL, *out = NULL;
-    cudaError_t e = cudaMalloc(&in, sizeof given);
-    int k;
-    for (k = 0; k < BITS_MAPS && e == cudaSuccess; k++)
-        e = cudaMemcpyToSymbol(bits_gpu_maps, bits_map_at(k), sizeof(bits_map), (size_t)k * sizeof(bits_map));
+    static const cudaError_t copied = copy_maps();
+    float *in = NULL;
+    float *out = NULL;
+    cudaError_t e = copied;
+    if (e == cudaSuccess) e = cudaMalloc(&in, sizeof given);
     if (e == cudaSuccess) e = cudaMalloc(&out, sizeof result);
     if (e == cudaSuccess) e = cudaMemcpy(in, given, sizeof given, cudaMemcpyHostToDevice);
     if (e == cudaSuccess) e = cudaMemset(out, 0, sizeof result);
     if (e == cudaSuccess) (t.form == OTHER ? rest[t.at] : rows[t.at][t.form])<<<(CASES + 63) / 64, 64>>>(in, out);
     if (e == cudaSuccess) e = cudaGetLastError();
     if (e == cudaSuccess) e = cudaMemcpy(result, out, sizeof result, cudaMemcpyDeviceToHost);
-    cudaFree(in), cudaFree(out);
+    cudaFree(in);
+    cudaFree(out);
     return e == cudaSuccess ? NULL : cudaGetErrorString(e);
 }
 } // namespace gpu
