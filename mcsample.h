@@ -8087,8 +8087,7 @@ MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l); /* by the widest lo
  * bilinear in 7 x 7 cells, and the tile weighs the mean of the grid. */
 
 #define MCSI_GRIDS_BELOW 8.0f /* mean tiles */
-/* How much of its value without a grid a tile keeps: all nodes may lie on a light below the horizon, and other light of
- * the tile above it. */
+/* How much of a tile's value without a grid the nodes of its grid have at least. */
 #define MCSI_GRID_OF_VALUE (1.0f / 128.0f)
 /* A lobe of half-vectors narrows with the cosine of wo; Phong's, about the mirror direction, does not. */
 MCSI_CORE float mcsi_lobe_cosine(const mcsi_surface *s) { return s->profile == MCS_PROFILE_PHONG ? 1.0f : s->wo.z; }
@@ -8121,9 +8120,11 @@ MCS_FN uint32_t mcsi_product_heaviest(const mcsi_product_lists *l, uint32_t *til
     }
     return count;
 }
-/* A grid: values at 8 x 8 nodes, column by column, to which 1 % of their mean is added; then the weights of the 8 rows
- * of nodes, by trapezoids. Returns the mean over the cells. */
-MCS_FN float mcsi_grid_build(const mcsi_surface *s, const float *node, float *grid) {
+/* A grid: values at 8 x 8 nodes, column by column; then the weights of the 8 rows of nodes, by trapezoids. To each value
+ * a hundredth of their mean is added. More is added where the value of the tile without a grid is far above the mean:
+ * all nodes may lie on a light below the horizon, and other light of the tile above it. Returns the mean over the
+ * cells. */
+MCS_FN float mcsi_grid_build(const mcsi_surface *s, const float *node, float value, float *grid) {
     mcsi_corner_values_n(s, MCSI_GRID, node, grid);
     float sum[MCSI_NODES];
     for (uint32_t k = 0; k < MCSI_NODES; k++) sum[k] = 0.5f * (grid[k] + grid[MCSI_GRID - MCSI_NODES + k]);
@@ -8132,7 +8133,7 @@ MCS_FN float mcsi_grid_build(const mcsi_surface *s, const float *node, float *gr
     float inner = 0.0f;
     for (uint32_t k = 1; k < MCSI_NODES - 1; k++) inner += sum[k];
     const float mean = (0.5f * (sum[0] + sum[MCSI_NODES - 1]) + inner) * (1.0f / ((MCSI_NODES - 1) * (MCSI_NODES - 1)));
-    const float least = 0.01f * mean;
+    const float least = mcsi_max(0.01f * mean, MCSI_GRID_OF_VALUE * value);
     for (uint32_t k = 0; k < MCSI_GRID; k++) grid[k] += least;
     for (uint32_t k = 0; k < MCSI_NODES; k++) grid[MCSI_GRID + k] = sum[k] + (MCSI_NODES - 1) * least;
     return mean + least;
@@ -8151,9 +8152,8 @@ MCS_FN void mcsi_product_refine(mcs_product *p, const mcs_tiles *t, const mcsi_s
     const uint32_t count = mcsi_product_heaviest(&l, tile);
     for (uint32_t i = 0; i < count; i++) {
         float *value = l.value + tile[i];
-        float *at = grid + i * (size_t)(MCSI_GRID + MCSI_NODES);
-        const float mean = mcsi_grid_build(s, node + 3 * (size_t)MCSI_GRID * tile[i], at);
-        *value = mcsi_max(mean, MCSI_GRID_OF_VALUE * *value);
+        *value = mcsi_grid_build(s, node + 3 * (size_t)MCSI_GRID * tile[i], *value,
+                                 grid + i * (size_t)(MCSI_GRID + MCSI_NODES));
         grid_of[tile[i]] = (uint8_t)(i + 1);
     }
 }

@@ -90,13 +90,12 @@ static double reflect_at(const fit *f, double t1, double t2, spot *at, double *s
 }
 /* The place that a node stands for: its own, but the outer ones for those a hundredth off the border. */
 static double place_of_node(int k) { return k == 0 ? 0.01 : k == FINE ? 0.99 : (double)k / FINE; }
-/* A node, less the hundredth of the mean that it has got, and the reflection that it stands for; what either may be
- * wrong by. */
+/* A node, and the reflection that it stands for; what either may be wrong by. */
 typedef struct {
     double v, blur, wanted, off;
 } known_node;
 /* 0: there is no light, or the node may lie in another texel. */
-static int know_node(const fit *f, double mean, int k1, int k2, known_node *n) {
+static int know_node(const fit *f, int k1, int k2, known_node *n) {
     const double t1 = place_of_node(k1);
     const double t2 = place_of_node(k2);
     double sharp;
@@ -113,28 +112,56 @@ static int know_node(const fit *f, double mean, int k1, int k2, known_node *n) {
         const double v = reflect_at(f, t1 + (k < 2 ? by * off.t1 : 0), t2 + (k < 2 ? 0 : by * off.t2), &beside, &other);
         n->off = fmax(n->off, fabs(v - n->wanted) + sharp * n->wanted);
     }
-    n->v = fit_node(f, k1, k2)->v - 0.01 / 1.01 * mean;
+    n->v = fit_node(f, k1, k2)->v;
     n->blur = fit_node(f, k1, k2)->blur;
     return 1;
 }
+/* At least what a tile weighs without a grid. A lobe widened by the spread of the tile's light has a lower peak, and so
+ * has reflection towards a mean direction or a corner. The peak lies in the plane of incidence. To the corners, 3 % of
+ * their mean are added. */
+static double most_without_grid(const surface *s) {
+    const double steps = 4096;
+    const double in_plane = sqrt(s->wo[0] * s->wo[0] + s->wo[1] * s->wo[1]);
+    const double x = in_plane > 0 ? -s->wo[0] / in_plane : 1;
+    const double y = in_plane > 0 ? -s->wo[1] / in_plane : 0;
+    double most = 0;
+    for (int k = 0; k < (int)steps; k++) {
+        const double angle = pi / 2 * k / steps;
+        double v[3];
+        for (int i = 0; i < 3; i++) v[i] = sin(angle) * (x * s->s[i] + y * s->t[i]) + cos(angle) * s->n[i];
+        double visible;
+        most = fmax(most, reflect_as(s, v, 1, &visible) + 1e-4 / pi);
+    }
+    return 1.03 * most;
+}
 /* The nodes of a grid go with the reflection towards the places they stand for, by one factor in all tiles, which is
- * narrowed down to `least` to `most`. */
+ * narrowed down to `least` to `most`. To each the same is added: a hundredth of their mean, or a 128th of what the tile
+ * would weigh without a grid if that is more. The factor is that of the brightest and the darkest one. */
 static void check_nodes(const fit *f, double mean, double *least, double *most) {
     known_node best = {0, 0, 0, 0};
+    known_node dark = {0, 0, INFINITY, 0};
     int n = 0;
     known_node known[(FINE + 1) * (FINE + 1)];
     for (int k = 0; k < (FINE + 1) * (FINE + 1); k++) {
-        if (!know_node(f, mean, k / (FINE + 1), k % (FINE + 1), &known[n])) continue;
-        if (known[n].v > best.v) best = known[n];
+        if (!know_node(f, k / (FINE + 1), k % (FINE + 1), &known[n])) continue;
+        if (known[n].wanted > best.wanted) best = known[n];
+        if (known[n].wanted < dark.wanted) dark = known[n];
         n++;
     }
-    if (!n) return;
-    const double factor = best.v / best.wanted;
-    double wrong = best.blur / best.v + best.off / best.wanted;
+    if (!n || best.wanted < 2 * dark.wanted) return; /* all alike: nothing tells what was added */
+    const double spread = best.wanted - dark.wanted;
+    const double factor = (best.v - dark.v) / spread;
+    double wrong = (best.blur + dark.blur) / (best.v - dark.v) + (best.off + dark.off) / spread;
+    const double added = dark.v - factor * dark.wanted;
+    const double off = dark.blur + factor * (dark.off + wrong * dark.wanted) + 16 * eps * (best.v + mean);
+    const double hundredth = 0.01 / 1.01 * mean;
+    CHECK(added >= hundredth - off && added <= fmax(hundredth, factor * most_without_grid(f->d->s) / 128) + off,
+          "tile %u: nodes got %g, a hundredth is %g, %g without a grid", f->tile, added, hundredth,
+          factor * most_without_grid(f->d->s));
     for (int k = 0; k < n; k++)
-        CHECK(fabs(known[k].v - factor * known[k].wanted) <=
-                  known[k].blur + factor * (known[k].off + wrong * known[k].wanted) + 16 * eps * (best.v + mean),
-              "tile %u: a node has %g, not %g", f->tile, known[k].v, factor * known[k].wanted);
+        CHECK(fabs(known[k].v - added - factor * known[k].wanted) <=
+                  known[k].blur + off + factor * (known[k].off + wrong * known[k].wanted),
+              "tile %u: a node has %g, not %g", f->tile, known[k].v, added + factor * known[k].wanted);
     /* Shares of rows and of columns are integers over 2^24, each at most 2 wrong; every entry adds one. */
     wrong += (4 / (mean * span_of(f->d->m, f->b.c0, f->b.r0).all) + 4.0 * f->d->m->rows) * 0x1p-24;
     *least = fmax(*least, factor * (1 - wrong));
