@@ -1,6 +1,6 @@
 # mcsample.h is one header: nothing here has to be built to use it. This file builds what proves it and what shows it.
 #
-# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), DESTDIR; MAPS (.hdr files for the
+# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), DESTDIR, SOURCE_DATE_EPOCH; MAPS (.hdr files for the
 # benchmark, none); for tests also FILTER=text, SEED=number, WITHOUT=files and
 # MCS_TEST_SCALE=0.05 (scales the sample counts of the statistical tests; 1 is the count that the tolerances are meant for).
 
@@ -56,6 +56,51 @@ SUBMAKE = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j2)
 OPENMP = $(shell mkdir -p $(BUILD) && printf '\043include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n' | \
 	$(CC) -fopenmp -x c - -o $(BUILD)/openmp.probe 2>/dev/null && echo -fopenmp)
 
+# What is installed, packed and built as a library.
+VERSION := $(shell sed -n 's/.*define MCS_VERSION_STRING "\(.*\)".*/\1/p' mcsample.h)
+INSTALLED = $(DESTDIR)$(PREFIX)
+DIST = $(BUILD)/mcsample-$(VERSION)
+LIB = $(BUILD)/lib
+# The time of all files in the archive, 1980 unless the environment knows a better one.
+SOURCE_DATE_EPOCH ?= 315532800
+define PKG_CONFIG_FILE
+prefix=$(PREFIX)
+includedir=$${prefix}/include
+
+Name: mcsample
+Description: Monte Carlo sampling for rendering, in one C header
+Version: $(VERSION)
+Cflags: -I$${includedir}
+Libs: -lm
+endef
+define CMAKE_FILE
+# find_package(mcsample) makes the target mcsample::mcsample.
+if(NOT TARGET mcsample::mcsample)
+  get_filename_component(mcsample_include "$${CMAKE_CURRENT_LIST_DIR}/../../../include" ABSOLUTE)
+  add_library(mcsample::mcsample INTERFACE IMPORTED)
+  set_target_properties(mcsample::mcsample PROPERTIES
+    INTERFACE_INCLUDE_DIRECTORIES "$${mcsample_include}"
+    INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "$${mcsample_include}")
+  if(UNIX)
+    set_target_properties(mcsample::mcsample PROPERTIES INTERFACE_LINK_LIBRARIES m)
+  endif()
+  unset(mcsample_include)
+endif()
+endef
+# Versions with the same first number fit, if they are not older than what is asked for.
+define CMAKE_VERSION_FILE
+set(PACKAGE_VERSION "$(VERSION)")
+if(PACKAGE_FIND_VERSION_MAJOR EQUAL $(firstword $(subst ., ,$(VERSION))) AND NOT PACKAGE_FIND_VERSION VERSION_GREATER PACKAGE_VERSION)
+  set(PACKAGE_VERSION_COMPATIBLE TRUE)
+  if(PACKAGE_FIND_VERSION VERSION_EQUAL PACKAGE_VERSION)
+    set(PACKAGE_VERSION_EXACT TRUE)
+  endif()
+endif()
+endef
+install: export PKG_CONFIG_FILE := $(PKG_CONFIG_FILE)
+install: export CMAKE_FILE := $(CMAKE_FILE)
+install: export CMAKE_VERSION_FILE := $(CMAKE_VERSION_FILE)
+
 QUADMATH = $(shell mkdir -p $(BUILD) && printf '\043include <quadmath.h>\nint main(void) { return sqrtq(4) != 2; }\n' | \
 	$(CC) -x c - -o $(BUILD)/quadmath.probe -lquadmath 2>/dev/null && echo -lquadmath)
 
@@ -106,18 +151,36 @@ demo: $(RENDER) ## render the default scene with every strategy into build/demo,
 	$(RENDER) --strategy all $(DEMO) --out $(BUILD)/demo/spheres
 
 hygiene: ## warnings in every language standard, index, macros, symbols, what including the header costs
-	@BUILD='$(BUILD)' JOBS='$(JOBS)' sh tests/hygiene.sh
+	@MAKE='$(MAKE)' BUILD='$(BUILD)' JOBS='$(JOBS)' sh tests/hygiene.sh
 
 selftest: ## show that a failing, crashing, empty or unbuildable test makes make test fail
 	@MAKE='$(MAKE)' BUILD='$(BUILD)/selftest' sh tests/selftest/selftest.sh
 
-install: ## copy the header and a pkg-config file to DESTDIR/PREFIX
-	install -d "$(DESTDIR)$(PREFIX)"/include "$(DESTDIR)$(PREFIX)"/lib/pkgconfig
-	install -m 644 mcsample.h "$(DESTDIR)$(PREFIX)"/include/mcsample.h
-	version=$$(sed -n 's/^ *# *define  *MCS_VERSION_STRING  *"\(.*\)".*/\1/p' mcsample.h) && test -n "$$version" && \
-	printf '%s\n' 'prefix=$(PREFIX)' 'includedir=$${prefix}/include' '' 'Name: mcsample' \
-		'Description: Monte Carlo sampling for rendering, in one C header' "Version: $$version" \
-		'Cflags: -I$${includedir}' 'Libs: -lm' > "$(DESTDIR)$(PREFIX)"/lib/pkgconfig/mcsample.pc
+install: ## copy the header to DESTDIR/PREFIX, with files by which pkg-config and CMake find it
+	install -d '$(INSTALLED)/include' '$(INSTALLED)/lib/pkgconfig' '$(INSTALLED)/lib/cmake/mcsample'
+	install -m 644 mcsample.h '$(INSTALLED)/include/mcsample.h'
+	@printf '%s\n' "$$PKG_CONFIG_FILE" > '$(INSTALLED)/lib/pkgconfig/mcsample.pc'
+	@printf '%s\n' "$$CMAKE_FILE" > '$(INSTALLED)/lib/cmake/mcsample/mcsample-config.cmake'
+	@printf '%s\n' "$$CMAKE_VERSION_FILE" > '$(INSTALLED)/lib/cmake/mcsample/mcsample-config-version.cmake'
+
+uninstall: ## remove what make install has put into DESTDIR/PREFIX
+	rm -f '$(INSTALLED)/include/mcsample.h' '$(INSTALLED)/lib/pkgconfig/mcsample.pc'
+	rm -f '$(INSTALLED)/lib/cmake/mcsample/mcsample-config.cmake' '$(INSTALLED)/lib/cmake/mcsample/mcsample-config-version.cmake'
+	@rmdir '$(INSTALLED)/lib/cmake/mcsample' 2>/dev/null || true
+
+dist: ## pack header, licence and README: the same files give the same bytes; into build/mcsample-VERSION.tar.gz; needs GNU tar
+	@rm -rf $(DIST)
+	@install -d -m 755 $(DIST)
+	@install -m 644 mcsample.h LICENSE README.md $(DIST)
+	tar --format=ustar --sort=name --owner=0 --group=0 --numeric-owner --mtime=@$(SOURCE_DATE_EPOCH) -C $(BUILD) -cf $(DIST).tar $(notdir $(DIST))
+	gzip -9nf $(DIST).tar
+	@rm -r $(DIST)
+
+lib: ## compile array forms, tables, maps and products into libmcsample.a and libmcsample.so in build/lib; 10 s
+	+@$(SUBMAKE) $(LIB)/libmcsample.a $(LIB)/libmcsample.so
+
+packages: ## install, pack and build the library, and use each by pkg-config, CMake, Meson, C, Python and Rust, where installed
+	@CC='$(CC)' MAKE='$(MAKE)' sh tests/packages.sh $(BUILD)/packages
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/    make \1\t\2/p' Makefile | expand -t 22
@@ -150,6 +213,18 @@ $(SHARED)/wide%.o: tests/shared/wide.c mcsample.h $(wildcard tests/*.h) $(BUILD)
 $(SHARED)/%.o: tests/shared/%.c mcsample.h $(wildcard tests/*.h) $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(FLAGS) $(EXACT) $(SHARED_FLAGS) -c $< -o $@
+
+# The declared way: one file that compiles what MCS_DECLARE declares.
+$(LIB)/mcsample.o: mcsample.h $(BUILD)/flags
+	@mkdir -p $(@D)
+	printf '#include "mcsample.h"\n' | $(CC) $(FLAGS) $(EXACT) -DMCS_IMPLEMENTATION -fPIC -c -x c - -o $@
+
+$(LIB)/libmcsample.a: $(LIB)/mcsample.o
+	@rm -f $@
+	$(AR) rcs $@ $<
+
+$(LIB)/libmcsample.so: $(LIB)/mcsample.o
+	$(CC) -shared $< -o $@ $(LIBS)
 
 $(RENDER): examples/render.c $(wildcard examples/render_*.h) examples/hdr.h mcsample.h $(BUILD)/flags
 	@mkdir -p $(@D)
@@ -231,4 +306,4 @@ $(BENCH)/%: tests/bench/%.c $(BENCH_HEADERS)
 	$(CC) $(BENCH_FLAGS) $< -o $@ $(LIBS)
 
 FORCE:
-.PHONY: test cuda cuda-binaries stress stress-today stress-whole cross analyze mutants examples demo hygiene selftest install help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries
+.PHONY: test cuda cuda-binaries stress stress-today stress-whole cross analyze mutants examples demo hygiene selftest install uninstall dist lib packages help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries

@@ -1,6 +1,6 @@
 #!/bin/sh
 # hygiene.sh: what a user's build sees of mcsample.h. Run by `make hygiene` in the repository's root; prints a line per group of
-# checks and at the end "N passed, N failed", exit status non-zero on any failure. Environment: BUILD (build), JOBS (2).
+# checks and at the end "N passed, N failed", exit status non-zero on any failure. Environment: BUILD (build), JOBS (2), MAKE (make).
 #
 # The list of public names is taken from what the compiler made of the header (symbols, preprocessed typedefs), never from the
 # interface that it is compared with. What sources look like is checked by sources.sh.
@@ -452,10 +452,10 @@ if len(sys.argv) > 2: # a library of everything has the samplers of one point, t
 EOF
     for c in gcc clang; do
         command -v $c >/dev/null || continue
-        for way in '-DMCS_IMPLEMENTATION' '-DMCS_FN='; do
-            $c -std=c99 -O1 -Wno-psabi -shared -fPIC $way -I. "$dir/library.c" -o "$dir/libmcs.so" -lm &&
-                python3 "$dir/call.py" "$dir/libmcs.so" $(echo $way | sed -n 's/.*FN.*/all/p') 2>"$dir/call.log"
-            check $? "$c $way: Python calls the shared library" "$(tail -n 1 "$dir/call.log")"
+        for way in '' '-DMCS_FN='; do
+            MAKEFLAGS='' "${MAKE:-make}" -s lib CC=$c CFLAGS="-O1 $way" BUILD="$dir/$c" >"$dir/call.log" 2>&1 &&
+                python3 "$dir/call.py" "$dir/$c/lib/libmcsample.so" ${way:+all} 2>"$dir/call.log"
+            check $? "$c${way:+ $way}: Python calls the shared library of make lib" "$(tail -n 1 "$dir/call.log")"
         done
     done
 else
