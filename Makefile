@@ -52,6 +52,12 @@ RENDER = $(BUILD)/examples/render
 JOBS = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),2)
 SUBMAKE = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j2)
 
+# A target that make help lists says what it does when it starts, in the words of that list, and at its end how long it took and where
+# the result is. make expands a recipe before it runs it: NOW is when it started. Suites are told, as their sum is the last line.
+SAY = @sed -n 's/^$@:[^\#]*\#\# /make $@: /p' $(firstword $(MAKEFILE_LIST))
+NOW = $(shell date +%s)
+TOOK = printf 'took %d s; %s\n' $$(($$(date +%s) - $(NOW)))
+
 # -fopenmp where the compiler can build and link it, else nothing.
 OPENMP = $(shell mkdir -p $(BUILD) && printf '\043include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n' | \
 	$(CC) -fopenmp -x c - -o $(BUILD)/openmp.probe 2>/dev/null && echo -fopenmp)
@@ -104,89 +110,117 @@ install: export CMAKE_VERSION_FILE := $(CMAKE_VERSION_FILE)
 QUADMATH = $(shell mkdir -p $(BUILD) && printf '\043include <quadmath.h>\nint main(void) { return sqrtq(4) != 2; }\n' | \
 	$(CC) -x c - -o $(BUILD)/quadmath.probe -lquadmath 2>/dev/null && echo -lquadmath)
 
-test: ## build and run every tests/test_*.c (the default); FILTER=text and SEED=number narrow the run
+test: ## build and run every tests/test_*.c (the default); two minutes; build/tests; FILTER=text and SEED=number narrow it
+	$(SAY)
 	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS) $(EXACT)'
 	+@$(SUBMAKE) test-binaries
 	@$(if $(STRESS_CUT),$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath'))
-	@FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS) $(STRESS_CUT)
+	@BEGAN=$(NOW) BUILD='$(BUILD)' FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS) $(STRESS_CUT)
 
-stress: ## every float, deep statistics, extremes, hostile input at full size: an hour; parts that passed are not run again
+stress: ## every float, deep statistics, extremes, hostile input at full size; an hour; build/stress; what passed is not run again
+	$(SAY)
 	@$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath')
 	+@$(SUBMAKE) stress-whole
 	+@$(SUBMAKE) --keep-going $(STRESS_PARTS:%=$(BUILD)/stress/%.ok)
 	@cat $(STRESS_PARTS:%=$(BUILD)/stress/%.txt)
+	@$(TOOK) "what each part printed in $(BUILD)/stress"
 	@cat $(STRESS_PARTS:%=$(BUILD)/stress/%.txt) | $(STRESS_SUM)
 
-stress-today: ## the two parts of make stress whose day it is, at full size: some minutes; DAY=number picks another
+stress-today: ## two parts of make stress at full size, others each day; some minutes; build/stress; DAY=number picks
+	$(SAY)
 	@echo 'stress: day $(DAY): $(STRESS_TODAY)'
 	+@$(SUBMAKE) stress-whole
 	+@$(SUBMAKE) --keep-going $(STRESS_TODAY:%=$(BUILD)/stress/%.ok)
+	@$(TOOK) "what each part printed in $(BUILD)/stress"
 	@cat $(STRESS_TODAY:%=$(BUILD)/stress/%.txt) | $(STRESS_SUM)
 
-cross: ## the same bits on other machines: cross compilers and qemu-user where installed; ONLY=name picks one
-	@BUILD='$(BUILD)' sh tests/cross.sh $(ONLY)
+cross: ## the same bits on other machines, by cross compilers and qemu-user; many minutes; build/cross; ONLY=name picks one
+	$(SAY)
+	@BEGAN=$(NOW) BUILD='$(BUILD)' sh tests/cross.sh $(ONLY)
 
-cuda: ## on a graphics processor: the same bits, chi-square, samples per second; without one it only compiles
+cuda: ## the same bits, chi-square and rates on a graphics processor, or only that it compiles; some minutes; build/cuda
+	$(SAY)
 	@if command -v $(NVCC) >/dev/null; then $(SUBMAKE) cuda-binaries && $(CUDA)/bits && MCS_TEST_SCALE=0.1 $(CUDA)/samplers; \
 	else echo 'SKIPPED: ALL OF IT: $(NVCC) is not installed'; fi
+	@$(TOOK) "programs in $(CUDA)"
 
-analyze: ## valgrind, memory sanitizer, -fanalyzer, clang-tidy, cppcheck, where installed; ONLY=name picks one
-	@BUILD='$(BUILD)' sh tests/analyze.sh $(ONLY)
+analyze: ## valgrind, memory sanitizer, -fanalyzer, clang-tidy, cppcheck; many minutes; build/analyze; ONLY=name picks one
+	$(SAY)
+	@BEGAN=$(NOW) BUILD='$(BUILD)' sh tests/analyze.sh $(ONLY)
 
-mutants: ## does a test fail for every slip in tests/mutants.txt? ten minutes; ONLY='name...' picks some
-	@CC='$(CC)' BUILD='$(BUILD)' sh tests/mutants.sh $(JOBS) $(ONLY)
+mutants: ## does a test fail for every slip in tests/mutants.txt? ten minutes; build/mutants; ONLY='name...' picks some
+	$(SAY)
+	@BEGAN=$(NOW) CC='$(CC)' BUILD='$(BUILD)' sh tests/mutants.sh $(JOBS) $(ONLY)
 
-examples: ## build and run every numbered example, build the renderer and check its means and what it refuses
+examples: ## build, run and check every example and the renderer; two minutes; build/examples
+	$(SAY)
 	@echo '$(CC): $(FLAGS)'
 	+@$(SUBMAKE) example-binaries $(RENDER)
 	@passed=0; failed=0; for e in $(EXAMPLE_BINS) 'sh tests/render.sh $(RENDER) $(BUILD)/render'; do \
 		echo "$$e"; \
 		if $$e; then passed=$$((passed + 1)); else failed=$$((failed + 1)); echo "FAIL $$e: exit status not 0"; fi; \
 	done; \
+	$(TOOK) "programs in $(BUILD)/examples, pictures in $(BUILD)/render"; \
 	echo "$$passed passed, $$failed failed"; \
 	test $$failed = 0 && test $$passed != 0
 
-demo: $(RENDER) ## render the default scene with every strategy into build/demo, print the strategy table; DEMO='--spp 8' is quicker
+demo: ## render the default scene with every strategy, print the strategy table; two minutes; build/demo; DEMO='--spp 8' is quicker
+	$(SAY)
+	+@$(SUBMAKE) $(RENDER)
 	@mkdir -p $(BUILD)/demo
 	$(RENDER) --strategy all $(DEMO) --out $(BUILD)/demo/spheres
+	@$(TOOK) "pictures in $(BUILD)/demo"
 
-hygiene: ## warnings in every language standard, index, macros, symbols, what including the header costs
-	@MAKE='$(MAKE)' BUILD='$(BUILD)' JOBS='$(JOBS)' sh tests/hygiene.sh
+hygiene: ## warnings in every language standard, index, macros, symbols, cost of including; some minutes; build/hygiene
+	$(SAY)
+	@BEGAN=$(NOW) MAKE='$(MAKE)' BUILD='$(BUILD)' JOBS='$(JOBS)' sh tests/hygiene.sh
 
-selftest: ## show that a failing, crashing, empty or unbuildable test makes make test fail
-	@MAKE='$(MAKE)' BUILD='$(BUILD)/selftest' sh tests/selftest/selftest.sh
+selftest: ## show that make test notices tests that fail, crash, are empty or do not compile; some seconds; build/selftest
+	$(SAY)
+	@BEGAN=$(NOW) MAKE='$(MAKE)' BUILD='$(BUILD)/selftest' sh tests/selftest/selftest.sh
 
-install: ## copy the header to DESTDIR/PREFIX, with files by which pkg-config and CMake find it
-	install -d '$(INSTALLED)/include' '$(INSTALLED)/lib/pkgconfig' '$(INSTALLED)/lib/cmake/mcsample'
-	install -m 644 mcsample.h '$(INSTALLED)/include/mcsample.h'
+install: ## copy the header into DESTDIR/PREFIX, and files by which pkg-config and CMake find it; 1 s
+	$(SAY)
+	@install -d '$(INSTALLED)/include' '$(INSTALLED)/lib/pkgconfig' '$(INSTALLED)/lib/cmake/mcsample'
+	@install -m 644 mcsample.h '$(INSTALLED)/include/mcsample.h'
 	@printf '%s\n' "$$PKG_CONFIG_FILE" > '$(INSTALLED)/lib/pkgconfig/mcsample.pc'
 	@printf '%s\n' "$$CMAKE_FILE" > '$(INSTALLED)/lib/cmake/mcsample/mcsample-config.cmake'
 	@printf '%s\n' "$$CMAKE_VERSION_FILE" > '$(INSTALLED)/lib/cmake/mcsample/mcsample-config-version.cmake'
+	@$(TOOK) "$(INSTALLED)/include/mcsample.h, lib/pkgconfig/mcsample.pc, lib/cmake/mcsample"
 
-uninstall: ## remove what make install has put into DESTDIR/PREFIX
-	rm -f '$(INSTALLED)/include/mcsample.h' '$(INSTALLED)/lib/pkgconfig/mcsample.pc'
-	rm -f '$(INSTALLED)/lib/cmake/mcsample/mcsample-config.cmake' '$(INSTALLED)/lib/cmake/mcsample/mcsample-config-version.cmake'
+uninstall: ## remove what make install has put into DESTDIR/PREFIX; 1 s
+	$(SAY)
+	@rm -f '$(INSTALLED)/include/mcsample.h' '$(INSTALLED)/lib/pkgconfig/mcsample.pc'
+	@rm -f '$(INSTALLED)/lib/cmake/mcsample/mcsample-config.cmake' '$(INSTALLED)/lib/cmake/mcsample/mcsample-config-version.cmake'
 	@rmdir '$(INSTALLED)/lib/cmake/mcsample' 2>/dev/null || true
+	@$(TOOK) "nothing of mcsample is left in $(INSTALLED)"
 
-dist: ## pack header, licence and README: the same files give the same bytes; into build/mcsample-VERSION.tar.gz; needs GNU tar
+dist: ## pack header, licence and README by GNU tar; the same files give the same bytes; 1 s; build/mcsample-VERSION.tar.gz
+	$(SAY)
 	@rm -rf $(DIST)
 	@install -d -m 755 $(DIST)
 	@install -m 644 mcsample.h LICENSE README.md $(DIST)
-	tar --format=ustar --sort=name --owner=0 --group=0 --numeric-owner --mtime=@$(SOURCE_DATE_EPOCH) -C $(BUILD) -cf $(DIST).tar $(notdir $(DIST))
-	gzip -9nf $(DIST).tar
+	@tar --format=ustar --sort=name --owner=0 --group=0 --numeric-owner --mtime=@$(SOURCE_DATE_EPOCH) -C $(BUILD) -cf $(DIST).tar $(notdir $(DIST))
+	@gzip -9nf $(DIST).tar
 	@rm -r $(DIST)
+	@$(TOOK) "$(DIST).tar.gz"
 
-lib: ## compile array forms, tables, maps and products into libmcsample.a and libmcsample.so in build/lib; 10 s
+lib: ## compile array forms, tables, maps and products into libmcsample.a and libmcsample.so; 10 s; build/lib
+	$(SAY)
 	+@$(SUBMAKE) $(LIB)/libmcsample.a $(LIB)/libmcsample.so
+	@$(TOOK) "libmcsample.a and libmcsample.so in $(LIB)"
 
-packages: ## install, pack and build the library, and use each by pkg-config, CMake, Meson, C, Python and Rust, where installed
-	@CC='$(CC)' MAKE='$(MAKE)' sh tests/packages.sh $(BUILD)/packages
+packages: ## use what install, dist and lib make by pkg-config, CMake, Meson, C, Python and Rust; 20 s; build/packages
+	$(SAY)
+	@BEGAN=$(NOW) CC='$(CC)' MAKE='$(MAKE)' sh tests/packages.sh $(BUILD)/packages
 
-help: ## this list
+help: ## this list: what each does, how long it takes, where the result is, what narrows it
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/    make \1\t\2/p' Makefile | expand -t 22
 
-clean: ## remove everything that was built
-	rm -rf $(BUILD)
+clean: ## remove everything that was built; 1 s
+	$(SAY)
+	@rm -rf $(BUILD)
+	@$(TOOK) "$(BUILD) is gone"
 
 test-binaries: $(TEST_BINS) $(STRESS_CUT)
 # Every case of every program is in a part.
@@ -273,22 +307,25 @@ BENCH_SLEEF = $(shell mkdir -p $(BENCH) && printf '\043include <sleef.h>\nint ma
 BENCH_HEADERS = mcsample.h $(wildcard tests/*.h tests/bench/*.h) examples/hdr.h $(BUILD)/flags
 BENCH_BINS = $(BENCH)/throughput $(BENCH)/tables $(BENCH)/clock $(BENCH)/convergence $(BENCH)/shadow
 
-bench: bench-binaries ## run time against error: CSV files and plots in build/bench, tables here; some minutes
+bench: ## run time against error, in tables, CSV files and plots; three minutes; build/bench
+	$(SAY)
+	+@$(SUBMAKE) $(BENCH_BINS)
 	@$(BENCH)/throughput --out $(BENCH)
 	@$(BENCH)/tables --out $(BENCH)
 	@CLOCK=$(BENCH)/clock sh tests/bench/include.sh $(BENCH)
 	@$(BENCH)/convergence --out $(BENCH) $(MAPS)
 	@$(BENCH)/shadow --out $(BENCH) $(MAPS)
+	@$(TOOK) "CSV files and plots in $(BENCH)"
 
-bench-quick: bench-binaries ## the same with less repetition and smaller tables, about 45 s
+bench-quick: ## the same with less repetition and smaller tables; 45 s; build/bench
+	$(SAY)
+	+@$(SUBMAKE) $(BENCH_BINS)
 	@$(BENCH)/throughput --quick --out $(BENCH)
 	@$(BENCH)/tables --quick --out $(BENCH)
 	@CLOCK=$(BENCH)/clock sh tests/bench/include.sh $(BENCH) quick
 	@$(BENCH)/convergence --quick --out $(BENCH) $(MAPS)
 	@$(BENCH)/shadow --quick --out $(BENCH) $(MAPS)
-
-bench-binaries:
-	+@$(SUBMAKE) $(BENCH_BINS)
+	@$(TOOK) "CSV files and plots in $(BENCH)"
 
 $(BENCH)/wide8.o: tests/bench/wide.c $(BENCH_HEADERS)
 	@mkdir -p $(@D)
@@ -306,4 +343,4 @@ $(BENCH)/%: tests/bench/%.c $(BENCH_HEADERS)
 	$(CC) $(BENCH_FLAGS) $< -o $@ $(LIBS)
 
 FORCE:
-.PHONY: test cuda cuda-binaries stress stress-today stress-whole cross analyze mutants examples demo hygiene selftest install uninstall dist lib packages help clean test-binaries example-binaries FORCE bench bench-quick bench-binaries
+.PHONY: test cuda cuda-binaries stress stress-today stress-whole cross analyze mutants examples demo hygiene selftest install uninstall dist lib packages help clean test-binaries example-binaries FORCE bench bench-quick

@@ -8,7 +8,7 @@
 set -u
 LC_ALL=C
 export LC_ALL
-dir=${BUILD:-build}/analyze
+dir=${BUILD:-build}/analyze began=${BEGAN:-$(date +%s)}
 only=" $* "
 MCS_TEST_SCALE=${MCS_TEST_SCALE:-0.02}
 export MCS_TEST_SCALE
@@ -126,5 +126,6 @@ if wanted cppcheck; then
     fi
 fi
 
+echo "took $(($(date +%s) - began)) s; what tools printed in $dir"
 echo "$passed passed, $failed failed"
 [ $failed = 0 ] && [ $passed != 0 ]

@@ -11,7 +11,7 @@ LC_ALL=C
 export LC_ALL
 all='x87 s390x i386 gcc-O3 clang-O2 clang-O3 gcc-O2 contract aarch64 arm riscv64 fast-math gcc-O1 clang-O1 gcc-O0 clang-O0 mingw
     nvcc' # the longest first
-root=${BUILD:-build}/cross
+root=${BUILD:-build}/cross began=${BEGAN:-$(date +%s)}
 MCS_TEST_SCALE=${MCS_TEST_SCALE:-0.02}
 export MCS_TEST_SCALE
 exact='-ffp-contract=off'
@@ -278,6 +278,7 @@ worker() {
     passed=$(grep -c '^ok ' "$locks/output") failed=$(grep -c '^FAIL ' "$locks/output")
     skipped=$(grep -c '^SKIPPED' "$locks/output")
     [ "$skipped" = 0 ] || echo "$skipped SKIPPED, see above"
+    echo "took $(($(date +%s) - began)) s; programs in $root"
     echo "$passed passed, $failed failed"
     [ "$failed" = 0 ] && [ "$passed" != 0 ]
 }

@@ -8,7 +8,7 @@ set -u
 LC_ALL=C
 export LC_ALL
 dir=${BUILD:-build}/hygiene
-jobs=${JOBS:-2}
+jobs=${JOBS:-2} began=${BEGAN:-$(date +%s)}
 warnings='-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror'
 
 # compile COMPILER STANDARD LEVEL SWITCH FILE: one cell of the matrix, used through xargs below. The object stays.
@@ -508,5 +508,6 @@ cost MCS_PACKETS=16 16200 990000
 gcc -O2 -Itests -Itests/bench tests/bench/clock.c -o "$dir/clock" -lm && CLOCK=$dir/clock sh tests/bench/include.sh "$dir" quick | sed 's/^/     /'
 check $? "what including it costs can be measured"
 
+echo "took $(($(date +%s) - began)) s; what compilers printed in $dir"
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

@@ -9,7 +9,7 @@
 set -u
 jobs=$1
 shift
-dir=${BUILD:-build}/mutants
+dir=${BUILD:-build}/mutants started=${BEGAN:-$(date +%s)}
 list=tests/mutants.txt
 rm -rf "$dir"
 mkdir -p "$dir" || exit 1
@@ -137,6 +137,7 @@ while [ "$jobs" -gt 0 ]; do
 done | tee "$dir/report"
 wait
 [ ! -s "$dir/wrong" ] || sed 's/^/FAIL /' "$dir/wrong"
+echo "took $(($(date +%s) - started)) s; headers and programs in $dir"
 awk -v wrong="$([ -s "$dir/wrong" ] && grep -c . "$dir/wrong" || echo 0)" -v all="$(grep -c . "$dir/names")" '
     /^killed/ { passed++ }
     /^equivalent/ { same++ }

@@ -5,7 +5,7 @@
 set -u
 rm -rf "${1:?}" && mkdir -p "$1" || exit 1
 dir=$(cd "$1" && pwd)
-cc=${CC:-cc} python=${PYTHON:-python3}
+began=${BEGAN:-$(date +%s)} cc=${CC:-cc} python=${PYTHON:-python3}
 root=$(pwd)
 installed=$dir/dest/opt/mcs
 export MAKEFLAGS=
@@ -152,5 +152,6 @@ if has rustc "examples/call.rs is not tested"; then
     same Rust $?
 fi
 
+echo "took $(($(date +%s) - began)) s; all files in $1"
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

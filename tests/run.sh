@@ -4,9 +4,10 @@
 # with MCS_TEST_VERBOSE=1 of each, it prints the whole output in one piece. The exit status is not 0 when a case failed, and when a
 # program crashed, ended without its summary line or ran no case (with FILTER set, single programs may run none, but not all of
 # them).
+# Before the sum it says how long it took, since BEGAN if that is set, and where the programs are: in BUILD/tests.
 # FILTER and SEED are handed to every program as --filter and --seed. Programs in a folder stress run at MCS_STRESS_SCALE, 0.002.
 set -u
-jobs=$1
+jobs=$1 began=${BEGAN:-$(date +%s)}
 shift
 tmp=$(mktemp -d) || exit 1
 trap 'rm -rf "$tmp"' EXIT
@@ -70,6 +71,7 @@ report() {
     done
     [ "$ended" = "$1" ] || fail "$ended of $1 programs ended"
     if [ "$passed" = 0 ] && [ "$failed" = 0 ]; then fail "no case ran"; fi
+    echo "took $(($(date +%s) - began)) s; programs in ${BUILD:-build}/tests"
     echo "$passed passed, $failed failed"
     [ "$failed" = 0 ]
 }

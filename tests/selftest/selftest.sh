@@ -1,8 +1,8 @@
 #!/bin/sh
 # Shows that `make test` notices failure, and that it is calm otherwise: runs it on the programs of this directory, most of which
-# are faulty, and asks for the exit status, the last line and what else is printed. Takes MAKE and BUILD from the environment.
+# are faulty, and asks for the exit status, the last line and what else is printed. Takes MAKE, BUILD and BEGAN from the environment.
 set -u
-passed=0 failed=0
+passed=0 failed=0 began=${BEGAN:-$(date +%s)}
 
 # expect WHAT ZERO|NONZERO LAST_LINE SOURCES [make arguments]; the last line - means any.
 expect() {
@@ -51,5 +51,21 @@ says 'no detail, and of groups only those that failed' 1 '^ok \|a detail\|^FAIL 
 says 'what was skipped' 1 '^SKIPPED: something'
 says 'the check that failed' 1 'fails.c:[0-9]*: selftest/nan: zero / zero <= 1: error = -\{0,1\}nan'
 says 'detail and groups on request' 3 '^ok \|a detail\|^FAIL selftest' MCS_TEST_VERBOSE=1
+says 'what it does' 1 '^make test: build and run '
+says 'how long it took, and where the programs are' 1 '^took [0-9]* s; programs in '
+
+# Every target that make help lists says so, too.
+silent=$(awk -F: '/^[a-z-]+:[^#]*## / { name = $1; next }
+    /^\t\$\(SAY\)$/ { said = name }
+    /^\t.*(\$\(TOOK\)|BEGAN=\$\(NOW\))/ && said == name { told[name] }
+    name != "" && /^$/ { if (name != "help" && !(name in told)) print name; name = "" }' Makefile)
+if [ -z "$silent" ]; then
+    passed=$((passed + 1))
+    echo "ok   every target says what it does and how long it took"
+else
+    failed=$((failed + 1))
+    printf 'FAIL these targets do not say what they do or how long it took:\n%s\n' "$silent"
+fi
+echo "took $(($(date +%s) - began)) s; programs in ${BUILD:-build/selftest}"
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]
