@@ -8,7 +8,7 @@
  *     cc -O2 -std=c99 -I. -fopenmp examples/render.c -o render -lm       (-fopenmp is optional: without it, one thread)
  *     ./render --strategy all sunrise.hdr
  *
- * Here are the loop over pixels, the tables that are printed, and main. The rest, by subject:
+ * Here are the loop over pixels, the tables that are printed, the joining of parts, and main. The rest, by subject:
  *
  *     render_strategy.h    direct illumination: where each strategy calls mcsample.h
  *     render_learning.h    regions of the scene, which learn from shadow rays
@@ -17,6 +17,7 @@
  *     render_scene.h       spheres, ground, room and camera
  *     render_options.h     the command line
  *     render_picture.h     PNG and Radiance files
+ *     render_parts.h       files of parts of a picture, made by many processes
  *
  * World: z up, lengths in sphere radii. Shading happens in the local frame of mcsample.h: normal on +z, wo to the eye,
  * wi to the light. Colours are linear RGB with the primaries of sRGB, kept in a vec3.
@@ -24,7 +25,7 @@
 #define _POSIX_C_SOURCE 200809L /* clock_gettime, fileno, isatty */
 #include <time.h>
 #include <unistd.h>
-#include "render_picture.h"
+#include "render_parts.h"
 #include "render_strategy.h"
 
 /* ---- Rendering ---- */
@@ -113,11 +114,14 @@ static unsigned pass_length(const job *j, unsigned done) {
  * picture, not error. As with any estimate: where samples hardly ever find a small bright light, both the mean and its
  * error come out low until they do. */
 static void picture_statistics(const pixel *p, size_t n, outcome *r) {
+    double pixels = 0;
     double variance = 0;
     double count[OBJECTS] = {0};
     r->mean = r->samples = 0;
     memset(r->mse, 0, sizeof r->mse);
     for (size_t i = 0; i < n; i++) {
+        if (!(p[i].luminance.n > 0)) continue; /* in another part */
+        pixels++;
         const double e = mcs_stat_error(&p[i].luminance);
         r->mean += p[i].luminance.mean;
         r->samples += p[i].drawn;
@@ -128,8 +132,8 @@ static void picture_statistics(const pixel *p, size_t n, outcome *r) {
         }
     }
     for (int k = 0; k < OBJECTS; k++) r->mse[k] /= fmax(count[k], 1);
-    r->mean /= (double)n;
-    r->error = r->spp > 1 ? sqrt(variance) / (double)n : INFINITY; /* one sample tells nothing of its error */
+    r->mean /= pixels;
+    r->error = r->spp > 1 ? sqrt(variance) / pixels : INFINITY; /* one sample tells nothing of its error */
 }
 
 /* Whether another pass is needed. */
@@ -145,7 +149,7 @@ static void render_passes(const job *j, pixel *image, outcome *r, progress *p) {
     while (unfinished(o, r)) {
         const uint32_t n = pass_length(j, r->spp);
         OMP(omp parallel for schedule(dynamic) num_threads(o->threads))
-        for (int y = 0; y < (int)o->h; y++) {
+        for (int y = (int)o->part - 1; y < (int)o->h; y += (int)o->parts) {
             render_row(j, (uint32_t)y, n, image + (size_t)y * o->w);
             progress_row(p, n);
         }
@@ -165,7 +169,8 @@ static void render_passes(const job *j, pixel *image, outcome *r, progress *p) {
 static int render(const options *o, const scene *s, const environment *e, strategy how, pixel *image, outcome *r) {
     const size_t pixels = (size_t)o->w * o->h;
     memset(r, 0, sizeof *r);
-    progress p = {strategy_name[how], seconds(CLOCK_MONOTONIC), 0, o->h * (double)o->spp, 0};
+    progress p = {strategy_name[how], seconds(CLOCK_MONOTONIC), 0, 0, 0};
+    p.rows = (o->h + o->parts - o->part) / o->parts * (double)o->spp;
     const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     const int watched = isatty(fileno(stderr));
     if (!watched) p.rows = -1;
@@ -246,15 +251,19 @@ static void print_objects(const options *o, const outcome *result) {
  * from that of the next: 0 where all share one. Returns 0 after a complaint. */
 static int render_all(const options *o, const scene *s, const environment *e, pixel *image, size_t next,
                       outcome *result) {
-    printf("%s %u x %u, picture %u x %u, %d thread%s\n", o->map ? o->map : "built-in sky", e->map.w, e->map.h, o->w,
-           o->h, o->threads, o->threads > 1 ? "s" : "");
+    printf("%s %u x %u, picture %u x %u, ", o->map ? o->map : "built-in sky", e->map.w, e->map.h, o->w, o->h);
+    if (o->given[O_PART]) printf("part %u of %u, ", o->part, o->parts);
+    printf("%d thread%s\n", o->threads, o->threads > 1 ? "s" : "");
     print_head();
     int ok = flush_output();
     for (int i = 0; ok && i < STRATEGIES; i++) {
         if (!o->wanted[i]) continue;
         ok = render(o, s, e, (strategy)i, image, &result[i]);
         if (ok) print_row((strategy)i, &result[i]);
-        ok = ok && flush_output() && write_pictures(o, (strategy)i, e, image);
+        const double took[2] = {result[i].wall, result[i].cpu};
+        ok = ok && flush_output();
+        if (ok && o->given[O_PART]) ok = sums_write(o, (strategy)i, e, image, took);
+        else if (ok) ok = write_pictures(o, (strategy)i, e, image);
         image += next;
     }
     return ok;
@@ -262,7 +271,7 @@ static int render_all(const options *o, const scene *s, const environment *e, pi
 
 static void print_tables(const options *o, unsigned count, const outcome *result) {
     puts("samples: light samples; efficiency: 1 / (std error^2 x cpu s)");
-    if (count < 2 || o->spp < 2) return;
+    if (count < 2 || o->spp < 2 || o->given[O_PART]) return;
     print_comparison(o, result);
     if (o->wanted[MIS]) print_objects(o, result);
 }
@@ -276,6 +285,71 @@ static int reached_error(const options *o, const outcome *result) {
     return 1;
 }
 
+/* ---- Parts ---- */
+
+static unsigned count_strategies(const options *o) {
+    unsigned count = 0;
+    for (int i = 0; i < STRATEGIES; i++) count += o->wanted[i] != 0;
+    return count;
+}
+
+/* Reads the pixels of all files, `image` being all zeros, and prints the rows that single runs print. Processor times
+ * are added; of wall times, the longest stays. Returns 0 after a complaint. */
+static int merge_files(const options *asked, const options *o, pixel *image, outcome *result) {
+    const size_t pixels = (size_t)o->w * o->h;
+    pixel *start[STRATEGIES] = {NULL};
+    for (int i = 0; i < STRATEGIES; i++) {
+        start[i] = image;
+        if (o->wanted[i]) image += pixels;
+    }
+    memset(result, 0, STRATEGIES * sizeof *result);
+    for (int i = 0; i < asked->files; i++) {
+        sums s;
+        if (!sums_read(asked->file[i], &s, start)) return 0;
+        result[s.how].wall = fmax(result[s.how].wall, s.wall);
+        result[s.how].cpu += s.cpu;
+    }
+    for (int i = 0; i < STRATEGIES; i++)
+        if (o->wanted[i] && !sums_complete(o, (strategy)i, start[i])) return 0;
+    printf("%u parts, picture %u x %u\n", o->parts, o->w, o->h);
+    print_head();
+    for (int i = 0; i < STRATEGIES; i++) {
+        if (!o->wanted[i]) continue;
+        result[i].spp = o->spp;
+        picture_statistics(start[i], pixels, &result[i]);
+        print_row((strategy)i, &result[i]);
+    }
+    return 1;
+}
+
+/* Does what a single run does behind the rendering. Returns 0 after a complaint. */
+static int merge(const options *asked) {
+    sums first;
+    if (!sums_survey(asked, &first) || !can_write_pictures(&first.o)) return 0;
+    const options *o = &first.o;
+    environment e;
+    memset(&e, 0, sizeof e);
+    e.irradiance = bits_float(first.irradiance);
+    const unsigned count = count_strategies(o);
+    const size_t pixels = (size_t)o->w * o->h;
+    pixel *image = calloc(count * pixels, sizeof *image);
+    outcome result[STRATEGIES];
+    int ok = image ? merge_files(asked, o, image, result) : complain("--merge", "not enough memory for the picture");
+    if (ok) print_tables(o, count, result);
+    ok = ok && flush_output();
+    const pixel *next = image;
+    for (int i = 0; ok && i < STRATEGIES; i++) {
+        if (!o->wanted[i]) continue;
+        ok = write_pictures(o, (strategy)i, &e, next);
+        next += pixels;
+    }
+    ok = ok && write_sheets(o, &e, image, count);
+    free(image);
+    return ok;
+}
+
+/* ---- Main ---- */
+
 int main(int argc, char **argv) {
     options o;
     if (!parse_arguments(argc, argv, &o)) return 2;
@@ -283,9 +357,9 @@ int main(int argc, char **argv) {
         usage();
         return flush_output() ? 0 : 1;
     }
-    if (!can_write_pictures(&o)) return 1;
-    unsigned count = 0;
-    for (int i = 0; i < STRATEGIES; i++) count += o.wanted[i] != 0;
+    if (o.merge) return merge(&o) ? 0 : 1;
+    if (!(o.given[O_PART] ? can_write_sums(&o) : can_write_pictures(&o))) return 1;
+    const unsigned count = count_strategies(&o);
     const size_t pixels = (size_t)o.w * o.h;
     const int sheets = o.stack || o.beside; /* they need all pictures at once */
     pixel *image;

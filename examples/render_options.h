@@ -15,12 +15,34 @@ typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, PRODUCT, REGION, LEARNED
 static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine",  "brdf",   "env",
                                                       "mis",     "product", "region", "learned"};
 
+typedef enum {
+    O_SCENE,
+    O_STRATEGY,
+    O_SIZE,
+    O_OUT,
+    O_STACK,
+    O_BESIDE,
+    O_PART,
+    O_SPP,
+    O_LIGHTS,
+    O_SECONDS,
+    O_ERROR,
+    O_STOPS,
+    O_THREADS,
+    O_SEED,
+    OPTIONS
+} option;
+
 typedef struct {
     unsigned w, h, spp, lights;
     double seconds; /* of processor time after which to stop, 0: take spp samples */
     double error;   /* relative standard error of the mean at which to stop, 0: take spp samples */
     uint64_t seed;
-    int help, threads, in_room, wanted[STRATEGIES];
+    unsigned part, parts; /* from 1; 1 and 1: the whole */
+    int help, merge, threads, in_room, wanted[STRATEGIES];
+    int given[OPTIONS]; /* which options were */
+    int files;
+    char **file; /* the map, or what to merge */
     float stops;
     const char *out, *map, *stack, *beside;
 } options;
@@ -44,13 +66,21 @@ static void usage(void) {
           "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on "
           "it\n"
           "  --seed N           another set of random numbers (1)\n"
+          "  --part K/N         render every Nth row from the Kth one on, and write what --merge needs into\n"
+          "                     PREFIX-STRATEGY-K-of-N.sums; not for region and learned, which learn from all rows\n"
+          "  --merge FILES      join all parts to the tables and pictures of a single run, bit for bit\n"
           "  -h, --help         this text\n"
           "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
           "The camera has the main light of the map behind it at the left.\n"
           "examples/product.png: render --strategy mis,product --lights 16 --seconds 2 --size 480x160 --threads 1\n"
           "    --out build/product --stack examples/product.png\n"
           "examples/room.png: render --scene room --strategy mis,region --seconds 2 --size 432x120 --threads 1\n"
-          "    --out build/room --beside examples/room.png\n",
+          "    --out build/room --beside examples/room.png\n"
+          "Parts, by eight processes here, by Open MPI or by Slurm, and what joins them:\n"
+          "    seq 8 | xargs -P 8 -I{} render --threads 1 --out s --part {}/8\n"
+          "    mpirun -n 8 sh -c 'render --threads 1 --out s --part $((OMPI_COMM_WORLD_RANK + 1))/8'\n"
+          "    srun -n 8 sh -c 'render --threads 1 --out s --part $((SLURM_PROCID + 1))/8'\n"
+          "    render --merge s-*-of-8.sums --out s\n",
           stdout);
 }
 
@@ -74,6 +104,12 @@ static int parse_size(const char *text, options *o) {
         return complain("--size", "'%s' is not WIDTHxHEIGHT", text);
     if (o->w - 1 < 16384 && o->h - 1 < 16384 && o->w * o->h <= 1u << 25) return 1;
     return complain("--size", "each side is from 1 to 16384, with at most %u pixels in all", 1u << 25);
+}
+
+static int parse_part(const char *text, options *o) {
+    char more;
+    if (sscanf(text, "%6u/%6u%c", &o->part, &o->parts, &more) == 2 && o->part - 1 < o->parts) return 1;
+    return complain("--part", "'%s' is not K/N, part K of N", text);
 }
 
 static int parse_scene(const char *text, options *o) {
@@ -100,31 +136,15 @@ static int parse_strategies(const char *list, options *o) {
     }
 }
 
-typedef enum {
-    O_SCENE,
-    O_STRATEGY,
-    O_SIZE,
-    O_OUT,
-    O_STACK,
-    O_BESIDE,
-    O_SPP,
-    O_LIGHTS,
-    O_SECONDS,
-    O_ERROR,
-    O_STOPS,
-    O_THREADS,
-    O_SEED,
-    OPTIONS
-} option;
 static const struct {
     const char *name;
     double low, high; /* of numbers */
     int whole;
-} option_table[OPTIONS] = {{"--scene", 0, 0, 0},    {"--strategy", 0, 0, 0},  {"--size", 0, 0, 0},
-                           {"--out", 0, 0, 0},      {"--stack", 0, 0, 0},     {"--beside", 0, 0, 0},
-                           {"--spp", 1, 1e6, 1},    {"--lights", 1, 4096, 1}, {"--seconds", 1e-3, 1e6, 0},
-                           {"--error", 1e-7, 1, 0}, {"--stops", -20, 20, 0},  {"--threads", 1, 1024, 1},
-                           {"--seed", 0, 9e15, 1}};
+} option_table[OPTIONS] = {{"--scene", 0, 0, 0},        {"--strategy", 0, 0, 0}, {"--size", 0, 0, 0},
+                           {"--out", 0, 0, 0},          {"--stack", 0, 0, 0},    {"--beside", 0, 0, 0},
+                           {"--part", 0, 0, 0},         {"--spp", 1, 1e6, 1},    {"--lights", 1, 4096, 1},
+                           {"--seconds", 1e-3, 1e6, 0}, {"--error", 1e-7, 1, 0}, {"--stops", -20, 20, 0},
+                           {"--threads", 1, 1024, 1},   {"--seed", 0, 9e15, 1}};
 
 static int parse_number(option which, const char *text, double *value) {
     const double low = option_table[which].low;
@@ -148,6 +168,7 @@ static int parse_value(option which, const char *text, options *o) {
     case O_OUT: return parse_name(option_table[which].name, text, &o->out);
     case O_STACK: return parse_name(option_table[which].name, text, &o->stack);
     case O_BESIDE: return parse_name(option_table[which].name, text, &o->beside);
+    case O_PART: return parse_part(text, o);
     default: break;
     }
     double v;
@@ -172,9 +193,39 @@ static option find_option(const char *argument) {
     return (option)i;
 }
 
-/* Returns 0 for a wrong argument. */
+/* Whether options go together. Returns 0 after a complaint. */
+static int check_part(const options *o) {
+    if (o->wanted[REGION] || o->wanted[LEARNED])
+        return complain("--part", "region and learned learn from the whole picture");
+    if (o->seconds > 0 || o->error > 0)
+        return complain("--part", "--spp alone says when a part ends, neither --seconds nor --error");
+    if (o->given[O_STOPS] || o->stack || o->beside)
+        return complain("--part", "--stops, --stack and --beside are for --merge, which writes the pictures");
+    if (o->parts > o->h) return complain("--part", "%u rows are no %u parts", o->h, o->parts);
+    return 1;
+}
+
+static int check_merge(const options *o) {
+    for (int i = 0; i < OPTIONS; i++)
+        if (o->given[i] && i != O_OUT && i != O_STOPS && i != O_STACK && i != O_BESIDE)
+            return complain(option_table[i].name, "is not for --merge: the files say what was rendered");
+    if (o->files == 0) return complain("--merge", "no files are given");
+    return 1;
+}
+
+static int check_options(options *o) {
+    if (o->merge) return check_merge(o);
+    if (o->files > 1) return complain(o->file[1], "only one map can be given");
+    if (o->files == 1) o->map = o->file[0];
+    if (o->given[O_PART]) return check_part(o);
+    return 1;
+}
+
+/* Returns 0 for a wrong argument. Moves the names of files to the front of argv. */
 static int parse_arguments(int argc, char **argv, options *o) {
     memset(o, 0, sizeof *o);
+    o->part = o->parts = 1;
+    o->file = argv;
     o->w = 960;
     o->h = 320;
     o->seed = 1;
@@ -186,13 +237,18 @@ static int parse_arguments(int argc, char **argv, options *o) {
         const char *text = strchr(argv[i], '=');
         if (!strcmp(argv[i], "-h") || !strcmp(argv[i], "--help")) return o->help = 1;
         if (argv[i][0] != '-') {
-            if (o->map) return complain(argv[i], "only one map can be given");
-            if (!parse_name("map", argv[i], &o->map)) return 0;
+            if (!*argv[i]) return complain("map", "the name is empty");
+            argv[o->files++] = argv[i];
+            continue;
+        }
+        if (!strcmp(argv[i], "--merge")) {
+            o->merge = 1;
             continue;
         }
         if (which == OPTIONS) return complain(argv[i], "unknown option; --help lists them");
         if (!text && i + 1 == argc) return complain(argv[i], "its value is missing");
         if (!parse_value(which, text ? text + 1 : argv[++i], o)) return 0;
+        o->given[which] = 1;
     }
     if (!o->spp) o->spp = o->error > 0 || o->seconds > 0 ? 16384 : 64;
 #ifdef _OPENMP
@@ -200,7 +256,7 @@ static int parse_arguments(int argc, char **argv, options *o) {
 #else
     o->threads = 1;
 #endif
-    return 1;
+    return check_options(o);
 }
 
 #endif

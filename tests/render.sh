@@ -42,6 +42,50 @@ for scene in spheres room; do
     done
 done
 
+# --- parts by several processes: joined they are a single run, to the bit; 21 rows are not as many in each of 4 parts
+
+many='uniform,cosine,brdf,env,mis,product'
+for scene in spheres room; do
+    set -- --scene $scene --strategy $many --size 60x21 --spp 5 --lights 2
+    "$render" "$@" --stops 1 --out "$dir/whole" --stack "$dir/whole.png" >"$dir/whole.txt"
+    check $? "render: a whole picture of $scene"
+    seq 4 | xargs -P 2 -I '{}' "$render" "$@" --threads 1 --out "$dir/$scene" --part '{}/4' >"$dir/out.txt" 2>"$dir/err.txt"
+    check $? "render: parts of $scene: $(cat "$dir/err.txt")"
+    # shellcheck disable=SC2012,SC2046
+    "$render" --merge $(ls -r "$dir/$scene"-*-of-4.sums) --stops 1 --out "$dir/joined" --stack "$dir/joined.png" >"$dir/joined.txt"
+    check $? "render: $scene joined"
+    for file in $(echo $many | sed 's/[a-z]*/-&.png -&.hdr/g; s/,/ /g') .png; do
+        cmp "$dir/whole$file" "$dir/joined$file" >"$dir/out.txt" 2>&1
+        check $? "render: parts of $scene are not a single run: $(cat "$dir/out.txt")"
+    done
+    for run in whole joined; do # all columns but times and what comes of them
+        awk '/^(uniform|cosine|brdf|env|mis|product) / && NF == 8 { print $1, $2, $3, $6, $7 }' "$dir/$run.txt" >"$dir/$run.rows"
+    done
+    [ "$(wc -l <"$dir/whole.rows")" = 6 ] && cmp -s "$dir/whole.rows" "$dir/joined.rows" && [ "$(grep -c '^strategy' "$dir/joined.txt")" = 3 ]
+    check $? "render: parts of $scene print other figures: $(cat "$dir/joined.txt")"
+done
+apart() { # part of the message, files: not joined, status 1 and one line before anything is written
+    said=$1
+    shift
+    "$render" --out "$dir/apart" --merge "$@" >"$dir/out.txt" 2>"$dir/err.txt"
+    [ $? = 1 ] && [ "$(wc -l <"$dir/err.txt")" = 1 ] && [ ! -s "$dir/out.txt" ] && grep -qF -e "$said" "$dir/err.txt" &&
+        ! ls "$dir"/apart* >/dev/null 2>&1
+    check $? "render: --merge where '$said': $(cat "$dir/err.txt")"
+}
+set -- "$dir/spheres-mis-1-of-4.sums" "$dir/spheres-mis-2-of-4.sums" "$dir/spheres-mis-3-of-4.sums"
+apart 'part 4 of 4 of mis is missing' "$@"
+apart 'part 2 of mis is given twice' "$@" "$2"
+apart 'is no part of the same picture' "$@" "$dir/room-mis-4-of-4.sums"
+apart 'part 1 of 4 of env is missing' "$@" "$dir/spheres-mis-4-of-4.sums" "$dir/spheres-env-3-of-4.sums"
+apart 'No such file' "$@" "$dir/missing.sums"
+head -c 2000 "$dir/spheres-mis-4-of-4.sums" >"$dir/cut.sums"
+apart 'a damaged one' "$@" "$dir/cut.sums"
+cat "$dir/spheres-mis-4-of-4.sums" "$dir/cut.sums" >"$dir/long.sums"
+apart 'a damaged one' "$@" "$dir/long.sums"
+sed '2s/mis/mit/' "$dir/spheres-mis-4-of-4.sums" >"$dir/other.sums"
+apart 'a damaged one' "$@" "$dir/other.sums"
+apart 'a damaged one' "$dir/whole.png"
+
 # --- arguments
 
 short() { # options: a small picture is rendered
@@ -77,6 +121,14 @@ wrong 'value is missing' --spp
 wrong 'unknown option' --bounces
 wrong 'unknown option' --help=all
 wrong 'only one map' a.hdr b.hdr
+for part in 0/4 5/4 1 1/ 1/0 a/b 1/2/3 -1/4; do wrong 'is not K/N' --part $part; done
+wrong '10 rows are no 11 parts' --part 1/11
+wrong 'learn from the whole picture' --part 1/2 --strategy mis,region
+wrong 'neither --seconds' --part 1/2 --seconds 1
+wrong 'neither --seconds' --part 1/2 --error 0.1
+wrong 'are for --merge' --part 1/2 --stack a.png
+wrong 'are for --merge' --part 1/2 --stops 1
+wrong 'is not for --merge' --merge a.sums
 
 short --size=60x20 --strategy=brdf --spp=3
 grep -q 'picture 60 x 20,' "$dir/out.txt" && [ "$(grep -c '^strategy' "$dir/out.txt")" = 1 ]
@@ -149,6 +201,7 @@ lost() { # what, options: status 1 and one line before anything is rendered
 mkdir "$dir/taken-env.hdr"
 lost "--out in no folder" --out "$dir/no/such"
 lost "--out where a folder is" --strategy mis,env --out "$dir/taken"
+lost "--part in no folder" --part 1/2 --out "$dir/no/such"
 lost "--stack in no folder" --stack "$dir/no/such.png"
 lost "--beside in no folder" --beside "$dir/no/such.png"
 [ ! -e "$dir/taken-mis.png" ]
@@ -167,6 +220,8 @@ if [ -c /dev/full ]; then
     full "the stack" "$dir/out.txt" --stack /dev/full
     ln -sf /dev/full "$dir/full-mis.hdr"
     full "a picture" "$dir/out.txt"
+    ln -sf /dev/full "$dir/full-mis-1-of-1.sums"
+    full "a part" "$dir/out.txt" --part 1/1
 else
     echo "SKIPPED: no /dev/full"
 fi
