@@ -305,7 +305,7 @@ BENCH_TAKES = $(shell $(CC) $(1) -E -x c /dev/null >/dev/null 2>&1 && echo '$(1)
 BENCH_SLEEF = $(shell mkdir -p $(BENCH) && printf '\043include <sleef.h>\nint main(void) { return Sleef_expf8_u10avx2 == 0; }\n' | \
 	$(CC) -mavx2 -x c - -o $(BENCH)/sleef.probe -lsleef 2>/dev/null && echo -DBENCH_SLEEF)
 BENCH_HEADERS = mcsample.h $(wildcard tests/*.h tests/bench/*.h) examples/hdr.h $(BUILD)/flags
-BENCH_BINS = $(BENCH)/throughput $(BENCH)/tables $(BENCH)/clock $(BENCH)/convergence $(BENCH)/shadow
+BENCH_BINS = $(BENCH)/throughput $(BENCH)/tables $(BENCH)/clock $(BENCH)/convergence $(BENCH)/shadow $(BENCH)/spectrum
 
 bench: ## run time against error, in tables, CSV files and plots; three minutes; build/bench
 	$(SAY)
@@ -315,6 +315,7 @@ bench: ## run time against error, in tables, CSV files and plots; three minutes;
 	@CLOCK=$(BENCH)/clock sh tests/bench/include.sh $(BENCH)
 	@$(BENCH)/convergence --out $(BENCH) $(MAPS)
 	@$(BENCH)/shadow --out $(BENCH) $(MAPS)
+	@$(BENCH)/spectrum --out $(BENCH)
 	@$(TOOK) "CSV files and plots in $(BENCH)"
 
 bench-quick: ## the same with less repetition and smaller tables; 45 s; build/bench
@@ -325,6 +326,7 @@ bench-quick: ## the same with less repetition and smaller tables; 45 s; build/be
 	@CLOCK=$(BENCH)/clock sh tests/bench/include.sh $(BENCH) quick
 	@$(BENCH)/convergence --quick --out $(BENCH) $(MAPS)
 	@$(BENCH)/shadow --quick --out $(BENCH) $(MAPS)
+	@$(BENCH)/spectrum --quick --out $(BENCH)
 	@$(TOOK) "CSV files and plots in $(BENCH)"
 
 $(BENCH)/wide8.o: tests/bench/wide.c $(BENCH_HEADERS)

@@ -22,8 +22,8 @@
     X(hash) X(sobol_bits) X(load) X(store)
 #define BITS_SCALAR(X) \
     X(pcg32_for) X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) \
-    X(philox_fill_n) X(sobol_n) X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) \
-    X(pwc_sample_bits) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) X(discrete_bytes) X(discrete_build) \
+    X(philox_fill_n) X(sobol_n) X(sobol_pixel) X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) \
+    X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) X(discrete_bytes) X(discrete_build) \
     X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) \
     X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(alias_bytes) X(alias_build) X(alias_sample) \
     X(alias_sample_bits) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) X(stat_error) X(stat_ci)
@@ -254,6 +254,7 @@ FN(sobol_n) {
     mcs_sobol_n(WORD(11), WORD(12) % 9, WORD(13), n, a);
     bits_put_array(out, 0, a, n);
 }
+FN(sobol_pixel) { PUT_WORD(0, mcs_sobol_pixel(WORD(11), WORD(12), WORD(13) >> (WORD(12) & 31), WORD(13))); }
 FN(stratified) { B_(put2)(out, 0, mcs_stratified(WORD(11), WORD(12) % 50, WORD(13) % 70, WORD(13))); }
 FN(latin) { PUT(0, mcs_latin(WORD(11), WORD(12) % 5000, WORD(13) % 9, WORD(13))); }
 

@@ -1,9 +1,10 @@
 /* The point sets: net properties counted, uniform marginals and independent randomisations by chi-square, permutations,
  * array and wide forms against scalar ones, and what all of it is for: the rate at which the error of a smooth integral
- * falls. */
+ * falls, and the spectrum of the error across a picture. */
 #include "mcs_test.h"
 #define MCS_PACKETS 16
 #include "mcsample.h"
+#include "spectrum.h"
 #include "stats.h"
 #include <math.h>
 
@@ -98,11 +99,11 @@ static void nets(void) {
             }
 }
 
-/* chi-square over `bins` equal bins; the level is Sidak's for the 22 tests of this file at 0.01. */
+/* chi-square over `bins` equal bins; the level is Sidak's for the 26 tests of this file at 0.01. */
 static void uniform(const double *count, int bins, double total, const char *what) {
     double expected[4096];
     for (int i = 0; i < bins; i++) expected[i] = total / bins;
-    CHECK(chi2_test(count, expected, (size_t)bins, NULL, NULL) >= sidak(0.01, 22), "%s is not uniform", what);
+    CHECK(chi2_test(count, expected, (size_t)bins, NULL, NULL) >= sidak(0.01, 26), "%s is not uniform", what);
 }
 
 static void randomisation(void) {
@@ -154,7 +155,7 @@ static void randomisation(void) {
             }
             seen[at[0] * 4 + at[1]]++;
         }
-        CHECK(chi2_test(seen, expected, 16, NULL, NULL) >= sidak(0.01, 22), "the shuffles of groups 1 and 2");
+        CHECK(chi2_test(seen, expected, 16, NULL, NULL) >= sidak(0.01, 26), "the shuffles of groups 1 and 2");
     }
 }
 
@@ -434,6 +435,140 @@ static void rates(void) {
           independent);
 }
 
+/* ---- points across a picture ---- */
+
+/* The pixels of a square whose sides are 2^k and a multiple of which is (x, y) have 4^k blocks of points in a row, from a
+ * multiple of that on. */
+static int square_is_block(uint32_t x, uint32_t y, uint32_t k, uint32_t log_n, uint32_t seed) {
+    const uint32_t pixels = 1u << (2 * k);
+    const uint32_t first = mcs_sobol_pixel(x, y, 1u << log_n, seed) >> log_n >> (2 * k);
+    int good = 1;
+    memset(hit, 0, pixels);
+    for (uint32_t i = 0; i < pixels; i++) {
+        const uint32_t index = mcs_sobol_pixel(x + i % (1u << k), y + (i >> k), 1u << log_n, seed);
+        good &= index % (1u << log_n) == 0 && index >> log_n >> (2 * k) == first;
+        good &= !hit[(index >> log_n) % pixels]++;
+    }
+    return good;
+}
+static void squares(void) {
+    if (mcst_case("squares of pixels have blocks of points"))
+        for (uint32_t log_n = 0; log_n <= 20; log_n++)
+            for (uint32_t k = 0; k <= 6; k++) {
+                const uint32_t side = 1u << k;
+                CHECK(square_is_block(0, 0, k, log_n, 1), "2^%u points, %u pixels at (0, 0)", log_n, side);
+                CHECK(square_is_block(37 * side, 5 * side, k, log_n, 2), "2^%u points, %u pixels", log_n, side);
+                CHECK(square_is_block(0u - side, side << 9, k, log_n, 3), "2^%u points, %u pixels", log_n, side);
+            }
+    if (mcst_case("the points of a pixel are a net"))
+        for (uint32_t i = 0; i < 8; i++) {
+            const uint32_t first = mcs_sobol_pixel(1000 + i % 4, i / 4, N, i / 2);
+            CHECK(broken_shapes(first, 0, 1, 0, i / 2) == 0, "pixel %u", i);
+            CHECK(broken_shapes(first, 4, 5, 0, i / 2) == 0, "pixel %u, the second group", i);
+        }
+    if (mcst_case("how many points a pixel has: rounded up, 1 to 2^20")) {
+        CHECK(mcs_sobol_pixel(3, 5, 0, 1) == mcs_sobol_pixel(3, 5, 1, 1), "0");
+        CHECK(mcs_sobol_pixel(3, 5, 3, 1) == mcs_sobol_pixel(3, 5, 4, 1), "3");
+        CHECK(mcs_sobol_pixel(3, 5, 513, 1) == mcs_sobol_pixel(3, 5, 1024, 1), "513");
+        CHECK(mcs_sobol_pixel(3, 5, 0xffffffffu, 1) == mcs_sobol_pixel(3, 5, 1u << 20, 1), "2^32 - 1");
+    }
+}
+
+/* Which of the 24 orders the quadrants have in the square of 2^(level + 1) pixels at (x, y). */
+static uint32_t order(uint32_t x, uint32_t y, uint32_t level, uint32_t seed) {
+    uint32_t digit[4];
+    for (uint32_t i = 0; i < 4; i++) {
+        const uint32_t index = mcs_sobol_pixel(x + (i % 2 << level), y + (i / 2 << level), 4, seed);
+        digit[i] = index >> 2 >> (2 * level) & 3;
+    }
+    const uint32_t second = digit[1] - (digit[1] > digit[0]);
+    const uint32_t third = digit[2] - (digit[2] > digit[0]) - (digit[2] > digit[1]);
+    return digit[0] * 6 + second * 2 + third;
+}
+static void orders(void) {
+    enum { ORDERS = 24, DRAWS = 1 << 17 };
+    static double count[ORDERS * ORDERS];
+    if (!mcst_case("the order of four is random over squares, levels and seeds")) return;
+    memset(count, 0, sizeof count);
+    for (uint32_t i = 0; i < DRAWS; i++) count[order(i % 512 * 2, i / 512 * 2, 0, 1)]++;
+    uniform(count, ORDERS, DRAWS, "the order of a square");
+    memset(count, 0, sizeof count);
+    for (uint32_t i = 0; i < DRAWS; i++)
+        count[order(i % 512 * 4, i / 512 * 4, 0, 1) * ORDERS + order(i % 512 * 4 + 2, i / 512 * 4, 0, 1)]++;
+    uniform(count, ORDERS * ORDERS, DRAWS, "the pair of orders of neighbours");
+    memset(count, 0, sizeof count);
+    for (uint32_t i = 0; i < DRAWS; i++) count[order(0, 0, 0, i) * ORDERS + order(0, 0, 1, i)]++;
+    uniform(count, ORDERS * ORDERS, DRAWS, "the pair of orders of two levels");
+    memset(count, 0, sizeof count);
+    for (uint32_t i = 0; i < DRAWS; i++) {
+        const uint32_t x = i % 512 * 2;
+        const uint32_t y = i / 512 * 2;
+        count[order(x, y, 0, 1) * ORDERS + order(x, y, 0, 2)]++;
+    }
+    uniform(count, ORDERS * ORDERS, DRAWS, "the pair of orders of neighbouring seeds");
+}
+
+/* Seed and first dimension of the pictures below. */
+static uint32_t picture_seed, picture_dim;
+static mcs_vec2 pixel_sobol(uint32_t x, uint32_t y, uint32_t s, uint32_t n) {
+    const uint32_t index = mcs_sobol_pixel(x, y, n, picture_seed) + s;
+    mcs_vec2 p;
+    p.x = mcs_sobol(index, picture_dim, picture_seed);
+    p.y = mcs_sobol(index, picture_dim + 1, picture_seed);
+    return p;
+}
+static mcs_vec2 pixel_philox(uint32_t x, uint32_t y, uint32_t s, uint32_t n) {
+    (void)n;
+    return by_philox(s, x, y);
+}
+static double smooth_error(mcs_vec2 p) { return smooth((double)p.x, (double)p.y) - smooth_mean; }
+/* erf(1)^2 pi/4 is its mean. */
+static double bell_error(mcs_vec2 p) {
+    return exp(-(double)p.x * (double)p.x - (double)p.y * (double)p.y) - 0.557746285;
+}
+
+/* A wave has its own frequency alone. */
+static void transform(void) {
+    double re[SPECTRUM_W], im[SPECTRUM_W];
+    if (!mcst_case("the transform of a wave")) return;
+    for (uint32_t wave = 0; wave < SPECTRUM_W; wave += 5) {
+        for (uint32_t i = 0; i < SPECTRUM_W; i++) {
+            const double turn = 2 * 3.14159265358979323846 * (i * wave % SPECTRUM_W) / SPECTRUM_W;
+            re[i] = cos(turn);
+            im[i] = sin(turn);
+        }
+        spectrum_transform(re, im, 1);
+        for (uint32_t i = 0; i < SPECTRUM_W; i++)
+            CHECK(fabs(re[i] - (i == wave ? SPECTRUM_W : 0)) < 1e-10 && fabs(im[i]) < 1e-10, "wave %u at %u: %g, %g",
+                  wave, i, re[i], im[i]);
+    }
+}
+/* Below 1/16 cycles a pixel are 800 frequencies, of which half are those of the other half mirrored: the mean of 400
+ * numbers with an exponential distribution, where the error is white, has a standard deviation of 0.05. */
+static void spectra(void) {
+    enum { LOW = SPECTRUM_W / 16 };
+    transform();
+    for (uint32_t n = 1; n <= 16; n *= 4) {
+        if (mcst_case("independent points, %u a pixel: white noise", n)) {
+            const spectrum s = spectrum_of(pixel_philox, smooth_error, 0, 0, n);
+            CHECK(fabs(spectrum_mean(&s, 1, LOW) - 1) <= 0.25, "%g", spectrum_mean(&s, 1, LOW));
+        }
+        if (!mcst_case("points across a picture, %u a pixel: low frequencies have at most a tenth", n)) continue;
+        for (picture_seed = 0; picture_seed < 3; picture_seed++)
+            for (picture_dim = 0; picture_dim < 6; picture_dim += 2) {
+                /* In steps of half a tile or less; the last one lies across the end of the numbers of pixels. */
+                const uint32_t at = picture_seed < 2 ? 77 * picture_seed : 0u - 100;
+                const uint32_t low = picture_dim == 2 ? LOW / 2 : LOW;
+                spectrum s = spectrum_of(pixel_sobol, smooth_error, at, 2 * at, n);
+                CHECK(spectrum_mean(&s, 1, low) <= 0.1, "seed %u, dimension %u: %g", picture_seed, picture_dim,
+                      spectrum_mean(&s, 1, low));
+                if (picture_dim > 0) continue;
+                s = spectrum_of(pixel_sobol, bell_error, at, 2 * at, n);
+                CHECK(spectrum_mean(&s, 1, low) <= 0.1, "a bell, seed %u: %g", picture_seed, spectrum_mean(&s, 1, low));
+            }
+    }
+}
+
 int main(int argc, char **argv) {
     mcst_start(argc, argv);
     mcst_group("points, nets");
@@ -448,5 +583,9 @@ int main(int argc, char **argv) {
     forms();
     mcst_group("points, rates");
     rates();
+    mcst_group("points, pictures");
+    squares();
+    orders();
+    spectra();
     return mcst_finish();
 }

@@ -181,6 +181,7 @@ static void fuzz_numbers(bytes *b) {
     MUST(mcs_u01_open(i) > 0 && mcs_u01_open(i) < 1);
     MUST(mcs_u01(mcs_sobol_bits(i, dim, seed)) == mcs_sobol(i, dim, seed));
     MUST(mcs_u01(mcs_hash(i, seed)) < 1);
+    MUST(mcs_sobol_pixel(nx, ny, i | 64u, seed) % 64u == 0);
     mcs_pcg32_advance(&g, key);
     mcs_pcg32 back = g;
     MUST(below_one(mcs_pcg32_float(&g)));
