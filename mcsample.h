@@ -3,8 +3,8 @@
  * The header draws points and directions from the densities that a renderer needs, and it tells the density of any
  * point. It covers lines, disks and spheres of directions, phase functions, the Phong, Ward, Beckmann, GGX and
  * Ashikhmin-Shirley lobes, tables of numbers, environment maps, and the product of a map with a lobe. Random numbers,
- * well-spread points, weights for multiple importance sampling and a running mean that knows its error come with it.
- * The licence (MIT) stands at the end.
+ * well-spread points, weights for multiple importance sampling, reservoirs and a running mean that knows its error come
+ * with it. The licence (MIT) stands at the end.
  *
  * ---- How to include it ----
  *
@@ -129,6 +129,7 @@
  *   [env]         environment maps                                         light from all around
  *   [product]     map times lobe times cosine                              light from all around on a given surface
  *   [region]      what a part of a scene learns of its light               the same where things stand in the way
+ *   [reservoir]   one or k of the candidates that come along               many lights, resampling
  *   [estimator]   mean, variance, standard error                           every estimate
  *
  * The rest is for maintainers.
@@ -1955,6 +1956,74 @@ MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger);
 /* V of tile k, 0 where k is no tile. */
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
 #endif
+
+/* ==== [reservoir] one or k of the candidates that come along ========================================================
+ * A reservoir sees each candidate once and keeps one, or k different ones, by weight. It takes any number of candidates
+ * without a table of them: all lights of a scene, or what resampled importance sampling draws. That has candidates x
+ * from a density p that is easy to draw from, and a target, any function >= 0 that is like the integrand f. Where the
+ * target is 0, f has to be 0.
+ *
+ *     mcs_reservoir r = {0, 0, 0};
+ *     for (uint32_t i = 0; i < n; i++)
+ *         mcs_reservoir_add(&r, i, target(x[i]) / p[i], u[i]);
+ *     if (r.total > 0) integral += f(x[r.i]) * mcs_reservoir_weight(&r, target(x[r.i]));
+ *
+ *   i        the candidate's number, for the caller alone
+ *   w        its weight, >= 0, of any scale: target over density here. 0, negative ones and NaN are never taken,
+ *            +infinity counts as FLT_MAX.
+ *   u        in [0,1), another one for each call. Taken from a counter, mcs_u01(mcs_philox(seed, i, 0).v[0]) say, it
+ *            does not depend on the thread that adds the candidate. A float has 24 bits: the probability of a candidate
+ *            is then off by up to 2^-24. Beyond some thousand candidates give doubles of 32 bits and more. With a bad u
+ *            a candidate is taken, or is not.
+ *
+ * threads    Each has a reservoir of its own. Merged, they have the distribution of one that saw all candidates, in any
+ *            order. Those of k are then even the same to the bit, array and all, as long as candidates have their u and
+ *            different numbers.
+ * accuracy   weights 2.5e-7 relative
+ * cost       one: a product and a sum. k: a logarithm and a division, and k/2 moves of 16 bytes where one is kept,
+ *            which k ln(n/k) of n are.
+ * source     Chao 1982 (one); Efraimidis and Spirakis 2006 (k, the keys u^(1/w), here the logarithms); Cohen and Kaplan
+ *            2007, "Summarizing data using bottom-k sketches" (their weights); Talbot, Cline and Egbert 2005
+ *            (resampling) */
+
+/* One of all candidates so far, each with probability w/total. All zeros is the empty one. */
+typedef struct {
+    double total; /* the sum of weights */
+    double n;     /* how many candidates, those of weight 0 too */
+    uint32_t i;   /* the one that is kept, where total > 0 */
+} mcs_reservoir;
+/* Adds a candidate. Returns 1 where it is now the one that is kept, else 0. */
+MCS_FN int mcs_reservoir_add(mcs_reservoir *r, uint32_t i, float w, double u);
+/* Adds all candidates of other. Returns 1 where that of other is now the one that is kept, else 0. Reservoirs of the
+ * same target are merged as they are. Where other had another one, multiply its total before by the quotient of both
+ * targets at its candidate. A total that is negative or NaN counts as 0. Sums of totals are at most DBL_MAX. */
+MCS_FN int mcs_reservoir_merge(mcs_reservoir *r, const mcs_reservoir *other, double u);
+/* What stands for 1/p: total / (n target), target being that of the one that is kept. It is 0 where total or n is 0,
+ * and where target is 0 or bad. For a sum over all candidates instead of an integral, multiply by n. */
+MCS_FN float mcs_reservoir_weight(const mcs_reservoir *r, float target);
+
+/* A candidate that is kept. The lower the key, the earlier it would have been drawn. */
+typedef struct {
+    double key;
+    float w;
+    uint32_t i;
+} mcs_kept;
+/* The first k of all candidates so far that draws by weight without replacement would give. */
+typedef struct {
+    mcs_kept *kept; /* count of them, in the order in which they would be drawn */
+    uint32_t k, count;
+    double next; /* private: the lowest key of a candidate that is not kept, 1e100 where there is none */
+} mcs_reservoir_k;
+/* An empty one. kept is the caller's, room for k. Where it is NULL, k is 0. */
+MCS_FN mcs_reservoir_k mcs_reservoir_k_make(mcs_kept *kept, uint32_t k);
+/* Adds a candidate. Returns 1 where it is kept, else 0. */
+MCS_FN int mcs_reservoir_k_add(mcs_reservoir_k *r, uint32_t i, float w, double u);
+/* Adds all candidates of other, which is not r itself. Where other has another k, fewer may be kept. */
+MCS_FN void mcs_reservoir_k_merge(mcs_reservoir_k *r, const mcs_reservoir_k *other);
+/* For a sum over all candidates: its estimate is the sum of f times this over those that are kept. It is 1 over the
+ * probability with which candidate `at` of them is kept, given all other keys; 0 from count on. The variance is
+ * infinite for a k of 1. */
+MCS_FN float mcs_reservoir_k_weight(const mcs_reservoir_k *r, uint32_t at);
 
 /* ==== [estimator] running mean, variance and standard error ========================================================
  * Estimates an integral as the mean of f(x)/pdf(x) over the samples, and tells how far off that mean may be. Four times
@@ -8946,6 +9015,75 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
 #endif
 
 #if MCSI_W == 1
+/* ==== [reservoir] bodies ========================================================================================== */
+
+/* Adds n candidates of weight w in all, of which i is to be kept. The first weight is never left, whatever u is. */
+MCS_FN int mcsi_reservoir_take(mcs_reservoir *r, double n, double w, uint32_t i, double u) {
+    MCSI_REQUIRE(u >= 0.0 && u < 1.0);
+    const double total = r->total + w;
+    const int taken = w > 0.0 && (total <= w || !(u * total >= w));
+    r->total = total <= DBL_MAX ? total : DBL_MAX;
+    r->n += n;
+    if (taken) r->i = i;
+    return taken;
+}
+MCS_FN int mcs_reservoir_add(mcs_reservoir *r, uint32_t i, float w, double u) {
+    return mcsi_reservoir_take(r, 1.0, (double)mcsi_sane_result(1, w), i, u);
+}
+MCS_FN int mcs_reservoir_merge(mcs_reservoir *r, const mcs_reservoir *other, double u) {
+    return mcsi_reservoir_take(r, other->n, other->total > 0.0 ? other->total : 0.0, other->i, u);
+}
+MCS_FN float mcs_reservoir_weight(const mcs_reservoir *r, float target) {
+    if (!(r->n > 0.0 && target > 0.0f && target <= FLT_MAX)) return 0.0f;
+    const double weight = r->total / r->n / (double)target;
+    return weight < (double)FLT_MAX ? (float)weight : FLT_MAX;
+}
+
+/* Keys are exponentially distributed with rate w: the least of them is that of a candidate with probability w/total,
+ * and what is then left goes on as if nothing had been. Given the other keys, a candidate is kept where its own is
+ * below the k-th of those. That one is `next` for all that are kept, so their probabilities are 1 - e^(-w next). */
+
+MCS_FN mcs_reservoir_k mcs_reservoir_k_make(mcs_kept *kept, uint32_t k) {
+    const mcs_reservoir_k r = {kept, kept ? k : 0u, 0u, 1e100};
+    return r;
+}
+/* Equal keys are in the order of numbers, so that nothing depends on the order of calls. */
+MCS_FN int mcsi_reservoir_k_put(mcs_reservoir_k *r, mcs_kept c) {
+    if (c.key > r->next) return 0;
+    uint32_t at = r->count;
+    for (; at > 0; at--) {
+        const mcs_kept last = r->kept[at - 1];
+        if (last.key < c.key || (last.key == c.key && last.i <= c.i)) break;
+        if (at < r->k) r->kept[at] = last;
+        else r->next = last.key;
+    }
+    if (at < r->k) r->kept[at] = c;
+    else r->next = c.key;
+    if (r->count < r->k) r->count++;
+    return at < r->k;
+}
+MCS_FN int mcs_reservoir_k_add(mcs_reservoir_k *r, uint32_t i, float w, double u) {
+    MCSI_REQUIRE(u >= 0.0 && u < 1.0);
+    const float weight = mcsi_sane_result(1, w);
+    if (!(weight > 0.0f)) return 0;
+    const float sane_u = mcsi_min(mcsi_max((float)u, 0.0f), 0.99999994f);
+    const mcs_kept c = {(double)-mcsi_log1m(sane_u) / (double)weight, weight, i};
+    return mcsi_reservoir_k_put(r, c);
+}
+/* What other has left out may come before what is kept here. */
+MCS_FN void mcs_reservoir_k_merge(mcs_reservoir_k *r, const mcs_reservoir_k *other) {
+    for (uint32_t j = 0; j < other->count; j++) mcsi_reservoir_k_put(r, other->kept[j]);
+    if (other->next < r->next) r->next = other->next;
+    while (r->count > 0 && r->kept[r->count - 1].key > r->next) r->count--;
+}
+MCS_FN float mcs_reservoir_k_weight(const mcs_reservoir_k *r, uint32_t at) {
+    if (at >= r->count) return 0.0f;
+    const double x = (double)r->kept[at].w * r->next;
+    float minus_p;
+    mcsi_exp_both(x < 80.0 ? (float)-x : -80.0f, &minus_p);
+    return minus_p < -2.938736e-39f ? -1.0f / minus_p : FLT_MAX;
+}
+
 /* ==== [estimator] bodies ========================================================================================= */
 
 /* Values up to DBL_MAX are good, so their differences and the squares of these may overflow. Differences are therefore

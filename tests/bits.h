@@ -26,7 +26,9 @@
     X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) X(discrete_bytes) X(discrete_build) \
     X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) \
     X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(alias_bytes) X(alias_build) X(alias_sample) \
-    X(alias_sample_bits) X(alias_pmf) X(stat_add) X(stat_merge) X(stat_variance) X(stat_error) X(stat_ci)
+    X(alias_sample_bits) X(alias_pmf) X(reservoir_add) X(reservoir_merge) X(reservoir_weight) X(reservoir_k_make) \
+    X(reservoir_k_add) X(reservoir_k_merge) X(reservoir_k_weight) X(stat_add) X(stat_merge) X(stat_variance) \
+    X(stat_error) X(stat_ci)
 #define BITS_MAPPED(X) \
     X(image_make) X(env_bytes) X(env_build) X(env_build_rows) X(env_finish) X(env_check) X(env_mean) X(env_sample) \
     X(env_sample_bits) X(env_pdf) X(env_invert) X(env_texel) X(env_weight) X(env_window_bytes) X(env_window_build) \
@@ -383,6 +385,68 @@ FN(alias_pmf) {
     PUT(0, mcs_alias_pmf(t, WORD(13) % BITS_CELLS));
 }
 #undef TABLE
+
+/* Candidate i of a reservoir: weights over 20 decades, one of eight is 0 or bad. */
+MCST_HD static float bits_weight(const float *in, uint32_t i) {
+    const uint32_t h = mcs_hash(WORD(11), i);
+    return h % 8 == 0 ? bits_bad(-1.0f) : (1.0f + mcs_u01(h)) * (h % 8 == 1 ? 1e10f : h % 8 == 2 ? 1e-10f : 1.0f);
+}
+MCST_HD static mcs_reservoir bits_reservoir(const float *in, uint32_t count) {
+    mcs_reservoir r = {0.0, 0.0, 0};
+    uint32_t i;
+    for (i = 0; i < count; i++) mcs_reservoir_add(&r, i, bits_weight(in, i), (double)mcs_u01(mcs_hash(WORD(12), i)));
+    return r;
+}
+MCST_HD static void bits_put_reservoir(float *out, mcs_reservoir r) {
+    bits_put_double(out, 0, r.total), bits_put_double(out, 2, r.n), PUT_WORD(4, r.i);
+}
+FN(reservoir_add) { bits_put_reservoir(out, bits_reservoir(in, WORD(13) % 9)); }
+FN(reservoir_merge) {
+    mcs_reservoir r = bits_reservoir(in, WORD(13) % 9);
+    const mcs_reservoir other = bits_reservoir(in + 1, WORD(13) / 9 % 9);
+    PUT_WORD(5, (uint32_t)mcs_reservoir_merge(&r, &other, (double)IN(6)));
+    bits_put_reservoir(out, r);
+}
+FN(reservoir_weight) {
+    const mcs_reservoir r = bits_reservoir(in, WORD(13) % 9);
+    PUT(0, mcs_reservoir_weight(&r, IN(6)));
+}
+enum { BITS_KEPT = 3 };
+MCST_HD static mcs_reservoir_k bits_reservoir_k(const float *in, mcs_kept *kept, uint32_t count) {
+    mcs_reservoir_k r = mcs_reservoir_k_make(kept, BITS_KEPT);
+    uint32_t i;
+    for (i = 0; i < count; i++) mcs_reservoir_k_add(&r, i, bits_weight(in, i), (double)mcs_u01(mcs_hash(WORD(12), i)));
+    return r;
+}
+MCST_HD static void bits_put_reservoir_k(float *out, const mcs_reservoir_k *r) {
+    uint32_t i;
+    for (i = 0; i < r->count; i++) bits_put_double(out, 2 * (int)i, r->kept[i].key);
+    PUT_WORD(6, r->count ? r->kept[r->count - 1].i : r->k);
+    PUT_WORD(7, r->count), bits_put_double(out, 8, r->next);
+}
+FN(reservoir_k_make) {
+    mcs_kept kept[BITS_KEPT];
+    const mcs_reservoir_k r = mcs_reservoir_k_make(WORD(11) % 4 ? kept : NULL, WORD(12) % (BITS_KEPT + 1));
+    bits_put_reservoir_k(out, &r);
+}
+FN(reservoir_k_add) {
+    mcs_kept kept[BITS_KEPT];
+    const mcs_reservoir_k r = bits_reservoir_k(in, kept, WORD(13) % 9);
+    bits_put_reservoir_k(out, &r);
+}
+FN(reservoir_k_merge) {
+    mcs_kept kept[2][BITS_KEPT];
+    mcs_reservoir_k r = bits_reservoir_k(in, kept[0], WORD(13) % 9);
+    const mcs_reservoir_k other = bits_reservoir_k(in + 1, kept[1], WORD(13) / 9 % 9);
+    mcs_reservoir_k_merge(&r, &other);
+    bits_put_reservoir_k(out, &r);
+}
+FN(reservoir_k_weight) {
+    mcs_kept kept[BITS_KEPT];
+    const mcs_reservoir_k r = bits_reservoir_k(in, kept, WORD(13) % 9);
+    int i;
+    for (i = 0; i <= BITS_KEPT; i++) PUT(i, mcs_reservoir_k_weight(&r, (uint32_t)i));
+}
 
 MCST_HD static mcs_stat bits_stat(const float *in, int count) {
     mcs_stat s = {0.0, 0.0, 0.0};

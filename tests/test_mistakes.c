@@ -234,6 +234,16 @@ static void check_tables(void) {
     TELLS("mcs_env_window_pdf", mcs_env_window_pdf(window, e, w));
 }
 
+static void check_reservoirs(void) {
+    mcs_kept kept[2];
+    mcs_reservoir_k k = mcs_reservoir_k_make(kept, 2);
+    mcs_reservoir r = {0, 0, 0};
+    const mcs_reservoir other = {1, 1, 0};
+    TELLS_U("mcs_reservoir_add", mcs_reservoir_add(&r, 1, 1.0f, (double)u));
+    TELLS_U("mcs_reservoir_merge", mcs_reservoir_merge(&r, &other, (double)u));
+    TELLS_U("mcs_reservoir_k_add", mcs_reservoir_k_add(&k, 1, 1.0f, (double)u));
+}
+
 /* A region has another size than what it is used with; it is larger, so that nothing is read behind it. */
 static void check_regions(const mcs_tiles *t, const mcs_tiles *larger, const mcs_env *e, const mcs_reflection *r) {
     const size_t bytes = mcs_region_bytes(32);
@@ -329,6 +339,7 @@ int main(int argc, char **argv) {
     if (mcst_case("functions of directions")) check_vectors();
     if (mcst_case("indices of refraction")) check_indices();
     if (mcst_case("tables and maps")) check_tables();
+    if (mcst_case("reservoirs")) check_reservoirs();
     if (mcst_case("products")) check_products();
     if (mcst_case("turned by 100 frames")) check_turns();
     return mcst_finish();

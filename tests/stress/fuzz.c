@@ -250,6 +250,23 @@ static void fuzz_estimator(bytes *b) {
     MUST(isfinite(mcs_stat_error(&all)) && isfinite(mcs_stat_ci(&all, 1.96)) && isfinite(mcs_stat_variance(&parts[0])));
 }
 
+static void fuzz_reservoirs(bytes *b) {
+    mcs_kept kept[2][4];
+    mcs_reservoir one[2] = {{0, 0, 0}, {0, 0, 0}};
+    mcs_reservoir_k some[2] = {mcs_reservoir_k_make(kept[0], take_u8(b) % 5), mcs_reservoir_k_make(kept[1], 4)};
+    for (uint32_t i = 0; b->left; i++) {
+        const float w = take_float(b);
+        const double u = (double)take_float(b);
+        MUST(mcs_reservoir_add(&one[i & 1], i, w, u) <= (w > 0));
+        MUST(mcs_reservoir_k_add(&some[i & 1], i, w, u) <= (w > 0));
+    }
+    mcs_reservoir_merge(&one[0], &one[1], 0.5);
+    MUST(one[0].total >= 0 && isfinite(one[0].total) && proper(mcs_reservoir_weight(&one[0], 1e-30f)));
+    mcs_reservoir_k_merge(&some[0], &some[1]);
+    MUST(some[0].count <= some[0].k);
+    for (uint32_t i = 0; i <= some[0].count; i++) MUST(proper(mcs_reservoir_k_weight(&some[0], i)));
+}
+
 enum { PWC, PWL, ALIAS, FROM_FUNCTION, KINDS };
 
 static float next_entry(float x, void *context) {
@@ -638,10 +655,20 @@ static void fuzz_file(bytes *b) {
     free(e);
 }
 
-enum { NUMBERS = MCST_NROWS, VECTORS, ESTIMATOR, TABLES, ENV = TABLES + KINDS, PRODUCT, ENV_FILE, FUNCTIONS };
+enum {
+    NUMBERS = MCST_NROWS,
+    VECTORS,
+    ESTIMATOR,
+    RESERVOIRS,
+    TABLES,
+    ENV = TABLES + KINDS,
+    PRODUCT,
+    ENV_FILE,
+    FUNCTIONS
+};
 static const char *const other_name[FUNCTIONS - MCST_NROWS] = {
-    "numbers", "vectors",           "estimator",   "pwc",     "pwl",
-    "alias",   "pwc of a function", "environment", "product", "environment file"};
+    "numbers",           "vectors",     "estimator", "reservoirs",      "pwc", "pwl", "alias",
+    "pwc of a function", "environment", "product",   "environment file"};
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -654,6 +681,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     else if (which == NUMBERS) fuzz_numbers(&b);
     else if (which == VECTORS) fuzz_vectors(&b);
     else if (which == ESTIMATOR) fuzz_estimator(&b);
+    else if (which == RESERVOIRS) fuzz_reservoirs(&b);
     else if (which == ENV || which == PRODUCT) fuzz_env(which == PRODUCT, &b);
     else if (which == ENV_FILE) fuzz_file(&b);
     else fuzz_table(which - TABLES, &b);
