@@ -1431,17 +1431,18 @@ MCS_FN float mcs_mis_power(float pf, float pg);
 MCS_FN float mcs_mix_pdf(float c, float pf, float pg);
 
 /* ==== [tables] densities and probabilities given as numbers ====================================================
- * Lists of numbers, turned once into a table from which entries are drawn in proportion. Four kinds:
+ * Lists of numbers, turned once into a table from which entries are drawn in proportion. Five kinds:
  *
  *   pwc        piecewise constant density on [0,1], n cells. For histograms, and functions known at many points.
  *   discrete   n probabilities: which light, which triangle. It is a pwc table read by entries.
  *   pwl        piecewise linear density on [0,1], n cells between n + 1 vertices. Continuous.
+ *   pwc2       piecewise constant density on the unit square, w x h cells. It draws a row, then a column of it.
  *   alias      n probabilities in one look-up. The map from u jumps about, so that stratified u are lost. Only for
  *              independent u and tables much larger than the cache.
  *
  * memory         The caller's, 8-byte aligned, mcs_x_bytes(n) bytes. A table holds no pointers: it may be copied,
  *                written to a file or shared by threads. Once built it is constant. The same list makes the same bytes.
- * size           24 bytes and per entry: pwc and discrete 6 to 8 bytes, pwl 10 to 12, alias 16.
+ * size           24 bytes and per entry: pwc and discrete 6 to 8 bytes, pwl 10 to 12, alias 16. pwc2: as h + 1 pwc.
  * n              1 to 2^28 entries. The x of pwc and pwl is a float: beyond 2^24 cells it cannot tell them apart.
  * probabilities  Integers that add up to exactly 2^31: sample, pdf and pmf agree exactly. Every entry that is not zero
  *                has a share (a u of 24 bits may miss it below 2^-24), and zero entries are never drawn.
@@ -1528,6 +1529,36 @@ MCS_API mcs_cell mcs_pwl_sample_bits(const mcs_pwl *t, uint32_t b1, uint32_t b2)
 MCS_API float mcs_pwl_pdf(const mcs_pwl *t, float x);
 /* The u that is mapped to x; 0 below 0 and for NaN, 1 - 2^-24 beyond 1. */
 MCS_API float mcs_pwl_invert(const mcs_pwl *t, float x);
+
+/* A point of the unit square, its density per area (0 for a bad u), and its cell. */
+typedef struct {
+    float x, y, pdf;
+    uint32_t col, row;
+} mcs_cell2;
+/* The header of a table of w x h cells; the rows, a pwc of h cells, and the columns of each row follow in memory. */
+typedef struct {
+    double total;     /* sum of the entries */
+    uint32_t w, h;    /* columns and rows */
+    uint32_t bad;     /* entries that were negative, NaN or infinite */
+    uint32_t shift;   /* private */
+    uint32_t uniform; /* 1 where all entries are zero: all cells are alike */
+    uint32_t unused;
+} mcs_pwc2;
+/* Bytes of a table of w x h cells; 0 where one of them is 0 or above 65536, or where they are too many for memory. */
+MCS_API size_t mcs_pwc2_bytes(uint32_t w, uint32_t h);
+/* From w h densities, of any scale, row by row from y = 0 on. f must not overlap the table. */
+MCS_API mcs_status mcs_pwc2_build(mcs_pwc2 *t, size_t bytes, const float *f, uint32_t w, uint32_t h);
+/* Draws (x, y). u1 (columns) and u2 (rows) in [0,1), else the density is 0. x increases with u1, y with u2. */
+MCS_API mcs_cell2 mcs_pwc2_sample(const mcs_pwc2 *t, float u1, float u2);
+/* Density at (x, y); 0 outside the unit square. */
+MCS_API float mcs_pwc2_pdf(const mcs_pwc2 *t, float x, float y);
+/* The (u1, u2) that are mapped to (x, y), each within [0, 1 - 2^-24]; 0 for NaN. */
+MCS_API mcs_vec2 mcs_pwc2_invert(const mcs_pwc2 *t, float x, float y);
+#ifndef MCS_NO_BATCH
+/* n draws, which fetch memory ahead; x, y, pdf, col and row may be NULL, and the floats may be u1 or u2. */
+MCS_API void mcs_pwc2_sample_n(const mcs_pwc2 *t, size_t n, const float *u1, const float *u2, float *x, float *y,
+                               float *pdf, uint32_t *col, uint32_t *row);
+#endif
 
 /* Bytes of a table of n probabilities; 0 where n is 0 or too large. */
 MCS_API size_t mcs_alias_bytes(uint32_t n);
@@ -6105,6 +6136,98 @@ MCS_API float mcs_discrete_pmf(const mcs_discrete *t, uint32_t i) {
     const mcsi_cdf c = mcsi_pwc_cdf(t);
     return (float)((double)mcsi_cdf_mass(&c, i) / MCSI_ONE);
 }
+
+/* ---- [tables] pwc2: the rows are a pwc table behind the header, and the columns of each are one behind that ---- */
+
+enum { MCSI_PWC2_MAX = 65536, MCSI_PWC2_BLOCK = 32 };
+MCSI_CORE const mcs_pwc *mcsi_pwc2_rows(const mcs_pwc2 *t) { return MCSI_READ(mcs_pwc, t, sizeof *t); }
+/* Offset of the columns of a row. */
+MCSI_CORE size_t mcsi_pwc2_offset(const mcs_pwc2 *t, uint32_t row) {
+    return sizeof *t + mcsi_pwc_layout(t->h, mcsi_pwc2_rows(t)->shift).pwc_bytes +
+           row * mcsi_pwc_layout(t->w, t->shift).pwc_bytes;
+}
+MCSI_CORE const mcs_pwc *mcsi_pwc2_columns(const mcs_pwc2 *t, uint32_t row) {
+    return MCSI_READ(mcs_pwc, t, mcsi_pwc2_offset(t, row));
+}
+/* A cell takes 112 bytes at most, where it is the only one. */
+MCS_API size_t mcs_pwc2_bytes(uint32_t w, uint32_t h) {
+    if (w == 0 || h == 0 || w > MCSI_PWC2_MAX || h > MCSI_PWC2_MAX || (size_t)-1 / w / h < 128) return 0;
+    return sizeof(mcs_pwc2) + mcs_pwc_bytes(h) + h * mcs_pwc_bytes(w);
+}
+/* A row weighs the mean of its cells. One with a cell that is not zero must not weigh nothing. */
+MCS_API mcs_status mcs_pwc2_build(mcs_pwc2 *t, size_t bytes, const float *f, uint32_t w, uint32_t h) {
+    const mcs_status status = mcsi_table_check(t, bytes, f, mcs_pwc2_bytes(w, h));
+    if (status) return status;
+    const mcs_pwc2 start = {0.0, w, h, 0, mcsi_guide_shift(w, 1), 0, 0};
+    *t = start;
+    mcs_pwc *rows = MCSI_WRITE(mcs_pwc, t, sizeof *t);
+    rows->shift = mcsi_guide_shift(h, 1);
+    const mcsi_pwc_offsets o = mcsi_pwc_layout(h, rows->shift);
+    for (uint32_t row = 0; row < h; row++) {
+        mcs_pwc *columns = MCSI_WRITE(mcs_pwc, t, mcsi_pwc2_offset(t, row));
+        mcs_pwc_build(columns, mcs_pwc_bytes(w), f + (size_t)row * w, w);
+        const float least = columns->uniform ? 0.0f : 1.4e-45f;
+        mcsi_put_weight(MCSI_WRITE(uint32_t, rows, o.sums) + row, mcsi_max((float)(columns->total / w), least));
+        t->bad += columns->bad;
+        t->total += columns->total;
+    }
+    mcsi_pwc_pad(rows, o.vertices, o.pwc_bytes);
+    mcsi_pwc_fill(rows, h, 0);
+    t->uniform = rows->uniform;
+    return MCS_OK;
+}
+MCSI_CORE mcs_cell2 mcsi_pwc2_cell(const mcs_pwc2 *t, mcs_cell row, float u1) {
+    const mcs_cell column = mcs_pwc_sample(mcsi_pwc2_columns(t, row.i), u1);
+    const mcs_cell2 c = {column.x, row.x, column.pdf * row.pdf, column.i, row.i};
+    return c;
+}
+MCS_API mcs_cell2 mcs_pwc2_sample(const mcs_pwc2 *t, float u1, float u2) {
+    return mcsi_pwc2_cell(t, mcs_pwc_sample(mcsi_pwc2_rows(t), u2), u1);
+}
+MCS_API float mcs_pwc2_pdf(const mcs_pwc2 *t, float x, float y) {
+    const mcs_pwc *rows = mcsi_pwc2_rows(t);
+    return mcs_pwc_pdf(rows, y) * mcs_pwc_pdf(mcsi_pwc2_columns(t, mcsi_entry_of_x(rows, y).i), x);
+}
+MCS_API mcs_vec2 mcs_pwc2_invert(const mcs_pwc2 *t, float x, float y) {
+    const mcs_pwc *rows = mcsi_pwc2_rows(t);
+    const mcs_pwc *columns = mcsi_pwc2_columns(t, mcsi_entry_of_x(rows, y > 1.0f ? 1.0f : y).i);
+    return mcsi_vec2(mcs_pwc_invert(columns, x), mcs_pwc_invert(rows, y));
+}
+#ifndef MCS_NO_BATCH
+/* Where the search for u1 starts in the guide of columns. */
+MCSI_CORE const uint32_t *mcsi_pwc2_guide(const mcs_pwc2 *t, const mcs_pwc *columns, float u1) {
+    int32_t ok = 1;
+    const uint32_t U = (uint32_t)((double)mcsi_sane_u(u1, &ok) * MCSI_ONE);
+    return MCSI_READ(uint32_t, columns, mcsi_pwc_layout(t->w, t->shift).guide) + (U >> t->shift);
+}
+/* Rows of a block are drawn and the guides of their columns fetched; then the sums; then columns are drawn. */
+MCS_API void mcs_pwc2_sample_n(const mcs_pwc2 *t, size_t n, const float *u1, const float *u2, float *x, float *y,
+                               float *pdf, uint32_t *col, uint32_t *row) {
+    mcs_cell in[MCSI_PWC2_BLOCK];
+    size_t m;
+    for (size_t i = 0; i < n; i += m) {
+        m = n - i < MCSI_PWC2_BLOCK ? n - i : (size_t)MCSI_PWC2_BLOCK;
+        for (size_t k = 0; k < m; k++) {
+            in[k] = mcs_pwc_sample(mcsi_pwc2_rows(t), u2[i + k]);
+            const mcs_pwc *columns = mcsi_pwc2_columns(t, in[k].i);
+            MCSI_PREFETCH(columns);
+            MCSI_PREFETCH(mcsi_pwc2_guide(t, columns, u1[i + k]));
+        }
+        for (size_t k = 0; k < m; k++) {
+            const mcs_pwc *columns = mcsi_pwc2_columns(t, in[k].i);
+            MCSI_PREFETCH(MCSI_READ(uint32_t, columns, sizeof *columns) + *mcsi_pwc2_guide(t, columns, u1[i + k]));
+        }
+        for (size_t k = i; k < i + m; k++) {
+            const mcs_cell2 c = mcsi_pwc2_cell(t, in[k - i], u1[k]);
+            if (x) x[k] = c.x;
+            if (y) y[k] = c.y;
+            if (pdf) pdf[k] = c.pdf;
+            if (col) col[k] = c.col;
+            if (row) row[k] = c.row;
+        }
+    }
+}
+#endif
 
 /* ---- [tables] pwl ---- */
 

@@ -25,7 +25,8 @@
     X(philox_fill_n) X(sobol_n) X(sobol_pixel) X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) \
     X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) X(discrete_bytes) X(discrete_build) \
     X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) \
-    X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(alias_bytes) X(alias_build) X(alias_sample) \
+    X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(pwc2_bytes) X(pwc2_build) X(pwc2_sample) \
+    X(pwc2_pdf) X(pwc2_invert) X(pwc2_sample_n) X(alias_bytes) X(alias_build) X(alias_sample) \
     X(alias_sample_bits) X(alias_pmf) X(reservoir_add) X(reservoir_merge) X(reservoir_weight) X(reservoir_k_make) \
     X(reservoir_k_add) X(reservoir_k_merge) X(reservoir_k_weight) X(stat_add) X(stat_merge) X(stat_variance) \
     X(stat_error) X(stat_ci)
@@ -385,6 +386,40 @@ FN(alias_pmf) {
     PUT(0, mcs_alias_pmf(t, WORD(13) % BITS_CELLS));
 }
 #undef TABLE
+
+#define TABLE2                                                             \
+    uint64_t room[6 * BITS_CELLS + 20] = {0};                              \
+    float f[BITS_CELLS + 1];                                               \
+    const uint32_t n = bits_entries(in, f);                                \
+    const uint32_t w = 1 + WORD(12) % n;                                   \
+    mcs_pwc2 *t = (mcs_pwc2 *)(void *)room;                                \
+    const mcs_status status = mcs_pwc2_build(t, sizeof room, f, w, n / w); \
+    (void)status
+FN(pwc2_bytes) { PUT_WORD(0, (uint32_t)mcs_pwc2_bytes(WORD(11) >> (WORD(13) & 31), WORD(12) >> (WORD(11) & 31))); }
+FN(pwc2_build) {
+    TABLE2;
+    PUT_WORD(0, bits_said(status, t->uniform)), PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total);
+}
+FN(pwc2_sample) {
+    TABLE2;
+    const mcs_cell2 c = mcs_pwc2_sample(t, IN(6), IN(7));
+    PUT(0, c.x), PUT(1, c.y), PUT(2, c.pdf), PUT_WORD(3, c.col), PUT_WORD(4, c.row);
+}
+FN(pwc2_pdf) {
+    TABLE2;
+    PUT(0, mcs_pwc2_pdf(t, IN(6), IN(7)));
+}
+FN(pwc2_invert) {
+    TABLE2;
+    B_(put2)(out, 0, mcs_pwc2_invert(t, IN(6), IN(7)));
+}
+FN(pwc2_sample_n) {
+    TABLE2;
+    uint32_t cell[2];
+    mcs_pwc2_sample_n(t, 1, in + 6, in + 7, out, out + 1, out + 2, cell, cell + 1);
+    PUT_WORD(3, cell[0]), PUT_WORD(4, cell[1]);
+}
+#undef TABLE2
 
 /* Candidate i of a reservoir: weights over 20 decades, one of eight is 0 or bad. */
 MCST_HD static float bits_weight(const float *in, uint32_t i) {

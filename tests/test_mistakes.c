@@ -213,18 +213,23 @@ static void check_tables(void) {
     mcs_pwl *pwl = (mcs_pwl *)(void *)pwl_room;
     static double alias_room[128];
     mcs_alias *alias = (mcs_alias *)(void *)alias_room;
+    static double pwc2_room[128];
+    mcs_pwc2 *pwc2 = (mcs_pwc2 *)(void *)pwc2_room;
     static double e_room[128];
     mcs_env *e = (mcs_env *)(void *)e_room;
     static double window_room[128];
     mcs_env_window *window = (mcs_env_window *)(void *)window_room;
     CHECK(!mcs_pwc_build(pwc, sizeof pwc_room, weights, 8) && !mcs_pwl_build(pwl, sizeof pwl_room, weights, 7) &&
               !mcs_alias_build(alias, sizeof alias_room, weights, 8) && !mcs_env_build(e, sizeof e_room, &image) &&
-              !mcs_env_window_build(window, sizeof window_room, e, 0, 1, 1, 2),
+              !mcs_env_window_build(window, sizeof window_room, e, 0, 1, 1, 2) &&
+              !mcs_pwc2_build(pwc2, sizeof pwc2_room, weights, 4, 2),
           "builds");
     TELLS_U("mcs_pwc_sample", mcs_pwc_sample(pwc, u));
     TELLS_U("mcs_pwl_sample", mcs_pwl_sample(pwl, u));
     TELLS_U("mcs_discrete_sample", mcs_discrete_sample(pwc, u));
     TELLS_U("mcs_alias_sample", mcs_alias_sample(alias, u));
+    TELLS_U("mcs_pwc2_sample, u1", mcs_pwc2_sample(pwc2, u, 0.5f));
+    TELLS_U("mcs_pwc2_sample, u2", mcs_pwc2_sample(pwc2, 0.5f, u));
     TELLS_U("mcs_env_sample, u1", mcs_env_sample(e, u, 0.5f));
     TELLS_U("mcs_env_sample, u2", mcs_env_sample(e, 0.5f, u));
     TELLS_U("mcs_env_window_sample", mcs_env_window_sample(window, e, u, u));
