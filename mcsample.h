@@ -58,7 +58,7 @@
  *
  * Accuracy      It is stated per block and holds for the whole range of the parameters. Errors of densities are given
  *               in E, where 1 E is a relative error of 1e-6 (1 + |ln(pdf/peak)|) and peak is the largest density. They
- *               hold down to 2^-126 of the peak; below, a density is just small. Errors of weights are relative. Errors
+ *               hold down to 2^-100 of the peak; below, a density is small or 0. Errors of weights are relative. Errors
  *               of directions are absolute, in units of 2^-24. The figures of directions are the worst that an
  *               adversary found by climbing towards it (tests/stress/climb.c), with about a quarter added.
  *
@@ -95,8 +95,7 @@
  *               or 1e-15 and more, for that.
  *
  * Rounding      It must be to nearest. In another mode results are finite at best. Flush to zero and denormals-are-zero
- *               may be on. Subnormal numbers then count as 0, and so may densities below 2^-100 of the peak; cosines
- *               have to be 0, or 1e-7 and more.
+ *               may be on. Subnormal numbers then count as 0; cosines have to be 0, or 1e-7 and more.
  *
  * slide 9       and the like are slides of the lecture "Monte Carlo Integration" (A. Ghosh, Imperial College, 2024).
  *
@@ -2717,11 +2716,12 @@ MCSI_CORE mcs_f mcsi_times_2_to(mcs_f x, mcs_i k, mcs_i some) {
 #endif
     return x * mcsi_from_bits(((k + 191) << 23) & some) * 5.42101086e-20f;
 }
-/* e^min(x, 0), subnormal results included; 0 for NaN; 1 ulp. */
+/* e^min(x, 0); 1 ulp. It is 0 for NaN, and where k is -126: results below 2^-125.5 may be subnormal, which takes some
+ * processors a hundred times as long. */
 MCSI_CORE mcs_f mcsi_exp_neg(mcs_f x) {
     mcs_i k;
-    const mcs_f q = mcsi_exp_reduced(mcsi_min(mcsi_max(x, mcs_set(-104.0f)), mcs_set(0.0f)), &k);
-    return mcsi_stored(mcsi_times_2_to(1.0f + q, k, k | -1));
+    const mcs_f q = mcsi_exp_reduced(mcsi_min(mcsi_max(x, mcs_set(-87.5f)), mcs_set(0.0f)), &k);
+    return (2.0f + 2.0f * q) * mcsi_from_bits((k + 126) << 23);
 }
 /* e^x, x in [-80, 0]; *minus_one becomes e^x - 1; 1 ulp each. */
 MCSI_CORE mcs_f mcsi_exp_both(mcs_f x, mcs_f *minus_one) {
@@ -2734,8 +2734,9 @@ MCSI_CORE mcs_f mcsi_exp_both(mcs_f x, mcs_f *minus_one) {
 
 /* ---- powers ---- */
 
-/* x^e, or x^(1/e) where `root` is set, for x in [0,1] and e = n + plus in [0, 1e9 + 1], plus 0 or 1; 1 ulp. For roots,
- * *quotient becomes x over the result, with its relative accuracy even where both are subnormal.
+/* x^e, or x^(1/e) where `root` is set, for x in [0,1] and e = n + plus in [0, 1e9 + 1], plus 0 or 1; 1 ulp. Powers below
+ * 2^-125.5 are 0, as above. For roots, *quotient becomes x over the result, with its relative accuracy even where both
+ * are subnormal.
  *
  * x = 2^k m, where x 2^24 is a normal float in any case. log2(m) is a series in s = (m - 1)/(m + 1). All is in double,
  * so that the product of exponent and logarithm loses nothing. With the integer and the fractional part of that
@@ -2757,16 +2758,21 @@ MCSI_CORE mcs_f mcsi_pow_unit(mcs_f x, mcs_f n, double plus, int root, mcs_f *qu
             ((0.9617966733414772 + ss * 0.577083585037472) + ss * ss * (0.4116727148603131 + ss * 0.3407301768542072));
     const mcsi_d y = root ? log2_x * (1.0 / e) : log2_x * e;
     const mcsi_d whole = MCSI_ROUND_D(y);
-    const mcs_i j = MCSI_TRUNC_D(root ? whole : MCSI_MAX_D(whole, -151.0));
+    const mcs_i j = MCSI_TRUNC_D(root ? whole : MCSI_MAX_D(whole, -126.0));
     const mcsi_d r = y - whole;
     const mcsi_d rr = r * r;
     const mcsi_d even =
         (1.0 + rr * 0.24022651084099645) + rr * rr * (0.009618030784745157 + rr * 0.0001546973134150267);
     const mcsi_d odd = r * ((0.6931471805350843 + rr * 0.05550410975949026) +
                             rr * rr * (0.001333342276368949 + rr * 1.531643601070646e-05));
-    mcs_f power = mcsi_times_2_to(MCSI_NARROW(even + odd), j, some);
-    if (root) *quotient = mcsi_times_2_to(significand * MCSI_NARROW(even - odd), k - j, some);
-    else power = mcsi_sel(MCSI_NARROW(y) > -151.0f, power, mcs_set(0.0f));
+    const mcs_f two_to_r = MCSI_NARROW(even + odd);
+    mcs_f power;
+    if (root) {
+        power = mcsi_times_2_to(two_to_r, j, some);
+        *quotient = mcsi_times_2_to(significand * MCSI_NARROW(even - odd), k - j, some);
+    } else {
+        power = 2.0f * two_to_r * mcsi_from_bits(((j + 126) << 23) & some);
+    }
     return plus > 0.0 ? power : mcsi_sel(n > 0.0f, power, mcs_set(1.0f)); /* 0^0 is 1 */
 }
 
@@ -2774,7 +2780,8 @@ MCSI_CORE mcs_f mcsi_pow_unit(mcs_f x, mcs_f n, double plus, int root, mcs_f *qu
 
 /* Phi(-y), y >= 0, the lower tail: erfc(y / sqrt(2)) / 2; 8 ulp. It is e^(-y^2/2) g(y), with g a polynomial in
  * v = 1/(1 + 0.35 y). The square of y's upper 12 bits is exact; what the sum of that and of the remainder loses is
- * `lost`, and e^(sum + lost) = e^sum (1 + lost). So the exponential keeps its relative accuracy in the far tail. */
+ * `lost`, and e^(sum + lost) = e^sum (1 + lost). So the exponential keeps its relative accuracy in the far tail. Beyond
+ * y = 13.19 it is 0. */
 MCSI_CORE mcs_f mcsi_normal_tail(mcs_f y) {
     const mcs_f c = mcsi_min(y, mcs_set(14.5f));
     const mcs_f v = 1.0f / (1.0f + 0.35f * c);
@@ -5037,16 +5044,20 @@ MCSI_FN mcs_beckmann mcs_beckmann_make(mcs_f alpha_x, mcs_f alpha_y) {
 #endif
 
 /* w.z L(w). With t = |(alpha_x w.x, alpha_y w.y)| and a = w.z / t, L is exp(-a^2) / (2 a sqrt(pi)) - erfc(a) / 2.
- * Times w.z it stays finite at the horizon. It is 0 for a = 1000 and more; below the horizon it has no meaning, but is
- * finite. */
+ * Times w.z it stays finite at the horizon. From a = 8 on it would be below 1e-29 w.z and is 0. Below the horizon it
+ * has no meaning, but is finite. */
 MCSI_CORE mcs_f mcsi_beckmann_z_lambda(const mcsi_slopes *m, mcs_vec3 w) {
     const mcs_f x = m->alpha_x * w.x;
     const mcs_f y = m->alpha_y * w.y;
     const mcs_f z = mcsi_max(w.z, mcs_set(0.0f));
     const mcs_f t = mcsi_sqrt(x * x + y * y);
-    const mcs_f a = z / mcsi_max(t, z * 1e-3f + FLT_MIN);
+    const mcs_f least = z * 0.125f + FLT_MIN;
+#if MCSI_W == 1
+    if (t <= least) return 0.0f;
+#endif
+    const mcs_f a = z / mcsi_max(t, least);
     const mcs_f lambda = t * 0.282094792f * mcsi_exp_neg(-a * a) - z * mcsi_normal_tail(a * 1.41421356f);
-    return mcsi_max(lambda, mcs_set(0.0f));
+    return mcsi_sel((t > least) & (lambda > 0.0f), lambda, mcs_set(0.0f));
 }
 /* wo.z wi.z / G2. */
 MCSI_CORE mcs_f mcsi_beckmann_g2_divisor(const mcsi_slopes *m, mcs_vec3 wo, mcs_vec3 wi) {

@@ -143,6 +143,7 @@ enum {
  *
  * A density is judged in E = 1e-6 (1 + |ln(pdf/peak)|), of Gaussian half-vectors given h or wi in 1e-6 (1 + e), e their
  * exponent; weights in 1e-6; the length of a direction by its distance from 1 in 2^-24. */
+#define MCST_FAINT 0x1p-100 /* of the peak: below it a density may be 0 */
 enum { CLAIM_PDF_U, CLAIM_PDF_W, CLAIM_EVAL, CLAIM_SAMPLE_WEIGHT, CLAIM_WEIGHT, CLAIM_LENGTH, CLAIMS };
 
 /* A range of parameters and what is promised there; 0: nothing. */

@@ -69,7 +69,7 @@ static int within(int what, double err, double tol) {
 static int near(int what, float got, ld want, double rel, ld peak) {
     const ld top = (ld)FLT_MAX;
     const ld w = want > top ? top : want;
-    return within(what, (double)fabsl((ld)got - w), rel * (double)fabsl(w) + 0x1p-126 * (double)peak + 0x1p-149);
+    return within(what, (double)fabsl((ld)got - w), rel * (double)fabsl(w) + MCST_FAINT * (double)peak + 0x1p-149);
 }
 
 /* 1e-6 (1 + |ln(pdf / peak)|): a density e^-x has the rounding of x in it. */

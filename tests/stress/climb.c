@@ -155,7 +155,7 @@ static double peak_of(const mcst_row *row, const float *p) {
     return (double)peak;
 }
 
-/* The error of got in 1e-6 (1 + |ln(density/peak)|) of want; what is below 2^-126 of the peak does not count. The peak
+/* The error of got in 1e-6 (1 + |ln(density/peak)|) of want; what is below MCST_FAINT of the peak does not count. The peak
  * is looked for only where the score would be above `least` without it. Densities above FLT_MAX saturate; subnormal
  * ones are only small. */
 static double in_units(const mcst_row *row, const float *p, float got, qd want, qd density, double least) {
@@ -163,7 +163,7 @@ static double in_units(const mcst_row *row, const float *p, float got, qd want, 
     if (!(want < (qd)FLT_MAX && want > (qd)FLT_MIN)) return 0;
     if (!(error / 1e-6 > least)) return error / 1e-6;
     const double peak = fmax(peak_of(row, p), (double)density);
-    return (error - 0x1p-126 * peak / (double)density) / (1e-6 * (1 + log(peak / (double)density)));
+    return (error - MCST_FAINT * peak / (double)density) / (1e-6 * (1 + log(peak / (double)density)));
 }
 /* The exponent e of a Gaussian half-vector; 0 of another row. */
 static double exponent_of(const mcst_row *row, const setting *s, q3 x) {

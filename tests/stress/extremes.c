@@ -184,7 +184,7 @@ static double conditioning(question q, qd want) {
 /* Is got within E of want? Densities beyond FLT_MAX saturate. A density is its peak times a float in [0,1]: where that
  * float is subnormal its digits are gone, and all that is asked is that the density is small, too. */
 static int judge(tally *t, question q, float got, qd want, double unit, double peak, const char *where) {
-    const double top = want > (qd)FLT_MAX ? FLT_MAX : (double)want, floor_ = 0x1p-126 * peak + 0x1p-148;
+    const double top = want > (qd)FLT_MAX ? FLT_MAX : (double)want, floor_ = MCST_FAINT * peak + 0x1p-148;
     const double err = fabs((double)((qd)got - (want > (qd)FLT_MAX ? (qd)FLT_MAX : want))),
                  raw = err <= floor_ ? 0 : err / (unit * top);
     double judged = raw;
@@ -355,7 +355,7 @@ static int check_densities(drawn_point *d, tally *t) {
     const double peak = d->peak;
     tally *const g = d->scores;
     if (d->row->dim < 3 && d->pdf_u == 0 && d->out[3] == 0) return 0; /* the density is 0 there */
-    if (d->out[3] == 0 && d->pdf_u > (qd)(0x1p-126 * peak + 0x1p-148)) t->zero++;
+    if (d->out[3] == 0 && d->pdf_u > (qd)(MCST_FAINT * peak + 0x1p-148)) t->zero++;
     const double unit_u = unit_of(d->pdf_u, peak);
     if (!judge(g, question_of(d, PDF_U), d->out[3], d->pdf_u, unit_u, peak, d->where)) return 0;
     d->row->fn[0].pdf(d->p, d->w, &d->pdf);
