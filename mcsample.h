@@ -117,6 +117,7 @@
  *   [square]      a bilinear density on the unit square                    cosines over a light of four corners
  *   [disk]        points on a disk                                         lenses, round lights
  *   [triangle]    points on a triangle                                     lights made of triangles
+ *   [lights]      directions towards a ball                                lights, seen from a shaded point
  *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte surfaces, spherical lights
  *   [media]       henyey_greenstein, rayleigh, von_mises_fisher            fog, skin, clear air; guiding
  *   [frame]       local and world coordinates                              every shaded point
@@ -177,6 +178,7 @@
  *                     where this file was pasted into another one, so that it cannot include itself.
  * MCS_NO_BATCH        No array functions but mcs_pcg32_fill_n.
  * MCS_NO_1D           No [1d] and no [square].
+ * MCS_NO_LIGHTS       No [lights].
  * MCS_NO_MEDIA        No [media].
  * MCS_NO_LOBES        No [microfacet], no [fresnel], no BRDFs and no [product].
  * MCS_NO_TABLES       No [tables], no [env] and no [product].
@@ -708,6 +710,49 @@ MCS_FN float mcs_triangle_pdf(float b0, float b1);
 MCS_FN mcs_vec2 mcs_triangle_invert(float b0, float b1);
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, float *b0, float *b1, float *pdf);
+#endif
+
+/* ==== [lights] directions towards a light =========================================================================
+ * Maps from the unit square to the directions in which a light is seen. The point that is lit is the origin, and all
+ * is in one frame, that of the world or any other.
+ *
+ *   w         a direction, from the point to the light
+ *
+ * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24 */
+#ifndef MCS_NO_LIGHTS
+
+/* A direction sampled towards a light. */
+typedef struct {
+    mcs_vec3 w;     /* of unit length */
+    float pdf;      /* per solid angle */
+    float distance; /* of the light along w; 0 where pdf is 0 */
+} mcs_light;
+
+/* ---- ball: a sphere that gives light, from outside and from inside, uniform in solid angle ----
+ * From outside it is a cone about the direction of the centre, cut from the sphere of directions by its sine
+ * radius/|centre|. From inside, and on the surface, it is all directions. The light is where w first meets the surface,
+ * at the point distance w. On the surface that is at once for half of the directions, whose distance is 0.
+ *
+ * centre     of the ball, from the point; coordinates in [-1e18, 1e18]
+ * radius     in [1e-18, 1e18]; below 1e-15 of |centre| it counts as that
+ * map        1 - cos(theta) = k u1, where theta is the angle to the direction of the centre and k is
+ *            1 - sqrt(1 - radius^2/|centre|^2), or 2 from inside. The azimuth 2 pi u2 is from s to t of the frame that
+ *            mcs_frame_make has for that direction. A centre within 1e-18 of the point has the direction +z.
+ * density    1/(2 pi k); from outside 0 where w misses the ball by more than an angle of 2^-23, as rounding may move a
+ *            sampled w by nearly so much. MIS is right with that, as light is 0 there.
+ * accuracy   pdf and distance within 1e-7 of themselves, for |centre| up to 1e9 radii. The distance is that of the exact
+ *            direction of u.
+ * cost       4 square roots, 10 divisions, 1 sincos; array forms spend half of these once for all
+ * functions  mcs_ball_sample, mcs_ball_pdf, mcs_ball_invert, mcs_ball_sample_n for arrays
+ * source     the cone is that of Wang 1992, "Physically correct direct lighting for distribution ray tracing" */
+MCS_FN mcs_light mcs_ball_sample(mcs_vec3 centre, float radius, float u1, float u2);
+MCS_FN float mcs_ball_pdf(mcs_vec3 centre, float radius, mcs_vec3 w);
+MCS_FN mcs_vec2 mcs_ball_invert(mcs_vec3 centre, float radius, mcs_vec3 w);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2, float *x,
+                               float *y, float *z, float *pdf, float *distance);
+#endif
+
 #endif
 
 /* ==== [sphere] directions about +z: sphere, hemisphere, cosine, cone ==============================================
@@ -2894,9 +2939,14 @@ MCSI_CORE mcs_vec3 mcsi_vec3(mcs_f x, mcs_f y, mcs_f z) {
     v.z = z;
     return v;
 }
-#ifdef MCSI_PUBLIC
 MCSI_CORE mcs_vec3 mcsi_sel3(mcs_i m, mcs_vec3 a, mcs_vec3 b) {
     return mcsi_vec3(mcsi_sel(m, a.x, b.x), mcsi_sel(m, a.y, b.y), mcsi_sel(m, a.z, b.z));
+}
+#ifdef MCSI_PUBLIC
+/* 1 - cos(theta) of a direction, accurate near +z: sin^2 / (1 + cos) above the horizon. */
+MCSI_CORE mcs_f mcsi_one_minus_z(mcs_vec3 w) {
+    const mcs_f sin2 = w.x * w.x + w.y * w.y;
+    return mcsi_sel(w.z > 0.0f, sin2 / (1.0f + mcsi_abs(w.z)), 1.0f - w.z);
 }
 #endif
 MCSI_CORE mcs_f mcsi_dot(mcs_vec3 a, mcs_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -3940,6 +3990,174 @@ MCSI_LOOP void mcsi_triangle_loop(size_t n, const float *u1, const float *u2, fl
 }
 #endif
 
+#ifndef MCS_NO_LIGHTS
+/* ==== [lights] bodies =============================================================================================
+ * What cancels is in double, as lights may be small and far away: the rounding of a float would be larger than they. */
+
+#if MCSI_W > 1
+typedef struct {
+    mcs_vec3 w;
+    mcs_f pdf, distance;
+} mcs_light;
+#endif
+
+/* The square root of x >= 0: that of a float, and one step of Newton's method. */
+MCSI_CORE mcsi_d mcsi_wide_sqrt(mcsi_d x) {
+    const mcs_f root = mcsi_sqrt(MCSI_NARROW(x));
+    const mcs_i some = root > 0.0f;
+    const mcs_f slope = mcsi_sel(some, mcs_set(0.5f), mcs_set(0.0f)) / mcsi_sel(some, root, mcs_set(1.0f));
+    return MCSI_WIDEN(root) + (x - MCSI_WIDEN(root) * MCSI_WIDEN(root)) * MCSI_WIDEN(slope);
+}
+
+/* The unit vector n of some v, and what the frame of mcs_frame_make has around it: its sign and a. */
+typedef struct {
+    mcsi_d n_x, n_y, n_z, sign, a;
+    mcsi_d length2, inverse; /* the squared length of v, and 1 / its length */
+} mcsi_axis;
+
+/* The length of v is in [1e-18, 1e19]. */
+MCSI_CORE mcsi_axis mcsi_axis_make(mcs_vec3 v) {
+    const mcsi_d x = MCSI_WIDEN(v.x);
+    const mcsi_d y = MCSI_WIDEN(v.y);
+    const mcsi_d z = MCSI_WIDEN(v.z);
+    mcsi_axis axis;
+    axis.length2 = x * x + y * y + z * z;
+    axis.inverse = 1.0 / mcsi_wide_sqrt(axis.length2);
+    axis.n_x = axis.inverse * x;
+    axis.n_y = axis.inverse * y;
+    axis.n_z = axis.inverse * z;
+    axis.sign = MCSI_WIDEN(mcsi_with_sign(mcs_set(1.0f), v.z));
+    axis.a = -1.0 / (axis.sign + axis.n_z);
+    return axis;
+}
+/* x s + y t + z n: both s and t have n as a factor of what is not in one coordinate alone. */
+MCSI_CORE mcs_vec3 mcsi_from_axis(const mcsi_axis *axis, mcsi_d x, mcsi_d y, mcsi_d z) {
+    const mcsi_d tilt = axis->sign * axis->n_x * x + axis->n_y * y;
+    const mcsi_d along = axis->a * tilt + z;
+    return mcsi_vec3(MCSI_NARROW(x + axis->n_x * along), MCSI_NARROW(axis->sign * y + axis->n_y * along),
+                     MCSI_NARROW(axis->n_z * z - tilt));
+}
+#ifdef MCSI_PUBLIC
+/* (w.s, w.t, w.n) */
+MCSI_CORE mcs_vec3 mcsi_to_axis(const mcsi_axis *axis, mcs_vec3 w) {
+    const mcsi_d x = MCSI_WIDEN(w.x);
+    const mcsi_d y = MCSI_WIDEN(w.y);
+    const mcsi_d z = MCSI_WIDEN(w.z);
+    const mcsi_d level = axis->n_x * x + axis->n_y * y;
+    const mcsi_d along = axis->a * level - z;
+    return mcsi_vec3(MCSI_NARROW(x + axis->sign * axis->n_x * along), MCSI_NARROW(axis->sign * y + axis->n_y * along),
+                     MCSI_NARROW(level + axis->n_z * z));
+}
+#endif
+
+/* ---- ball ----
+ * c is the distance of the centre and r the radius. From outside, where c > r, sin^2 of the rim is r^2/c^2, and its
+ * cosine the root of (c^2 - r^2)/c^2. k is 1 less that cosine, as sin^2 / (1 + cos). */
+
+typedef struct {
+    mcs_i ok;
+    mcsi_axis axis;
+    mcsi_d outside; /* 1 from outside, 0 from inside */
+    mcsi_d c, gap;  /* c, c^2 - r^2 */
+    mcsi_d k;
+    mcs_f scale; /* 1 / the larger of c and r, rounded */
+} mcsi_ball;
+
+MCSI_CORE mcsi_ball mcsi_ball_make(mcs_vec3 centre, mcs_f radius) {
+    const mcs_f zero = mcs_set(0.0f);
+    const mcs_f one = mcs_set(1.0f);
+    mcsi_ball b;
+    b.ok = mcsi_scale_ok(radius) & (mcsi_abs(centre.x) <= 1e18f) & (mcsi_abs(centre.y) <= 1e18f) &
+           (mcsi_abs(centre.z) <= 1e18f);
+    MCSI_REQUIRE(b.ok);
+    const mcs_i apart =
+        b.ok & (mcsi_max(mcsi_max(mcsi_abs(centre.x), mcsi_abs(centre.y)), mcsi_abs(centre.z)) >= 1e-18f);
+    b.axis = mcsi_axis_make(mcsi_sel3(apart, centre, mcsi_vec3(zero, zero, one)));
+    const mcsi_d c2 = b.axis.length2 * MCSI_WIDEN(mcsi_sel(apart, one, zero));
+    b.c = c2 * b.axis.inverse;
+    const mcs_f far_off = MCSI_NARROW(b.c);
+    const mcs_f size = mcsi_max(mcsi_sel(b.ok, radius, one), 1e-15f * far_off);
+    const mcsi_d r = MCSI_WIDEN(size);
+    b.gap = c2 - r * r;
+    b.outside = MCSI_WIDEN(mcsi_sel(MCSI_NARROW(b.gap) > 0.0f, one, zero));
+    const mcsi_d unit = b.outside * b.axis.inverse * b.axis.inverse;
+    b.k = r * r * unit / (1.0 + mcsi_wide_sqrt(1.0 - b.outside + b.gap * unit)) + 2.0 * (1.0 - b.outside);
+    b.scale = 1.0f / mcsi_max(far_off, size);
+    return b;
+}
+/* Along a direction with the cosine z the surface is at c z -+ h, where h^2 is c^2 z^2 - gap. The product of both is the
+ * gap, so that one of them is a quotient where the difference would cancel. From outside, h^2 is
+ * c^2 k (1 - u1) (2 - k (1 + u1)), whose factors do not cancel. */
+MCSI_CORE mcs_f mcsi_ball_distance(const mcsi_ball *b, mcsi_d u1, mcsi_d z) {
+    const mcsi_d scale = MCSI_WIDEN(b->scale);
+    const mcs_f cosine = MCSI_NARROW(z);
+    const mcsi_d along = b->c * scale * z * MCSI_WIDEN(mcsi_with_sign(mcs_set(1.0f), cosine)); /* c |z| */
+    const mcsi_d c2 = b->c * scale * b->c * scale;
+    const mcsi_d gap = b->gap * scale * scale;
+    const mcsi_d inside = 1.0 - b->outside;
+    const mcsi_d h2 =
+        b->outside * (c2 * b->k * (1.0 - u1) * (2.0 - b->k * (1.0 + u1))) + inside * (along * along - gap);
+    const mcsi_d sum = along + mcsi_wide_sqrt(h2);
+    const mcsi_d further = inside * MCSI_WIDEN(mcsi_sel(cosine >= 0.0f, mcs_set(1.0f), mcs_set(0.0f)));
+    const mcsi_d above = further * sum + (1.0 - further) * (b->outside - inside) * gap;
+    return MCSI_NARROW(above / ((further + (1.0 - further) * sum) * scale));
+}
+MCSI_CORE mcs_light mcsi_ball_draw(const mcsi_ball *b, mcs_f u1, mcs_f u2) {
+    mcs_i ok = b->ok;
+    const mcsi_d u = MCSI_WIDEN(mcsi_sane_u(u1, &ok));
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcsi_d t = b->k * u;
+    const mcsi_d sine = mcsi_wide_sqrt(t * (2.0 - t));
+    mcs_f s, c;
+    mcsi_sincos_turns(u2, &s, &c);
+    mcs_light light;
+    light.w = mcsi_from_axis(&b->axis, sine * MCSI_WIDEN(c), sine * MCSI_WIDEN(s), 1.0 - t);
+    light.pdf = mcsi_sane_result(ok, MCSI_NARROW(0.15915494309189535 / b->k)); /* 1/(2 pi) */
+    light.distance = mcsi_sane_result(ok, mcsi_ball_distance(b, u, 1.0 - t));
+    return light;
+}
+MCSI_SAMPLE mcs_light mcs_ball_sample(mcs_vec3 centre, mcs_f radius, mcs_f u1, mcs_f u2) {
+    const mcsi_ball b = mcsi_ball_make(centre, radius);
+    return mcsi_ball_draw(&b, u1, u2);
+}
+#ifdef MCSI_PUBLIC
+/* A direction at the angle d beyond the rim has 1 - cos = k + d sin + d^2/2, about. */
+MCSI_FN mcs_f mcs_ball_pdf(mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
+    const mcsi_ball b = mcsi_ball_make(centre, radius);
+    mcs_i ok = b.ok;
+    w = mcsi_sane_direction(w, &ok);
+    const mcs_f k = MCSI_NARROW(b.k);
+    const mcs_f rim = 1.0000005f * k + 1.1920929e-07f * mcsi_sqrt(k * (2.0f - k)) + 7.1054274e-15f;
+    const mcs_i hit = mcsi_one_minus_z(mcsi_to_axis(&b.axis, w)) <= rim;
+    return mcsi_sane_result(ok & hit, MCSI_NARROW(0.15915494309189535 / b.k));
+}
+MCSI_FN mcs_vec2 mcs_ball_invert(mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
+    const mcsi_ball b = mcsi_ball_make(centre, radius);
+    mcs_i ok = b.ok;
+    const mcs_vec3 v = mcsi_to_axis(&b.axis, mcsi_sane_direction(w, &ok));
+    return mcsi_uv(ok, mcsi_one_minus_z(v) / MCSI_NARROW(b.k), mcsi_atan2_turns(v.y, v.x));
+}
+#endif
+
+#ifdef MCSI_LOOPS
+MCSI_CORE void mcsi_out_light(const mcsi_batch *b, mcs_light s) {
+    mcsi_out(b, 0, s.w.x);
+    mcsi_out(b, 1, s.w.y);
+    mcsi_out(b, 2, s.w.z);
+    mcsi_out(b, 3, s.pdf);
+    mcsi_out(b, 4, s.distance);
+}
+MCSI_LOOP void mcsi_ball_loop(mcsi_scalar_vec3 centre, float radius, size_t n, const float *u1, const float *u2,
+                              float *x, float *y, float *z, float *pdf, float *distance) {
+    const mcsi_ball ball = mcsi_ball_make(mcsi_spread(centre), mcs_set(radius));
+    mcsi_batch b;
+    mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);
+    b.out[4] = distance;
+    MCSI_EACH(b) { mcsi_out_light(&b, mcsi_ball_draw(&ball, mcsi_in(&b, 0), mcsi_in(&b, 1))); }
+}
+#endif
+#endif /* MCS_NO_LIGHTS */
+
 /* ==== [sphere] bodies =============================================================================================
  * Where z = 1 - t with t linear in u1, the sine is sqrt(t (2 - t)), which keeps its digits at both poles. */
 
@@ -3952,13 +4170,6 @@ MCSI_CORE mcs_dir mcsi_around_z(mcs_i ok, mcs_f sine, mcs_f z, mcs_f turns, mcs_
     d.pdf = mcsi_sane_result(ok, pdf);
     return d;
 }
-#ifdef MCSI_PUBLIC
-/* 1 - cos(theta) of a direction, accurate near +z: sin^2 / (1 + cos) above the horizon. */
-MCSI_CORE mcs_f mcsi_one_minus_z(mcs_vec3 w) {
-    const mcs_f sin2 = w.x * w.x + w.y * w.y;
-    return mcsi_sel(w.z > 0.0f, sin2 / (1.0f + mcsi_abs(w.z)), 1.0f - w.z);
-}
-#endif
 
 MCSI_SAMPLE mcs_dir mcs_sphere_sample(mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
@@ -9317,6 +9528,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_ashikhmin_pdf MCS_(ashikhmin_pdf)
 #define mcs_ashikhmin_sample MCS_(ashikhmin_sample)
 #define mcs_ashikhmin_weight MCS_(ashikhmin_weight)
+#define mcs_ball_invert MCS_(ball_invert)
+#define mcs_ball_pdf MCS_(ball_pdf)
+#define mcs_ball_sample MCS_(ball_sample)
 #define mcs_beckmann MCS_(beckmann)
 #define mcs_beckmann_eval MCS_(beckmann_eval)
 #define mcs_beckmann_h_invert MCS_(beckmann_h_invert)
@@ -9391,6 +9605,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_henyey_greenstein_sample MCS_(henyey_greenstein_sample)
 #define mcs_i MCSI_I
 #define mcs_is_mirror MCS_(is_mirror)
+#define mcs_light MCS_(light)
 #define mcs_linear_invert MCS_(linear_invert)
 #define mcs_linear_pdf MCS_(linear_pdf)
 #define mcs_linear_sample MCS_(linear_sample)
@@ -9484,6 +9699,13 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_ashikhmin_spread MCSI_(ashikhmin_spread)
 #define mcsi_ashikhmin_wo_h_again MCSI_(ashikhmin_wo_h_again)
 #define mcsi_atan2_turns MCSI_(atan2_turns)
+#define mcsi_axis MCSI_(axis)
+#define mcsi_axis_make MCSI_(axis_make)
+#define mcsi_ball MCSI_(ball)
+#define mcsi_ball_distance MCSI_(ball_distance)
+#define mcsi_ball_draw MCSI_(ball_draw)
+#define mcsi_ball_loop MCSI_(ball_loop)
+#define mcsi_ball_make MCSI_(ball_make)
 #define mcsi_beckmann_eval_loop MCSI_(beckmann_eval_loop)
 #define mcsi_beckmann_g2_divisor MCSI_(beckmann_g2_divisor)
 #define mcsi_beckmann_h_loop MCSI_(beckmann_h_loop)
@@ -9536,6 +9758,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_exponential_loop MCSI_(exponential_loop)
 #define mcsi_falloff MCSI_(falloff)
 #define mcsi_finite MCSI_(finite)
+#define mcsi_from_axis MCSI_(from_axis)
 #define mcsi_from_bits MCSI_(from_bits)
 #define mcsi_gauss MCSI_(gauss)
 #define mcsi_gauss_h_invert MCSI_(gauss_h_invert)
@@ -9606,6 +9829,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_out MCSI_(out)
 #define mcsi_out_brdf MCSI_(out_brdf)
 #define mcsi_out_dir MCSI_(out_dir)
+#define mcsi_out_light MCSI_(out_light)
 #define mcsi_out_sample1 MCSI_(out_sample1)
 #define mcsi_out_sample2 MCSI_(out_sample2)
 #define mcsi_philox_blocks MCSI_(philox_blocks)
@@ -9685,6 +9909,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_tile_value MCSI_(tile_value)
 #define mcsi_tile_values_loop MCSI_(tile_values_loop)
 #define mcsi_times_2_to MCSI_(times_2_to)
+#define mcsi_to_axis MCSI_(to_axis)
 #define mcsi_to_float MCSI_(to_float)
 #define mcsi_to_grid MCSI_(to_grid)
 #define mcsi_to_local MCSI_(to_local)
@@ -9722,6 +9947,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_warp_source MCSI_(warp_source)
 #define mcsi_warps_loop MCSI_(warps_loop)
 #define mcsi_weighted MCSI_(weighted)
+#define mcsi_wide_sqrt MCSI_(wide_sqrt)
 #define mcsi_with_sign MCSI_(with_sign)
 
 /* MCSI_W is the number of lanes of a pass, MCS_(x) the public name x of that width, MCSI_(x) a private one. */
@@ -9850,6 +10076,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_ashikhmin_pdf
 #undef mcs_ashikhmin_sample
 #undef mcs_ashikhmin_weight
+#undef mcs_ball_invert
+#undef mcs_ball_pdf
+#undef mcs_ball_sample
 #undef mcs_beckmann
 #undef mcs_beckmann_eval
 #undef mcs_beckmann_h_invert
@@ -9924,6 +10153,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_henyey_greenstein_sample
 #undef mcs_i
 #undef mcs_is_mirror
+#undef mcs_light
 #undef mcs_linear_invert
 #undef mcs_linear_pdf
 #undef mcs_linear_sample
@@ -10017,6 +10247,13 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_ashikhmin_spread
 #undef mcsi_ashikhmin_wo_h_again
 #undef mcsi_atan2_turns
+#undef mcsi_axis
+#undef mcsi_axis_make
+#undef mcsi_ball
+#undef mcsi_ball_distance
+#undef mcsi_ball_draw
+#undef mcsi_ball_loop
+#undef mcsi_ball_make
 #undef mcsi_beckmann_eval_loop
 #undef mcsi_beckmann_g2_divisor
 #undef mcsi_beckmann_h_loop
@@ -10069,6 +10306,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_exponential_loop
 #undef mcsi_falloff
 #undef mcsi_finite
+#undef mcsi_from_axis
 #undef mcsi_from_bits
 #undef mcsi_gauss
 #undef mcsi_gauss_h_invert
@@ -10139,6 +10377,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_out
 #undef mcsi_out_brdf
 #undef mcsi_out_dir
+#undef mcsi_out_light
 #undef mcsi_out_sample1
 #undef mcsi_out_sample2
 #undef mcsi_philox_blocks
@@ -10218,6 +10457,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_tile_value
 #undef mcsi_tile_values_loop
 #undef mcsi_times_2_to
+#undef mcsi_to_axis
 #undef mcsi_to_float
 #undef mcsi_to_grid
 #undef mcsi_to_local
@@ -10255,6 +10495,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_warp_source
 #undef mcsi_warps_loop
 #undef mcsi_weighted
+#undef mcsi_wide_sqrt
 #undef mcsi_with_sign
 #endif
 
@@ -10364,6 +10605,12 @@ MCS_API void mcs_concentric_sample_n(float radius, size_t n, const float *u1, co
 MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, float *b0, float *b1, float *pdf) {
     MCSI_WIDEST(triangle_loop, (n, u1, u2, b0, b1, pdf));
 }
+#ifndef MCS_NO_LIGHTS
+MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2, float *x,
+                               float *y, float *z, float *pdf, float *distance) {
+    MCSI_WIDEST(ball_loop, (centre, radius, n, u1, u2, x, y, z, pdf, distance));
+}
+#endif
 MCS_API void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
     MCSI_WIDEST(sphere_loop, (n, u1, u2, x, y, z, pdf));
 }

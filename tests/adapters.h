@@ -44,6 +44,15 @@ MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
     M_(store)(a + 2 * MCST_W, v.z);
 }
 
+/* A light that lies neither on an axis nor in front: at (-1/2, 1/4, 1) times a distance. */
+MCST_HD static inline M_(vec3) A_(aside)(F_ distance) {
+    M_(vec3) v;
+    v.x = -0.5f * distance;
+    v.y = 0.25f * distance;
+    v.z = distance;
+    return v;
+}
+
 #define LD(i) M_(load)(p + (i)*MCST_W)
 #define WO A_(load3)(p + 3 * MCST_W)
 #define ARGS_0
@@ -51,6 +60,7 @@ MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
 #define ARGS_2 LD(0), LD(1),
 #define ARGS_corners LD(0), LD(1), M_(set)(1.0f), M_(set)(3.0f),
 #define ARGS_cross LD(0), M_(set)(0.0f), M_(set)(0.0f), LD(1),
+#define ARGS_ball A_(aside)(LD(0)), LD(1),
 #define MAKE_phong const M_(phong) m = M_(phong_make)(LD(0))
 #define MAKE_ward MAKE_ward_gmd
 #define MAKE_ward_gmd const M_(ward) m = M_(ward_make)(LD(0), LD(1), MCS_WARD_GMD)
@@ -94,27 +104,31 @@ MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
     }
 
 /* A direction from a sampler whose leading arguments are given by `lead` (with its comma) after the statement `make`.
- */
-#define MCST_DIRECTION(row, fn, make, lead)                                                       \
+ * The sampler returns a `type`, and `more` stores what it has beside w and pdf. `lead` comes last, as it has commas. */
+#define MCST_TOWARDS(row, fn, type, more, make, ...)                                              \
     MCST_FN void A_(row##_sample)(const float *p, const float *u1, const float *u2, float *out) { \
         make;                                                                                     \
-        const M_(dir) s = M_(fn##_sample)(lead M_(load)(u1), M_(load)(u2));                       \
+        const M_(type) s = M_(fn##_sample)(__VA_ARGS__ M_(load)(u1), M_(load)(u2));               \
         A_(store3)(out, s.w);                                                                     \
         M_(store)(out + 3 * MCST_W, s.pdf);                                                       \
+        more;                                                                                     \
     }                                                                                             \
     MCST_FN void A_(row##_pdf)(const float *p, const float *x, float *out) {                      \
         make;                                                                                     \
-        M_(store)(out, M_(fn##_pdf)(lead A_(load3)(x)));                                          \
+        M_(store)(out, M_(fn##_pdf)(__VA_ARGS__ A_(load3)(x)));                                   \
     }                                                                                             \
     MCST_FN void A_(row##_invert)(const float *p, const float *x, float *out) {                   \
         make;                                                                                     \
-        const M_(vec2) u = M_(fn##_invert)(lead A_(load3)(x));                                    \
+        const M_(vec2) u = M_(fn##_invert)(__VA_ARGS__ A_(load3)(x));                             \
         M_(store)(out, u.x);                                                                      \
         M_(store)(out + MCST_W, u.y);                                                             \
     }
+#define MCST_DIRECTION(row, fn, make, lead) MCST_TOWARDS(row, fn, dir, (void)0, make, lead)
 #define LEAD_M &m,
 #define LEAD_M_WO &m, WO,
 #define MCST_DIR(row, fn, args, unused) MCST_DIRECTION(row, fn, (void)p, ARGS_##args)
+#define MCST_LIGHT(row, fn, args, unused) \
+    MCST_TOWARDS(row, fn, light, M_(store)(out + 4 * MCST_W, s.distance), (void)p, ARGS_##args)
 #define MCST_LOBE(row, fn, mat, unused) MCST_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
 #define MCST_VLOBE(row, fn, mat, unused) MCST_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
 
@@ -160,6 +174,10 @@ MCST_ROWS(MCST_ADAPT)
         mcs_##fn##_sample_n(lead n, u1, u2, out[0], out[1], out[2], out[3]);                                         \
     }
 #define MCST_N_DIR(row, fn, args, unused) MCST_N_DIRECTION(row, fn, (void)p, ARGS_##args)
+#define MCST_N_LIGHT(row, fn, args, unused)                                                                          \
+    MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
+        mcs_##fn##_sample_n(ARGS_##args n, u1, u2, out[0], out[1], out[2], out[3], out[4]);                          \
+    }
 #define MCST_N_LOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
 #define MCST_N_VLOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
 #define MCST_N_BRDF(row, fn, mat, base)                                                                              \
@@ -183,6 +201,7 @@ MCST_ROWS(MCST_ADAPT_N)
 #undef MCST_N_PLANE
 #undef MCST_N_DIRECTION
 #undef MCST_N_DIR
+#undef MCST_N_LIGHT
 #undef MCST_N_LOBE
 #undef MCST_N_VLOBE
 #undef MCST_N_BRDF
@@ -201,6 +220,7 @@ MCST_ROWS(MCST_ADAPT_N)
 #undef ARGS_2
 #undef ARGS_corners
 #undef ARGS_cross
+#undef ARGS_ball
 #undef MAKE_phong
 #undef MAKE_ward
 #undef MAKE_ward_gmd
@@ -211,10 +231,12 @@ MCST_ROWS(MCST_ADAPT_N)
 #undef MAKE_ashikhmin
 #undef MCST_LINE
 #undef MCST_PLANE
+#undef MCST_TOWARDS
 #undef MCST_DIRECTION
 #undef LEAD_M
 #undef LEAD_M_WO
 #undef MCST_DIR
+#undef MCST_LIGHT
 #undef MCST_LOBE
 #undef MCST_VLOBE
 #undef MCST_BRDF

@@ -19,6 +19,9 @@ static const char *const mcst_claim_sentences[] = {
     "coordinates within 2^-23 of the radius, pdf within 0.1 E",
     /* [triangle] */
     "coordinates within half an ulp of the exact map, for u of 0 and of 2^-125 and more; pdf exact",
+    /* [lights] */
+    "every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24",
+    "pdf and distance within 1e-7 of themselves, for |centre| up to 1e9 radii.",
     /* [sphere] */
     "unit length within 4 x 2^-24, pdf within 0.2 E.",
     /* [frame], [fresnel] */

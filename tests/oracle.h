@@ -497,6 +497,53 @@ static inline ld o_cone_pdf_u(ld k, ld u1, ld u2) {
 }
 static inline o_vec2 o_cone_invert(ld k, o_vec3 w) { return o_v2(o_one_minus_cos(w) / k, o_turn(w.y, w.x)); }
 
+/* ---- directions towards lights, seen from the origin ---- */
+
+/* A frame about the direction of c, or about +z where no coordinate of c is 1e-18 or more. */
+static inline void o_frame_about(o_vec3 c, o_vec3 axes[3]) {
+    const ld largest = fmaxl(fmaxl(fabsl(c.x), fabsl(c.y)), fabsl(c.z));
+    axes[2] = largest >= (ld)1e-18f ? o_unit(c) : o_vec(0.0L, 0.0L, 1.0L);
+    o_frame(axes[2], &axes[0], &axes[1]);
+}
+/* v in world coordinates. */
+static inline o_vec3 o_from_frame(const o_vec3 axes[3], o_vec3 v) {
+    return o_add(o_add(o_scale(v.x, axes[0]), o_scale(v.y, axes[1])), o_scale(v.z, axes[2]));
+}
+static inline ld o_versine(ld angle) { return 2.0L * sinl(0.5L * angle) * sinl(0.5L * angle); }
+
+/* The largest angle between a direction that hits the ball and that of its centre. */
+static inline ld o_ball_rim(o_vec3 c, ld r) { return o_len(c) <= r ? O_PI : asinl(r / o_len(c)); }
+static inline o_vec3 o_ball_map(o_vec3 c, ld r, ld u1, ld u2) {
+    o_vec3 axes[3];
+    o_frame_about(c, axes);
+    return o_from_frame(axes, o_polar(o_versine(o_ball_rim(c, r)) * u1, u2));
+}
+static inline ld o_ball_pdf_u(o_vec3 c, ld r, ld u1, ld u2) {
+    (void)u1;
+    (void)u2;
+    return 1.0L / (2.0L * O_PI * o_versine(o_ball_rim(c, r)));
+}
+/* Directions within 2^-23 of one that hits count as such. */
+static inline ld o_ball_pdf(o_vec3 c, ld r, o_vec3 w) {
+    return atan2l(o_len(o_cross(c, w)), o_dot(c, w)) <= o_ball_rim(c, r) + 0x1p-23L ? o_ball_pdf_u(c, r, 0.0L, 0.0L)
+                                                                                    : 0.0L;
+}
+static inline o_vec2 o_ball_invert(o_vec3 c, ld r, o_vec3 w) {
+    o_vec3 axes[3];
+    o_frame_about(c, axes);
+    const ld x = o_dot(axes[0], w);
+    const ld y = o_dot(axes[1], w);
+    const ld angle = atan2l(sqrtl(x * x + y * y), o_dot(axes[2], w));
+    return o_v2(o_versine(angle) / o_versine(o_ball_rim(c, r)), o_turn(y, x));
+}
+/* The first point of the surface along w, a root of t^2 - 2 t (w.c) + c.c - r^2 = 0: from outside it is the nearer one.
+ */
+static inline ld o_ball_distance(o_vec3 c, ld r, o_vec3 w) {
+    const o_vec3 across = o_cross(c, w);
+    const ld half_chord = sqrtl(fmaxl(r * r - o_dot(across, across), 0.0L));
+    return o_dot(c, w) + (o_len(c) <= r ? half_chord : -half_chord);
+}
+
 /* ---- directions where light is scattered ---- */
 
 /* The direction at the distances minus_z = 1 - z and plus_z = 1 + z from the poles, by the nearer one. */

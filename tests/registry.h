@@ -48,6 +48,7 @@
     M(X, DIR, hemisphere, hemisphere, 0, -, HEMISPHERE, none, direction, 0, 0)                   \
     M(X, DIR, cosine, cosine, 0, -, HEMISPHERE, none, direction, 0, 0)                           \
     M(X, DIR, cone, cone, 1, -, CONE, cone, cone, 0, MCST_WHOLE)                                 \
+    M(X, LIGHT, ball, ball, ball, -, BY_TRUTH, ball, ball, 0, MCST_WHOLE | MCST_DISTANCE)        \
     MCST_MEDIA(M, X)                                                                             \
     M(X, LOBE, phong_lobe, phong_lobe, phong, -, COSPOWER, phong, phong_lobe, 1, 0)              \
     M(X, BRDF, phong, phong, phong, phong, COSPOWER, phong, phong, 1, MCST_ABOUT_R)              \
@@ -76,7 +77,8 @@ static const char *const mcst_exempt[] = {"pwc", "pwl", "discrete", "alias", "en
 enum { MCST_P = 6 }; /* numbers in a parameter set: p[0..2] of the sampler, p[3..5] = wo */
 
 enum mcst_measure { MCST_LENGTH, MCST_AREA, MCST_SOLID_ANGLE, MCST_SOLID_ANGLE_OF_H };
-/* Of DIR every coordinate is held to 2^-23, of BRDF to 16 roundings, of others to 8: test_oracle.c. */
+/* Of DIR every coordinate is held to 2^-23, of BRDF to 16 roundings, of others to 8: test_oracle.c. LIGHT is DIR with a
+ * distance. */
 enum mcst_shape { MCST_IS_LINE, MCST_IS_PLANE, MCST_IS_DIR, MCST_IS_LOBE, MCST_IS_VLOBE, MCST_IS_BRDF };
 /* The coordinates (s, t) in [0,1]^2 in which a lobe has a comparable mass everywhere: see bins.h. */
 enum mcst_coord {
@@ -135,7 +137,8 @@ enum {
     MCST_ABOUT_R = 4,  /* a lobe about the mirrored direction, not of half-vectors */
     MCST_GAUSS = 8,    /* Gaussian half-vectors: the error of a density grows with their exponent */
     MCST_VISIBLE = 16, /* visible normals */
-    MCST_WHOLE = 32    /* directions of the whole sphere: one below the horizon is as good */
+    MCST_WHOLE = 32,   /* directions of the whole sphere: one below the horizon is as good */
+    MCST_DISTANCE = 64 /* the distance of a light, where others have a weight */
 };
 
 /* The figures of accuracy that mcsample.h states, as numbers: test_oracle.c holds the header to them on its grids, and
@@ -201,6 +204,11 @@ static const float mcst_grid_corners[][2] = {{2, 5}, {1, 3},     {1, 1},    {0, 
                                              {4, 0}, {1e-6f, 1}, {1e6f, 3}, {1e30f, 2e30f}, {1e-30f, 3e-30f}};
 static const float mcst_grid_cone[][2] = {{0.5f, 0}, {2, 0},     {1.9997f, 0}, {1.99f, 0}, {1.9f, 0},
                                           {1, 0},    {0.01f, 0}, {1e-5f, 0},   {1e-8f, 0}, {1e-20f, 0}};
+/* Of a light aside: the distance is 1.1456 times the first number. */
+static const float mcst_grid_ball[][2] = {
+    {1, 0.5f},      {1, 1.1456f},       {1, 1.1457f},   {1, 1.1f},         {1, 1e-2f},   {1e3f, 0.1f}, {1e-3f, 1e-9f},
+    {1e10f, 100},   {1e18f, 1e10f},     {0, 1},         {-0.5f, 1},        {1e-30f, 1},  {-3, 2},      {1e-18f, 1e-18f},
+    {1e18f, 1e18f}, {1e-18f, 1.2e-18f}, {1e-4f, 1e18f}, {-1e-18f, 1e-18f}, {1, 1.14564f}};
 static const float mcst_grid_asymmetry[][2] = {
     {0.5f, 0},    {0, 0},      {0.9f, 0},     {-0.3f, 0},       {-0.8f, 0},       {0.99f, 0},
     {-0.999f, 0}, {1e-3f, 0},  {-1e-30f, 0},  {0.1f, 0},        {1e-8f, 0},       {-0.03f, 0},
@@ -247,6 +255,9 @@ static inline int mcst_bad_ends(int i, float v) { return i < 2 && !(fabsf(v) <= 
 /* A bad height makes the density uniform. */
 static inline int mcst_bad_corners(int i, float v) { return i < 2 && !(v >= 0 && v <= FLT_MAX) ? -1 : 0; }
 static inline int mcst_bad_cone(int i, float v) { return i != 0 ? 0 : !(v > 0 && v <= 2) ? 1 : v < 1e-30f ? -1 : 0; }
+static inline int mcst_bad_ball(int i, float v) {
+    return i == 0 ? !(fabsf(v) <= 1e18f) : i == 1 && mcst_outside(v, 1e-18f, 1e18f);
+}
 static inline int mcst_bad_asymmetry(int i, float v) { return i == 0 && mcst_outside(v, -1, 1); }
 static inline int mcst_bad_sharpness(int i, float v) { return i == 0 && mcst_outside(v, 0, 1e8f); }
 static inline int mcst_bad_phong(int i, float v) { return i == 0 && !(v >= 0); }
@@ -269,6 +280,7 @@ static inline int mcst_bad_exponents(int i, float v) {
 #define MCST_DOMAIN_ends {mcst_bad_ends, {1e-30, 2}, {1, 9e17}, 1}
 #define MCST_DOMAIN_corners {mcst_bad_corners, {1e-45, 1e-45}, {3.4e38, 3.4e38}, 0}
 #define MCST_DOMAIN_cone {mcst_bad_cone, {1e-30, 0}, {2, 0}, 0}
+#define MCST_DOMAIN_ball {mcst_bad_ball, {1e-18, 1e-18}, {1e18, 1e18}, 1}
 #define MCST_DOMAIN_asymmetry {mcst_bad_asymmetry, {1e-30, 0}, {0.99999994, 0}, 1}
 #define MCST_DOMAIN_sharpness {mcst_bad_sharpness, {1e-30, 0}, {1e8, 0}, 0}
 #define MCST_DOMAIN_phong {mcst_bad_phong, {1e-30, 1e-30}, {1e9, 1e9}, 0}
@@ -300,6 +312,8 @@ static const mcst_set mcst_chi_corners[] = {
     {2, 5, 0, 0, 10}, {0, 0, 0, 0, 2}, {0, 4, 0, 0, 2}, {4, 0, 0, 0, 2}, {1e6f, 1, 0, 0, 2}};
 static const mcst_set mcst_chi_cone[] = {
     {0.5f, 0, 0, 0, 10}, {2, 0, 0, 0, 2}, {0.01f, 0, 0, 0, 2}, {1e-8f, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_ball[] = {
+    {1, 0.5f, 0, 0, 10}, {0.3f, 0.5f, 0, 0, 2}, {-1, 1.1456f, 0, 0, 2}, {1, 1e-2f, 0, 0, 2}, {0, 1, 0, 0, 2}};
 static const mcst_set mcst_chi_asymmetry[] = {
     {0.5f, 0, 0, 0, 10}, {0, 0, 0, 0, 2}, {0.9f, 0, 0, 0, 2}, {-0.8f, 0, 0, 0, 2}, {0.999f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_sharpness[] = {{1, 0, 0, 0, 10}, {0, 0, 0, 0, 2},   {0.1f, 0, 0, 0, 2},
@@ -339,6 +353,7 @@ static const mcst_claim mcst_claims_triangle[] = {{MCST_NO_PARAMETER, {0.001, 0.
 static const mcst_claim mcst_claims_bilinear[] = {{MCST_NO_PARAMETER, {0.7, 0.5, 0, 0, 0, 0}}};
 static const mcst_claim mcst_claims_direction[] = {{MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_cone[] = {{{1e-30, 0}, {2, 0}, {0.2, 0.2, 0, 0, 0, 4}}};
+static const mcst_claim mcst_claims_ball[] = {{{-1e18, 1e-18}, {1e18, 1e18}, {0.1, 0.1, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_asymmetry[] = {{{-1, 0}, {0.99999994, 0}, {0.2, 0.6, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_sharpness[] = {{{0, 0}, {1e8, 0}, {0.2, 0.4, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_phong_lobe[] = {
@@ -389,6 +404,7 @@ static const mcst_claim mcst_claims_ashikhmin[] = {
 #define MCST_DECLARE_LINE MCST_DECLARE_UV
 #define MCST_DECLARE_PLANE MCST_DECLARE_UV
 #define MCST_DECLARE_DIR MCST_DECLARE_UV
+#define MCST_DECLARE_LIGHT MCST_DECLARE_UV
 #define MCST_DECLARE_LOBE MCST_DECLARE_UV
 #define MCST_DECLARE_VLOBE MCST_DECLARE_UV
 #define MCST_DECLARE_BRDF(row)                                                                             \
@@ -443,6 +459,7 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_COUNT_2 2
 #define MCST_COUNT_corners 2
 #define MCST_COUNT_cross 2
+#define MCST_COUNT_ball 2
 #define MCST_COUNT_phong 1
 #define MCST_COUNT_ward 2
 #define MCST_COUNT_ward_gmd 2
@@ -454,24 +471,28 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_SHAPE_LINE(row) MCST_IS_LINE, MCST_LENGTH
 #define MCST_SHAPE_PLANE(row) MCST_IS_PLANE, MCST_AREA
 #define MCST_SHAPE_DIR(row) MCST_IS_DIR, MCST_SOLID_ANGLE
+#define MCST_SHAPE_LIGHT(row) MCST_IS_DIR, MCST_SOLID_ANGLE
 #define MCST_SHAPE_LOBE(row) MCST_IS_LOBE, MCST_SOLID_ANGLE_OF_H
 #define MCST_SHAPE_VLOBE(row) MCST_IS_VLOBE, MCST_SOLID_ANGLE_OF_H
 #define MCST_SHAPE_BRDF(row) MCST_IS_BRDF, MCST_SOLID_ANGLE
 #define MCST_SIZE_LINE 1, 1
 #define MCST_SIZE_PLANE 2, 2
 #define MCST_SIZE_DIR 2, 3
+#define MCST_SIZE_LIGHT 2, 3
 #define MCST_SIZE_LOBE 2, 3
 #define MCST_SIZE_VLOBE 2, 3
 #define MCST_SIZE_BRDF 2, 3
 #define MCST_WO_LINE 0
 #define MCST_WO_PLANE 0
 #define MCST_WO_DIR 0
+#define MCST_WO_LIGHT 0
 #define MCST_WO_LOBE 0
 #define MCST_WO_VLOBE 1
 #define MCST_WO_BRDF 1
 #define MCST_T_LINE(row) MCST_TAIL_UV(row)
 #define MCST_T_PLANE(row) MCST_TAIL_UV(row)
 #define MCST_T_DIR(row) MCST_TAIL_UV(row)
+#define MCST_T_LIGHT(row) MCST_TAIL_UV(row)
 #define MCST_T_LOBE(row) MCST_TAIL_UV(row)
 #define MCST_T_VLOBE(row) MCST_TAIL_UV(row)
 #define MCST_T_BRDF(row) MCST_TAIL_BRDF(row)

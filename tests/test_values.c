@@ -343,6 +343,79 @@ static void ends_of_von_mises_fisher(void) {
     }
 }
 
+/* ---- lights ---- */
+
+/* A centre within 1 of the point by coordinate; some lie nearly along z, or nearly across it. */
+static mcs_vec3 any_centre(uint64_t *state) {
+    float u[4];
+    mcst_uniform(state, 2, u, u + 2);
+    mcs_vec3 c = {2 * u[0] - 1, 2 * u[1] - 1, 2 * u[2] - 1};
+    if (u[3] < 0.2f) c.z *= 1e-6f;
+    if (u[3] > 0.8f) {
+        c.x *= 1e-6f;
+        c.y *= 1e-6f;
+    }
+    return c;
+}
+/* What the header says of a ball whose radius is `ratio` times the distance of its centre, of random numbers and of those
+ * at the rim. Density and distance are rounded once, and are good to 1e-8 before. */
+static void balls(double least, double most) {
+    uint64_t state = mcst_seed_for("ball", "values", (size_t)(1e3 * least));
+    for (int i = 0; i < 200000; i++) {
+        float u[2];
+        float v[2];
+        const mcs_vec3 c = any_centre(&state);
+        const o_vec3 centre = o_v3(c.x, c.y, c.z);
+        mcst_uniform(&state, 2, u, v);
+        const double log_ratio = log(least) + (double)v[0] * log(most / least);
+        const double ratio = least > 0.5 && i % 2 ? most - (most - least) * pow(1e-7, (double)v[0]) : exp(log_ratio);
+        const float r = (float)(ratio * (double)o_len(centre));
+        if (i % 8 == 0) u[0] = 1 - 0x1p-24f;
+        const mcs_light s = mcs_ball_sample(c, r, u[0], u[1]);
+        const float pdf = mcs_ball_pdf(c, r, s.w);
+        const o_vec3 w = o_ball_map(centre, (ld)r, (ld)u[0], (ld)u[1]);
+        const o_vec3 off = o_add(o_v3(s.w.x, s.w.y, s.w.z), o_scale(-1, w));
+        const ld err = fmaxl(fmaxl(fabsl(off.x), fabsl(off.y)), fabsl(off.z));
+        const ld want = o_ball_pdf_u(centre, (ld)r, (ld)u[0], (ld)u[1]);
+        const ld distance = o_ball_distance(centre, (ld)r, w);
+        CHECK(err <= 1.25 * 2 * EPS && relative(s.pdf, want) <= 7e-8L && relative(pdf, want) <= 7e-8L &&
+                  relative(s.distance, distance) <= 7e-8L,
+              "c (%a, %a, %a), r %a, u %a %a: w off by %Lg, pdf %.9g and %.9g, not %.9Lg, distance %.9g, not %.9Lg",
+              (double)c.x, (double)c.y, (double)c.z, (double)r, (double)u[0], (double)u[1], err, (double)s.pdf,
+              (double)pdf, want, (double)s.distance, distance);
+    }
+}
+/* On the surface, and in the middle; just past the rim; a ball that is too small; one that hardly fits into floats. */
+static void ends_of_balls(void) {
+    const mcs_vec3 ahead = {0, 0, 1};
+    const mcs_vec3 at = {0, 0, 0};
+    for (int i = 0; i < 100; i++) {
+        const float u1 = (float)i / 100;
+        const mcs_light on = mcs_ball_sample(ahead, 1, u1, 0.3f);
+        const mcs_light in = mcs_ball_sample(at, 3, u1, 0.3f);
+        CHECK(relative(on.pdf, 0.25L / O_PI) <= EPS && fabsf(on.distance - 2 * fmaxf(1 - 2 * u1, 0)) <= 2 * (float)EPS,
+              "on the surface, u1 = %g: pdf %.9g, distance %.9g", (double)u1, (double)on.pdf, (double)on.distance);
+        CHECK(in.pdf == on.pdf && in.distance == 3 && fabsf(in.w.z - (1 - 2 * u1)) <= 2 * (float)EPS,
+              "in the middle, u1 = %g: pdf %.9g, distance %.9g", (double)u1, (double)in.pdf, (double)in.distance);
+    }
+    for (int i = 0; i < 6; i++) {
+        const float r = (float)pow(10, -i);
+        const double rim = asin((double)r / 2);
+        const mcs_vec3 c = {0, 0, 2};
+        const mcs_vec3 inside = {(float)sin(rim + 0x1p-25), 0, (float)cos(rim + 0x1p-25)};
+        const mcs_vec3 past = {(float)sin(rim * (1 + 1e-6) + 0x1p-22), 0, (float)cos(rim * (1 + 1e-6) + 0x1p-22)};
+        CHECK(mcs_ball_pdf(c, r, inside) > 0 && mcs_ball_pdf(c, r, past) == 0, "r = %g: pdf %g past the rim", (double)r,
+              (double)mcs_ball_pdf(c, r, past));
+    }
+    const mcs_light speck = mcs_ball_sample(ahead, 1e-18f, 0.5f, 0.5f);
+    CHECK(relative(speck.pdf, 1 / (O_PI * 1e-30L)) <= 1e-6L && speck.distance == 1 && speck.w.z == 1,
+          "a speck: pdf %g, distance %.9g", (double)speck.pdf, (double)speck.distance);
+    const mcs_vec3 far_away = {-1e18f, 1e18f, -1e18f};
+    const mcs_light sun = mcs_ball_sample(far_away, 1e18f, 0.5f, 0.5f);
+    CHECK(sun.distance > 7e17f && sun.distance < 1.8e18f && sun.pdf > 0, "a sun: pdf %g, distance %g", (double)sun.pdf,
+          (double)sun.distance);
+}
+
 /* Outside the support densities are 0 and inverses are the nearer end. Rims take in the rounding of what lies on them,
  * 5e-7. */
 static void beyond_the_ends(void) {
@@ -985,6 +1058,15 @@ static void map_values(void) {
     if (mcst_case("borders of texels")) borders_of_texels();
     if (mcst_case("even maps by arrays")) texels_of_even_maps();
 }
+static void light_values(void) {
+    mcst_group("values, lights");
+    if (mcst_case("balls from afar")) balls(1e-9, 0.5);
+    if (mcst_case("balls nearby")) balls(0.5, 1);
+    if (mcst_case("balls from inside")) balls(1, 2);
+    if (mcst_case("balls from deep inside")) balls(2, 1e9);
+    if (mcst_case("balls at their ends")) ends_of_balls();
+}
+
 int main(int argc, char **argv) {
     static const char *const visible[] = {"ggx_vndf_h", "ggx_vndf", "ggx_bounded_h", "ggx_bounded"};
     static const char *const even[] = {"disk", "concentric", "sphere", "hemisphere", "cosine", "cone"};
@@ -1007,6 +1089,7 @@ int main(int argc, char **argv) {
         if (mcst_case("%s %g %g", halves[i].row, (double)halves[i].a, (double)halves[i].b))
             cancelling_cosines(mcst_find(halves[i].row), halves[i].a, halves[i].b);
     media_values();
+    light_values();
     mcst_group("values, others");
     for (size_t i = 0; i < 6; i++)
         if (mcst_case("constants of %s", even[i])) constants(even[i], i < 2 ? 0.1 : 0.15);

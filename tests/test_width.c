@@ -97,9 +97,9 @@ static void check_lanes(const mcst_row *row, int form, int lanes, uint64_t *stat
 static const float guard = -123456.0f;
 enum { ROOM = N + 8 };
 
-/* Which of x, y, z, pdf, weight the array form writes. */
+/* Which of x, y, z, pdf, weight or distance the array form writes. */
 static int writes(const mcst_row *row, int k) {
-    return k < row->dim || k == 3 || (k == 4 && row->shape == MCST_IS_BRDF);
+    return k < row->dim || k == 3 || (k == 4 && (row->shape == MCST_IS_BRDF || row->traits & MCST_DISTANCE));
 }
 
 /* What an array form wrote at `to`, beginning with entry `first` of a row of guards: `want`, n of them, and nothing

@@ -8,6 +8,7 @@
 #define OA_2 (ld) p[0], (ld)p[1],
 #define OA_corners o_corners((ld)p[0], (ld)p[1], 1.0L, 3.0L),
 #define OA_cross o_corners((ld)p[0], 0.0L, 0.0L, (ld)p[1]),
+#define OA_ball o_scale((ld)p[0], o_vec(-0.5L, 0.25L, 1.0L)), (ld)p[1],
 #define OA_phong OA_1
 #define OA_ward OA_2
 #define OA_ward_gmd OA_2 0,
@@ -62,6 +63,7 @@
 #define MCST_O_DIR(row, fn, args)                             \
     MCST_O_UV(row, fn, OA_##args, o_vec3, mcst_o3, MCST_PUT3) \
     MCST_O_INVERT(row, fn, OA_##args, mcst_o3)
+#define MCST_O_LIGHT(row, fn, args) MCST_O_DIR(row, fn, args)
 #define MCST_O_LOBE(row, fn, args) MCST_O_DIR(row, fn, args)
 #define MCST_O_VLOBE(row, fn, args)                                    \
     MCST_O_UV(row, fn, MCST_LEAD_WO(args), o_vec3, mcst_o3, MCST_PUT3) \

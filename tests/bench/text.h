@@ -202,6 +202,33 @@ static inline text_sample text_cone(float k, float u1, float u2) {
     return text_direction(sqrtf(1 - z * z), z, 2 * TEXT_PI * u2, 1 / (2 * TEXT_PI * (1 - least)));
 }
 
+/* ---- lights ---- */
+
+/* pbrt, Sphere::Sample for a point outside or inside, without the point hit and a rotation of the light: a cone about
+ * the centre by the coordinate system of Duff et al. */
+static inline text_sample text_ball(float x, float y, float z, float radius, float u1, float u2) {
+    const float d2 = x * x + y * y + z * z;
+    const float sin2_max = radius * radius / d2;
+    const float cos_max = sin2_max < 1 ? sqrtf(fmaxf(0, 1 - sin2_max)) : -1;
+    const float cos_theta = sin2_max < 0.00068523f ? sqrtf(1 - sin2_max * u1) : (cos_max - 1) * u1 + 1;
+    const float sine = sqrtf(fmaxf(0, 1 - cos_theta * cos_theta));
+    const float one_minus = sin2_max < 0.00068523f ? sin2_max / 2 : 1 - cos_max;
+    text_sample s = text_direction(sine, cos_theta, 2 * TEXT_PI * u2, 1 / (2 * TEXT_PI * one_minus));
+    const float inverse = 1 / sqrtf(d2);
+    x *= inverse;
+    y *= inverse;
+    z *= inverse;
+    const float sign = copysignf(1, z);
+    const float a = -1 / (sign + z);
+    const float b = x * y * a;
+    const float w_x = s.x * (1 + sign * x * x * a) + s.y * b + s.z * x;
+    const float w_y = s.x * sign * b + s.y * (sign + y * y * a) + s.z * y;
+    s.z = s.z * z - s.x * sign * x - s.y * y;
+    s.x = w_x;
+    s.y = w_y;
+    return s;
+}
+
 /* ---- phase functions ---- */
 
 static inline text_sample text_henyey_greenstein(float g, float u1, float u2) {
