@@ -1,7 +1,7 @@
 /* mcsample.h, version 0.1.0: Monte Carlo sampling for rendering in one C header.
  *
  * The header draws points and directions from the densities that a renderer needs, and it tells the density of any
- * point. It covers lines, disks and spheres of directions, phase functions, the Phong, Ward, Beckmann, GGX and
+ * point. It covers lines, disks and spheres of directions, lights, phase functions, the Phong, Ward, Beckmann, GGX and
  * Ashikhmin-Shirley lobes, tables of numbers, environment maps, and the product of a map with a lobe. Random numbers,
  * well-spread points, weights for multiple importance sampling, reservoirs and a running mean that knows its error come
  * with it. The licence (MIT) stands at the end.
@@ -117,7 +117,7 @@
  *   [square]      a bilinear density on the unit square                    cosines over a light of four corners
  *   [disk]        points on a disk                                         lenses, round lights
  *   [triangle]    points on a triangle                                     lights made of triangles
- *   [lights]      directions towards a ball                                lights, seen from a shaded point
+ *   [lights]      directions towards a ball or a disk                      lights, seen from a shaded point
  *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte surfaces, spherical lights
  *   [media]       henyey_greenstein, rayleigh, von_mises_fisher            fog, skin, clear air; guiding
  *   [frame]       local and world coordinates                              every shaded point
@@ -740,8 +740,8 @@ typedef struct {
  *            mcs_frame_make has for that direction. A centre within 1e-18 of the point has the direction +z.
  * density    1/(2 pi k); from outside 0 where w misses the ball by more than an angle of 2^-23, as rounding may move a
  *            sampled w by nearly so much. MIS is right with that, as light is 0 there.
- * accuracy   pdf and distance within 1e-7 of themselves, for |centre| up to 1e9 radii. The distance is that of the exact
- *            direction of u.
+ * accuracy   pdf and distance within 1e-7 of themselves, for |centre| up to 1e9 radii. The distance is that of the
+ *            exact direction of u.
  * cost       4 square roots, 10 divisions, 1 sincos; array forms spend half of these once for all
  * functions  mcs_ball_sample, mcs_ball_pdf, mcs_ball_invert, mcs_ball_sample_n for arrays
  * source     the cone is that of Wang 1992, "Physically correct direct lighting for distribution ray tracing" */
@@ -751,6 +751,31 @@ MCS_FN mcs_vec2 mcs_ball_invert(mcs_vec3 centre, float radius, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2, float *x,
                                float *y, float *z, float *pdf, float *distance);
+#endif
+
+/* ---- disk_light: a disk that gives light to both sides, uniform in its area ----
+ * The density per solid angle is that of the area, converted exactly. It is nearly even where the disk is further away
+ * than it is large, and high where the disk is seen from its edge. In the plane of the disk it is 0.
+ *
+ * centre     of the disk, from the point; coordinates in [-1e18, 1e18]
+ * normal     of the disk, a direction. For a disk that gives light to the side of its normal alone, leave out samples
+ *            whose w is on the side of the normal.
+ * radius     in [1e-18, 1e18]; below 1e-15 of the largest coordinate of centre it counts as that
+ * map        the point is that of mcs_concentric_sample, in the frame of mcs_frame_make(normal), and w is its
+ *            direction. Where it is within 1e-18 of the point that is lit, w is +z and the density 0.
+ * density    distance^2 / (pi radius^2 |w.normal|); 0 where w misses the disk by more than an angle of 2^-23, and where
+ *            |w.normal| is below 1e-7
+ * accuracy   coordinates within 2^-24, pdf and distance within 1e-7 of themselves, for samples whose distance is 1e-4
+ *            radii or more
+ * cost       2 square roots, 8 divisions; array forms spend half of these once for all
+ * functions  mcs_disk_light_sample, mcs_disk_light_pdf, mcs_disk_light_invert, mcs_disk_light_sample_n for arrays
+ * source     Shirley and Chiu 1997, as in [disk] */
+MCS_FN mcs_light mcs_disk_light_sample(mcs_vec3 centre, mcs_vec3 normal, float radius, float u1, float u2);
+MCS_FN float mcs_disk_light_pdf(mcs_vec3 centre, mcs_vec3 normal, float radius, mcs_vec3 w);
+MCS_FN mcs_vec2 mcs_disk_light_invert(mcs_vec3 centre, mcs_vec3 normal, float radius, mcs_vec3 w);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_disk_light_sample_n(mcs_vec3 centre, mcs_vec3 normal, float radius, size_t n, const float *u1,
+                                     const float *u2, float *x, float *y, float *z, float *pdf, float *distance);
 #endif
 
 #endif
@@ -4001,13 +4026,19 @@ typedef struct {
 } mcs_light;
 #endif
 
-/* The square root of x >= 0: that of a float, and one step of Newton's method. */
-MCSI_CORE mcsi_d mcsi_wide_sqrt(mcsi_d x) {
-    const mcs_f root = mcsi_sqrt(MCSI_NARROW(x));
+/* Makes a number >= 0 its square root: that of a float, and one step of Newton's method. Doubles are not passed by
+ * value, as gcc would tell of its ABI. */
+MCSI_CORE void mcsi_wide_sqrt(mcsi_d *x) {
+    const mcs_f root = mcsi_sqrt(MCSI_NARROW(*x));
     const mcs_i some = root > 0.0f;
     const mcs_f slope = mcsi_sel(some, mcs_set(0.5f), mcs_set(0.0f)) / mcsi_sel(some, root, mcs_set(1.0f));
-    return MCSI_WIDEN(root) + (x - MCSI_WIDEN(root) * MCSI_WIDEN(root)) * MCSI_WIDEN(slope);
+    *x = MCSI_WIDEN(root) + (*x - MCSI_WIDEN(root) * MCSI_WIDEN(root)) * MCSI_WIDEN(slope);
 }
+
+/* A vector in double. */
+typedef struct {
+    mcsi_d x, y, z;
+} mcsi_wide_vec3;
 
 /* The unit vector n of some v, and what the frame of mcs_frame_make has around it: its sign and a. */
 typedef struct {
@@ -4022,7 +4053,9 @@ MCSI_CORE mcsi_axis mcsi_axis_make(mcs_vec3 v) {
     const mcsi_d z = MCSI_WIDEN(v.z);
     mcsi_axis axis;
     axis.length2 = x * x + y * y + z * z;
-    axis.inverse = 1.0 / mcsi_wide_sqrt(axis.length2);
+    mcsi_d length = axis.length2;
+    mcsi_wide_sqrt(&length);
+    axis.inverse = 1.0 / length;
     axis.n_x = axis.inverse * x;
     axis.n_y = axis.inverse * y;
     axis.n_z = axis.inverse * z;
@@ -4031,24 +4064,32 @@ MCSI_CORE mcsi_axis mcsi_axis_make(mcs_vec3 v) {
     return axis;
 }
 /* x s + y t + z n: both s and t have n as a factor of what is not in one coordinate alone. */
-MCSI_CORE mcs_vec3 mcsi_from_axis(const mcsi_axis *axis, mcsi_d x, mcsi_d y, mcsi_d z) {
-    const mcsi_d tilt = axis->sign * axis->n_x * x + axis->n_y * y;
-    const mcsi_d along = axis->a * tilt + z;
-    return mcsi_vec3(MCSI_NARROW(x + axis->n_x * along), MCSI_NARROW(axis->sign * y + axis->n_y * along),
-                     MCSI_NARROW(axis->n_z * z - tilt));
+MCSI_CORE mcs_vec3 mcsi_from_axis(const mcsi_axis *axis, const mcsi_wide_vec3 *v) {
+    const mcsi_d tilt = axis->sign * axis->n_x * v->x + axis->n_y * v->y;
+    const mcsi_d along = axis->a * tilt + v->z;
+    return mcsi_vec3(MCSI_NARROW(v->x + axis->n_x * along), MCSI_NARROW(axis->sign * v->y + axis->n_y * along),
+                     MCSI_NARROW(axis->n_z * v->z - tilt));
 }
-#ifdef MCSI_PUBLIC
 /* (w.s, w.t, w.n) */
-MCSI_CORE mcs_vec3 mcsi_to_axis(const mcsi_axis *axis, mcs_vec3 w) {
+MCSI_CORE mcsi_wide_vec3 mcsi_to_axis(const mcsi_axis *axis, mcs_vec3 w) {
     const mcsi_d x = MCSI_WIDEN(w.x);
     const mcsi_d y = MCSI_WIDEN(w.y);
     const mcsi_d z = MCSI_WIDEN(w.z);
     const mcsi_d level = axis->n_x * x + axis->n_y * y;
     const mcsi_d along = axis->a * level - z;
-    return mcsi_vec3(MCSI_NARROW(x + axis->sign * axis->n_x * along), MCSI_NARROW(axis->sign * y + axis->n_y * along),
-                     MCSI_NARROW(level + axis->n_z * z));
+    mcsi_wide_vec3 v;
+    v.x = x + axis->sign * axis->n_x * along;
+    v.y = axis->sign * y + axis->n_y * along;
+    v.z = level + axis->n_z * z;
+    return v;
 }
-#endif
+MCSI_CORE mcs_i mcsi_place_ok(mcs_vec3 p) {
+    const mcs_f x = mcsi_abs(p.x);
+    const mcs_f y = mcsi_abs(p.y);
+    const mcs_f z = mcsi_abs(p.z);
+    return (x <= 1e18f) & (y <= 1e18f) & (z <= 1e18f);
+}
+MCSI_CORE mcs_f mcsi_largest(mcs_vec3 v) { return mcsi_max(mcsi_max(mcsi_abs(v.x), mcsi_abs(v.y)), mcsi_abs(v.z)); }
 
 /* ---- ball ----
  * c is the distance of the centre and r the radius. From outside, where c > r, sin^2 of the rim is r^2/c^2, and its
@@ -4067,11 +4108,9 @@ MCSI_CORE mcsi_ball mcsi_ball_make(mcs_vec3 centre, mcs_f radius) {
     const mcs_f zero = mcs_set(0.0f);
     const mcs_f one = mcs_set(1.0f);
     mcsi_ball b;
-    b.ok = mcsi_scale_ok(radius) & (mcsi_abs(centre.x) <= 1e18f) & (mcsi_abs(centre.y) <= 1e18f) &
-           (mcsi_abs(centre.z) <= 1e18f);
+    b.ok = mcsi_scale_ok(radius) & mcsi_place_ok(centre);
     MCSI_REQUIRE(b.ok);
-    const mcs_i apart =
-        b.ok & (mcsi_max(mcsi_max(mcsi_abs(centre.x), mcsi_abs(centre.y)), mcsi_abs(centre.z)) >= 1e-18f);
+    const mcs_i apart = b.ok & (mcsi_largest(centre) >= 1e-18f);
     b.axis = mcsi_axis_make(mcsi_sel3(apart, centre, mcsi_vec3(zero, zero, one)));
     const mcsi_d c2 = b.axis.length2 * MCSI_WIDEN(mcsi_sel(apart, one, zero));
     b.c = c2 * b.axis.inverse;
@@ -4081,39 +4120,48 @@ MCSI_CORE mcsi_ball mcsi_ball_make(mcs_vec3 centre, mcs_f radius) {
     b.gap = c2 - r * r;
     b.outside = MCSI_WIDEN(mcsi_sel(MCSI_NARROW(b.gap) > 0.0f, one, zero));
     const mcsi_d unit = b.outside * b.axis.inverse * b.axis.inverse;
-    b.k = r * r * unit / (1.0 + mcsi_wide_sqrt(1.0 - b.outside + b.gap * unit)) + 2.0 * (1.0 - b.outside);
+    mcsi_d cosine = 1.0 - b.outside + b.gap * unit;
+    mcsi_wide_sqrt(&cosine);
+    b.k = r * r * unit / (1.0 + cosine) + 2.0 * (1.0 - b.outside);
     b.scale = 1.0f / mcsi_max(far_off, size);
     return b;
 }
-/* Along a direction with the cosine z the surface is at c z -+ h, where h^2 is c^2 z^2 - gap. The product of both is the
- * gap, so that one of them is a quotient where the difference would cancel. From outside, h^2 is
+/* Along a direction with the cosine z the surface is at c z -+ h, where h^2 is c^2 z^2 - gap. The product of both is
+ * the gap, so that one of them is a quotient where the difference would cancel. From outside, h^2 is
  * c^2 k (1 - u1) (2 - k (1 + u1)), whose factors do not cancel. */
-MCSI_CORE mcs_f mcsi_ball_distance(const mcsi_ball *b, mcsi_d u1, mcsi_d z) {
+MCSI_CORE mcs_f mcsi_ball_distance(const mcsi_ball *b, mcs_f u1) {
+    const mcsi_d u = MCSI_WIDEN(u1);
+    const mcsi_d z = 1.0 - b->k * u;
     const mcsi_d scale = MCSI_WIDEN(b->scale);
     const mcs_f cosine = MCSI_NARROW(z);
     const mcsi_d along = b->c * scale * z * MCSI_WIDEN(mcsi_with_sign(mcs_set(1.0f), cosine)); /* c |z| */
     const mcsi_d c2 = b->c * scale * b->c * scale;
     const mcsi_d gap = b->gap * scale * scale;
     const mcsi_d inside = 1.0 - b->outside;
-    const mcsi_d h2 =
-        b->outside * (c2 * b->k * (1.0 - u1) * (2.0 - b->k * (1.0 + u1))) + inside * (along * along - gap);
-    const mcsi_d sum = along + mcsi_wide_sqrt(h2);
+    mcsi_d h = b->outside * (c2 * b->k * (1.0 - u) * (2.0 - b->k * (1.0 + u))) + inside * (along * along - gap);
+    mcsi_wide_sqrt(&h);
+    const mcsi_d sum = along + h;
     const mcsi_d further = inside * MCSI_WIDEN(mcsi_sel(cosine >= 0.0f, mcs_set(1.0f), mcs_set(0.0f)));
     const mcsi_d above = further * sum + (1.0 - further) * (b->outside - inside) * gap;
     return MCSI_NARROW(above / ((further + (1.0 - further) * sum) * scale));
 }
 MCSI_CORE mcs_light mcsi_ball_draw(const mcsi_ball *b, mcs_f u1, mcs_f u2) {
     mcs_i ok = b->ok;
-    const mcsi_d u = MCSI_WIDEN(mcsi_sane_u(u1, &ok));
+    u1 = mcsi_sane_u(u1, &ok);
     u2 = mcsi_sane_u(u2, &ok);
-    const mcsi_d t = b->k * u;
-    const mcsi_d sine = mcsi_wide_sqrt(t * (2.0 - t));
+    const mcsi_d t = b->k * MCSI_WIDEN(u1);
+    mcsi_d sine = t * (2.0 - t);
+    mcsi_wide_sqrt(&sine);
     mcs_f s, c;
     mcsi_sincos_turns(u2, &s, &c);
+    mcsi_wide_vec3 v;
+    v.x = sine * MCSI_WIDEN(c);
+    v.y = sine * MCSI_WIDEN(s);
+    v.z = 1.0 - t;
     mcs_light light;
-    light.w = mcsi_from_axis(&b->axis, sine * MCSI_WIDEN(c), sine * MCSI_WIDEN(s), 1.0 - t);
+    light.w = mcsi_from_axis(&b->axis, &v);
     light.pdf = mcsi_sane_result(ok, MCSI_NARROW(0.15915494309189535 / b->k)); /* 1/(2 pi) */
-    light.distance = mcsi_sane_result(ok, mcsi_ball_distance(b, u, 1.0 - t));
+    light.distance = mcsi_sane_result(ok, mcsi_ball_distance(b, u1));
     return light;
 }
 MCSI_SAMPLE mcs_light mcs_ball_sample(mcs_vec3 centre, mcs_f radius, mcs_f u1, mcs_f u2) {
@@ -4121,6 +4169,11 @@ MCSI_SAMPLE mcs_light mcs_ball_sample(mcs_vec3 centre, mcs_f radius, mcs_f u1, m
     return mcsi_ball_draw(&b, u1, u2);
 }
 #ifdef MCSI_PUBLIC
+/* w in the frame about the centre. */
+MCSI_CORE mcs_vec3 mcsi_ball_local(const mcsi_ball *b, mcs_vec3 w) {
+    const mcsi_wide_vec3 v = mcsi_to_axis(&b->axis, w);
+    return mcsi_vec3(MCSI_NARROW(v.x), MCSI_NARROW(v.y), MCSI_NARROW(v.z));
+}
 /* A direction at the angle d beyond the rim has 1 - cos = k + d sin + d^2/2, about. */
 MCSI_FN mcs_f mcs_ball_pdf(mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
     const mcsi_ball b = mcsi_ball_make(centre, radius);
@@ -4128,14 +4181,131 @@ MCSI_FN mcs_f mcs_ball_pdf(mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
     w = mcsi_sane_direction(w, &ok);
     const mcs_f k = MCSI_NARROW(b.k);
     const mcs_f rim = 1.0000005f * k + 1.1920929e-07f * mcsi_sqrt(k * (2.0f - k)) + 7.1054274e-15f;
-    const mcs_i hit = mcsi_one_minus_z(mcsi_to_axis(&b.axis, w)) <= rim;
+    const mcs_i hit = mcsi_one_minus_z(mcsi_ball_local(&b, w)) <= rim;
     return mcsi_sane_result(ok & hit, MCSI_NARROW(0.15915494309189535 / b.k));
 }
 MCSI_FN mcs_vec2 mcs_ball_invert(mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
     const mcsi_ball b = mcsi_ball_make(centre, radius);
     mcs_i ok = b.ok;
-    const mcs_vec3 v = mcsi_to_axis(&b.axis, mcsi_sane_direction(w, &ok));
+    const mcs_vec3 v = mcsi_ball_local(&b, mcsi_sane_direction(w, &ok));
     return mcsi_uv(ok, mcsi_one_minus_z(v) / MCSI_NARROW(b.k), mcsi_atan2_turns(v.y, v.x));
+}
+#endif
+
+/* ---- disk_light ----
+ * In the frame of the normal the disk is level, at the height h. With the distance d of a point of it, the cosine there
+ * is |h|/d. That is at least 1e-7, and d^2 at most 4e30 areas, so that no density is beyond FLT_MAX. */
+
+typedef struct {
+    mcs_i ok;
+    mcsi_axis axis;
+    mcsi_wide_vec3 centre;
+    mcsi_d radius, per_area; /* 1 / the area */
+    mcsi_d further;          /* further away than any point of the disk */
+} mcsi_disk_light;
+
+MCSI_CORE mcsi_disk_light mcsi_disk_light_make(mcs_vec3 centre, mcs_vec3 normal, mcs_f radius) {
+    const mcs_f zero = mcs_set(0.0f);
+    mcsi_disk_light d;
+    d.ok = mcsi_scale_ok(radius) & mcsi_place_ok(centre);
+    MCSI_REQUIRE(d.ok);
+    centre = mcsi_sel3(d.ok, centre, mcsi_vec3(zero, zero, zero));
+    const mcs_f largest = mcsi_largest(centre);
+    const mcs_f size = mcsi_max(mcsi_sel(d.ok, radius, mcs_set(1.0f)), 1e-15f * largest);
+    d.axis = mcsi_axis_make(mcsi_sane_direction(normal, &d.ok));
+    d.centre = mcsi_to_axis(&d.axis, centre);
+    d.radius = MCSI_WIDEN(size);
+    d.per_area = 0.3183098861837907 / (d.radius * d.radius); /* 1/pi */
+    d.further = 2.0 * (MCSI_WIDEN(largest) + d.radius);
+    return d;
+}
+/* The concentric map in double, as a rounding of a point weighs more where it is near. Each angle is within an eighth
+ * of a turn of an axis, so that Taylor's series leave 1e-11. */
+MCSI_CORE mcs_light mcsi_disk_light_draw(const mcsi_disk_light *d, mcs_f u1, mcs_f u2) {
+    const mcs_f zero = mcs_set(0.0f);
+    const mcs_f one = mcs_set(1.0f);
+    mcs_i ok = d->ok;
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    const mcs_i middle = (u1 == 0.5f) & (u2 == 0.5f);
+    const mcsi_d a = 2.0 * MCSI_WIDEN(u1) - 1.0;
+    const mcsi_d b = 2.0 * MCSI_WIDEN(u2) - 1.0;
+    const mcsi_d along_x = MCSI_WIDEN(mcsi_sel(MCSI_NARROW(a * a - b * b) > 0.0f, one, zero));
+    const mcsi_d longer = b + along_x * (a - b);
+    const mcsi_d angle =
+        0.7853981633974483 * (a + along_x * (b - a)) / (longer + MCSI_WIDEN(mcsi_sel(middle, one, zero)));
+    const mcsi_d z = angle * angle;
+    const mcsi_d s_7 = 1.0 - z * (1.0 / 42) * (1.0 - z * (1.0 / 72) * (1.0 - z * (1.0 / 110)));
+    const mcsi_d c_6 = 1.0 - z * (1.0 / 30) * (1.0 - z * (1.0 / 56) * (1.0 - z * (1.0 / 90) * (1.0 - z * (1.0 / 132))));
+    const mcsi_d s = d->radius * longer * angle * (1.0 - z * (1.0 / 6) * (1.0 - z * (1.0 / 20) * s_7));
+    const mcsi_d c = d->radius * longer * (1.0 - z * (1.0 / 2) * (1.0 - z * (1.0 / 12) * c_6));
+    const mcsi_d x = d->centre.x + (s + along_x * (c - s));
+    const mcsi_d y = d->centre.y + (c + along_x * (s - c));
+    const mcsi_d distance2 = x * x + y * y + d->centre.z * d->centre.z;
+    const mcs_i apart = MCSI_NARROW(distance2) >= 1e-36f;
+    mcsi_d distance = distance2 + MCSI_WIDEN(mcsi_sel(apart, zero, one));
+    mcsi_wide_sqrt(&distance);
+    const mcsi_d inverse = 1.0 / distance;
+    mcsi_wide_vec3 v;
+    v.x = x * inverse;
+    v.y = y * inverse;
+    v.z = d->centre.z * inverse;
+    const mcs_i lit = apart & (mcsi_abs(MCSI_NARROW(v.z)) >= 1e-7f);
+    const mcsi_d counts = MCSI_WIDEN(mcsi_sel(lit, mcsi_with_sign(one, MCSI_NARROW(d->centre.z)), zero));
+    const mcsi_d pdf = distance2 * distance * d->per_area / (counts * d->centre.z + (1.0 - counts * counts));
+    mcs_light light;
+    light.w = mcsi_sel3(apart, mcsi_from_axis(&d->axis, &v), mcsi_vec3(zero, zero, one));
+    light.pdf = mcsi_sane_result(ok & lit, MCSI_NARROW(counts * counts * pdf));
+    light.distance = mcsi_sane_result(ok & lit, MCSI_NARROW(distance));
+    return light;
+}
+MCSI_SAMPLE mcs_light mcs_disk_light_sample(mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_f u1, mcs_f u2) {
+    const mcsi_disk_light d = mcsi_disk_light_make(centre, normal, radius);
+    return mcsi_disk_light_draw(&d, u1, u2);
+}
+#ifdef MCSI_PUBLIC
+/* Where a direction hits the plane of the disk: the point from the centre, and the density there if it is of the disk.
+ * `ahead` is not set where the plane is not hit, or further away than the disk is. */
+typedef struct {
+    mcs_i ahead;
+    mcs_f x, y, density, beyond; /* beyond: above 1 outside of the disk */
+} mcsi_disk_hit;
+
+MCSI_CORE mcsi_disk_hit mcsi_disk_light_hit(const mcsi_disk_light *d, mcs_vec3 w) {
+    const mcs_f one = mcs_set(1.0f);
+    const mcsi_wide_vec3 v = mcsi_to_axis(&d->axis, w);
+    const mcsi_d side = MCSI_WIDEN(mcsi_with_sign(one, MCSI_NARROW(v.z)));
+    const mcsi_d height = side * d->centre.z;
+    const mcs_f h = MCSI_NARROW(height);
+    const mcs_f cosine = MCSI_NARROW(side * v.z);
+    mcsi_disk_hit hit;
+    hit.ahead = (cosine >= 1e-7f) & (h > 0.0f) & (h <= MCSI_NARROW(side * v.z * d->further));
+    const mcsi_d ahead = MCSI_WIDEN(mcsi_sel(hit.ahead, one, mcs_set(0.0f)));
+    const mcsi_d inverse = 1.0 / (ahead * side * v.z + (1.0 - ahead));
+    const mcsi_d t = ahead * height * inverse;
+    const mcsi_d x = t * v.x - d->centre.x;
+    const mcsi_d y = t * v.y - d->centre.y;
+    const mcsi_d rim = 1.00000025 * d->radius + 1.1920928955078125e-07 * t * inverse; /* 2^-23 */
+    const mcsi_d length2 = v.x * v.x + v.y * v.y + v.z * v.z;
+    const mcsi_d length3 = length2 * (0.5 + 0.5 * length2); /* its cube, where it is nearly 1 */
+    hit.x = MCSI_NARROW(x);
+    hit.y = MCSI_NARROW(y);
+    hit.beyond = MCSI_NARROW((x * x + y * y) / (rim * rim));
+    hit.density = MCSI_NARROW(t * t * length3 * d->per_area * inverse);
+    return hit;
+}
+MCSI_FN mcs_f mcs_disk_light_pdf(mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_vec3 w) {
+    const mcsi_disk_light d = mcsi_disk_light_make(centre, normal, radius);
+    mcs_i ok = d.ok;
+    const mcsi_disk_hit hit = mcsi_disk_light_hit(&d, mcsi_sane_direction(w, &ok));
+    return mcsi_sane_result(ok & hit.ahead & (hit.beyond <= 1.0f), hit.density);
+}
+MCSI_FN mcs_vec2 mcs_disk_light_invert(mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_vec3 w) {
+    const mcsi_disk_light d = mcsi_disk_light_make(centre, normal, radius);
+    mcs_i ok = d.ok;
+    const mcsi_disk_hit hit = mcsi_disk_light_hit(&d, mcsi_sane_direction(w, &ok));
+    const mcs_vec2 u = mcs_concentric_invert(MCSI_NARROW(d.radius), hit.x, hit.y);
+    return mcsi_uv(ok & hit.ahead, u.x, u.y);
 }
 #endif
 
@@ -4154,6 +4324,15 @@ MCSI_LOOP void mcsi_ball_loop(mcsi_scalar_vec3 centre, float radius, size_t n, c
     mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);
     b.out[4] = distance;
     MCSI_EACH(b) { mcsi_out_light(&b, mcsi_ball_draw(&ball, mcsi_in(&b, 0), mcsi_in(&b, 1))); }
+}
+MCSI_LOOP void mcsi_disk_light_loop(mcsi_scalar_vec3 centre, mcsi_scalar_vec3 normal, float radius, size_t n,
+                                    const float *u1, const float *u2, float *x, float *y, float *z, float *pdf,
+                                    float *distance) {
+    const mcsi_disk_light d = mcsi_disk_light_make(mcsi_spread(centre), mcsi_spread_direction(normal), mcs_set(radius));
+    mcsi_batch b;
+    mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);
+    b.out[4] = distance;
+    MCSI_EACH(b) { mcsi_out_light(&b, mcsi_disk_light_draw(&d, mcsi_in(&b, 0), mcsi_in(&b, 1))); }
 }
 #endif
 #endif /* MCS_NO_LIGHTS */
@@ -9557,6 +9736,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_cosine_sample MCS_(cosine_sample)
 #define mcs_dir MCS_(dir)
 #define mcs_disk_invert MCS_(disk_invert)
+#define mcs_disk_light_invert MCS_(disk_light_invert)
+#define mcs_disk_light_pdf MCS_(disk_light_pdf)
+#define mcs_disk_light_sample MCS_(disk_light_sample)
 #define mcs_disk_pdf MCS_(disk_pdf)
 #define mcs_disk_sample MCS_(disk_sample)
 #define mcs_evenpower_invert MCS_(evenpower_invert)
@@ -9704,6 +9886,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_ball MCSI_(ball)
 #define mcsi_ball_distance MCSI_(ball_distance)
 #define mcsi_ball_draw MCSI_(ball_draw)
+#define mcsi_ball_local MCSI_(ball_local)
 #define mcsi_ball_loop MCSI_(ball_loop)
 #define mcsi_ball_make MCSI_(ball_make)
 #define mcsi_beckmann_eval_loop MCSI_(beckmann_eval_loop)
@@ -9736,6 +9919,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_cosine_loop MCSI_(cosine_loop)
 #define mcsi_d MCSI_D
 #define mcsi_deviation MCSI_(deviation)
+#define mcsi_disk_hit MCSI_(disk_hit)
+#define mcsi_disk_light MCSI_(disk_light)
+#define mcsi_disk_light_draw MCSI_(disk_light_draw)
+#define mcsi_disk_light_hit MCSI_(disk_light_hit)
+#define mcsi_disk_light_loop MCSI_(disk_light_loop)
+#define mcsi_disk_light_make MCSI_(disk_light_make)
 #define mcsi_disk_loop MCSI_(disk_loop)
 #define mcsi_disk_pdf MCSI_(disk_pdf)
 #define mcsi_divide1 MCSI_(divide1)
@@ -9804,6 +9993,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_in MCSI_(in)
 #define mcsi_in_radii MCSI_(in_radii)
 #define mcsi_inverted MCSI_(inverted)
+#define mcsi_largest MCSI_(largest)
 #define mcsi_linear MCSI_(linear)
 #define mcsi_linear_loop MCSI_(linear_loop)
 #define mcsi_linear_make MCSI_(linear_make)
@@ -9841,6 +10031,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_phong_pdf_loop MCSI_(phong_pdf_loop)
 #define mcsi_phong_sample_loop MCSI_(phong_sample_loop)
 #define mcsi_phong_spread MCSI_(phong_spread)
+#define mcsi_place_ok MCSI_(place_ok)
 #define mcsi_polar MCSI_(polar)
 #define mcsi_pow_unit MCSI_(pow_unit)
 #define mcsi_power MCSI_(power)
@@ -9948,6 +10139,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_warps_loop MCSI_(warps_loop)
 #define mcsi_weighted MCSI_(weighted)
 #define mcsi_wide_sqrt MCSI_(wide_sqrt)
+#define mcsi_wide_vec3 MCSI_(wide_vec3)
 #define mcsi_with_sign MCSI_(with_sign)
 
 /* MCSI_W is the number of lanes of a pass, MCS_(x) the public name x of that width, MCSI_(x) a private one. */
@@ -10105,6 +10297,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_cosine_sample
 #undef mcs_dir
 #undef mcs_disk_invert
+#undef mcs_disk_light_invert
+#undef mcs_disk_light_pdf
+#undef mcs_disk_light_sample
 #undef mcs_disk_pdf
 #undef mcs_disk_sample
 #undef mcs_evenpower_invert
@@ -10252,6 +10447,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_ball
 #undef mcsi_ball_distance
 #undef mcsi_ball_draw
+#undef mcsi_ball_local
 #undef mcsi_ball_loop
 #undef mcsi_ball_make
 #undef mcsi_beckmann_eval_loop
@@ -10284,6 +10480,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_cosine_loop
 #undef mcsi_d
 #undef mcsi_deviation
+#undef mcsi_disk_hit
+#undef mcsi_disk_light
+#undef mcsi_disk_light_draw
+#undef mcsi_disk_light_hit
+#undef mcsi_disk_light_loop
+#undef mcsi_disk_light_make
 #undef mcsi_disk_loop
 #undef mcsi_disk_pdf
 #undef mcsi_divide1
@@ -10352,6 +10554,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_in
 #undef mcsi_in_radii
 #undef mcsi_inverted
+#undef mcsi_largest
 #undef mcsi_linear
 #undef mcsi_linear_loop
 #undef mcsi_linear_make
@@ -10389,6 +10592,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_phong_pdf_loop
 #undef mcsi_phong_sample_loop
 #undef mcsi_phong_spread
+#undef mcsi_place_ok
 #undef mcsi_polar
 #undef mcsi_pow_unit
 #undef mcsi_power
@@ -10496,6 +10700,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_warps_loop
 #undef mcsi_weighted
 #undef mcsi_wide_sqrt
+#undef mcsi_wide_vec3
 #undef mcsi_with_sign
 #endif
 
@@ -10609,6 +10814,10 @@ MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, f
 MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2, float *x,
                                float *y, float *z, float *pdf, float *distance) {
     MCSI_WIDEST(ball_loop, (centre, radius, n, u1, u2, x, y, z, pdf, distance));
+}
+MCS_API void mcs_disk_light_sample_n(mcs_vec3 centre, mcs_vec3 normal, float radius, size_t n, const float *u1,
+                                     const float *u2, float *x, float *y, float *z, float *pdf, float *distance) {
+    MCSI_WIDEST(disk_light_loop, (centre, normal, radius, n, u1, u2, x, y, z, pdf, distance));
 }
 #endif
 MCS_API void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {

@@ -52,6 +52,14 @@ MCST_HD static inline M_(vec3) A_(aside)(F_ distance) {
     v.z = distance;
     return v;
 }
+/* The normal of a light: 50 degrees from that direction. */
+MCST_HD static inline M_(vec3) A_(tilted)(void) {
+    M_(vec3) v;
+    v.x = M_(set)(0.48f);
+    v.y = M_(set)(0.6f);
+    v.z = M_(set)(-0.64f);
+    return v;
+}
 
 #define LD(i) M_(load)(p + (i)*MCST_W)
 #define WO A_(load3)(p + 3 * MCST_W)
@@ -61,6 +69,7 @@ MCST_HD static inline M_(vec3) A_(aside)(F_ distance) {
 #define ARGS_corners LD(0), LD(1), M_(set)(1.0f), M_(set)(3.0f),
 #define ARGS_cross LD(0), M_(set)(0.0f), M_(set)(0.0f), LD(1),
 #define ARGS_ball A_(aside)(LD(0)), LD(1),
+#define ARGS_disk_light A_(aside)(LD(0)), A_(tilted)(), LD(1),
 #define MAKE_phong const M_(phong) m = M_(phong_make)(LD(0))
 #define MAKE_ward MAKE_ward_gmd
 #define MAKE_ward_gmd const M_(ward) m = M_(ward_make)(LD(0), LD(1), MCS_WARD_GMD)
@@ -221,6 +230,7 @@ MCST_ROWS(MCST_ADAPT_N)
 #undef ARGS_corners
 #undef ARGS_cross
 #undef ARGS_ball
+#undef ARGS_disk_light
 #undef MAKE_phong
 #undef MAKE_ward
 #undef MAKE_ward_gmd

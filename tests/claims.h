@@ -22,6 +22,8 @@ static const char *const mcst_claim_sentences[] = {
     /* [lights] */
     "every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24",
     "pdf and distance within 1e-7 of themselves, for |centre| up to 1e9 radii.",
+    "coordinates within 2^-24, pdf and distance within 1e-7 of themselves, for samples whose distance is 1e-4 radii or "
+    "more",
     /* [sphere] */
     "unit length within 4 x 2^-24, pdf within 0.2 E.",
     /* [frame], [fresnel] */

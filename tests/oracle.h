@@ -544,6 +544,44 @@ static inline ld o_ball_distance(o_vec3 c, ld r, o_vec3 w) {
     return o_dot(c, w) + (o_len(c) <= r ? half_chord : -half_chord);
 }
 
+/* The point of a disk of the given normal, by its concentric map. */
+static inline o_vec3 o_disk_light_point(o_vec3 c, o_vec3 n, ld r, ld u1, ld u2) {
+    const o_vec2 q = o_concentric_map(r, u1, u2);
+    o_vec3 axes[3];
+    o_frame_about(n, axes);
+    return o_add(c, o_from_frame(axes, o_vec(q.x, q.y, 0.0L)));
+}
+static inline o_vec3 o_disk_light_map(o_vec3 c, o_vec3 n, ld r, ld u1, ld u2) {
+    return o_unit(o_disk_light_point(c, n, r, u1, u2));
+}
+/* distance^2 / (area cos) at the point p of the disk */
+static inline ld o_disk_light_density(o_vec3 n, ld r, o_vec3 p) {
+    return o_dot(p, p) * o_len(p) / (O_PI * r * r * fabsl(o_dot(o_unit(n), p)));
+}
+static inline ld o_disk_light_pdf_u(o_vec3 c, o_vec3 n, ld r, ld u1, ld u2) {
+    return o_disk_light_density(n, r, o_disk_light_point(c, n, r, u1, u2));
+}
+/* Where w leaves the plane of the disk, less the centre; 0 where it does not. *t becomes the distance over |w|. */
+static inline o_vec3 o_disk_light_hit(o_vec3 c, o_vec3 n, o_vec3 w, ld *t) {
+    const ld cosine = o_dot(n, w);
+    *t = cosine != 0.0L ? fmaxl(o_dot(n, c) / cosine, 0.0L) : 0.0L;
+    return o_add(o_scale(*t, w), o_scale(-1.0L, c));
+}
+/* Directions within 2^-23 of one that hits count as such, which moves the point by that over the cosine. */
+static inline ld o_disk_light_pdf(o_vec3 c, o_vec3 n, ld r, o_vec3 w) {
+    ld t;
+    const o_vec3 off = o_disk_light_hit(c, n, w, &t);
+    const ld slack = 0x1p-23L * t * o_len(n) / fabsl(o_dot(n, w));
+    return t > 0.0L && o_len(off) <= r + slack ? o_disk_light_density(n, r, o_scale(t, w)) : 0.0L;
+}
+static inline o_vec2 o_disk_light_invert(o_vec3 c, o_vec3 n, ld r, o_vec3 w) {
+    ld t;
+    const o_vec3 off = o_disk_light_hit(c, n, w, &t);
+    o_vec3 axes[3];
+    o_frame_about(n, axes);
+    return o_concentric_invert(r, o_v2(o_dot(axes[0], off), o_dot(axes[1], off)));
+}
+
 /* ---- directions where light is scattered ---- */
 
 /* The direction at the distances minus_z = 1 - z and plus_z = 1 + z from the poles, by the nearer one. */

@@ -49,6 +49,8 @@
     M(X, DIR, cosine, cosine, 0, -, HEMISPHERE, none, direction, 0, 0)                           \
     M(X, DIR, cone, cone, 1, -, CONE, cone, cone, 0, MCST_WHOLE)                                 \
     M(X, LIGHT, ball, ball, ball, -, BY_TRUTH, ball, ball, 0, MCST_WHOLE | MCST_DISTANCE)        \
+    M(X, LIGHT, disk_light, disk_light, disk_light, -, BY_TRUTH, disk_light, disk_light, 0,      \
+      MCST_WHOLE | MCST_DISTANCE | MCST_SQUARE)                                                  \
     MCST_MEDIA(M, X)                                                                             \
     M(X, LOBE, phong_lobe, phong_lobe, phong, -, COSPOWER, phong, phong_lobe, 1, 0)              \
     M(X, BRDF, phong, phong, phong, phong, COSPOWER, phong, phong, 1, MCST_ABOUT_R)              \
@@ -209,6 +211,8 @@ static const float mcst_grid_ball[][2] = {
     {1, 0.5f},      {1, 1.1456f},       {1, 1.1457f},   {1, 1.1f},         {1, 1e-2f},   {1e3f, 0.1f}, {1e-3f, 1e-9f},
     {1e10f, 100},   {1e18f, 1e10f},     {0, 1},         {-0.5f, 1},        {1e-30f, 1},  {-3, 2},      {1e-18f, 1e-18f},
     {1e18f, 1e18f}, {1e-18f, 1.2e-18f}, {1e-4f, 1e18f}, {-1e-18f, 1e-18f}, {1, 1.14564f}};
+static const float mcst_grid_disk_light[][2] = {{1, 0.5f},  {1, 1e-3f},       {-1, 1},        {0.1f, 1},
+                                                {1e6f, 10}, {1e-17f, 1e-17f}, {1e18f, 3e17f}, {1e-3f, 1}};
 static const float mcst_grid_asymmetry[][2] = {
     {0.5f, 0},    {0, 0},      {0.9f, 0},     {-0.3f, 0},       {-0.8f, 0},       {0.99f, 0},
     {-0.999f, 0}, {1e-3f, 0},  {-1e-30f, 0},  {0.1f, 0},        {1e-8f, 0},       {-0.03f, 0},
@@ -281,6 +285,7 @@ static inline int mcst_bad_exponents(int i, float v) {
 #define MCST_DOMAIN_corners {mcst_bad_corners, {1e-45, 1e-45}, {3.4e38, 3.4e38}, 0}
 #define MCST_DOMAIN_cone {mcst_bad_cone, {1e-30, 0}, {2, 0}, 0}
 #define MCST_DOMAIN_ball {mcst_bad_ball, {1e-18, 1e-18}, {1e18, 1e18}, 1}
+#define MCST_DOMAIN_disk_light {mcst_bad_ball, {1e-18, 1e-18}, {1e18, 1e18}, 1}
 #define MCST_DOMAIN_asymmetry {mcst_bad_asymmetry, {1e-30, 0}, {0.99999994, 0}, 1}
 #define MCST_DOMAIN_sharpness {mcst_bad_sharpness, {1e-30, 0}, {1e8, 0}, 0}
 #define MCST_DOMAIN_phong {mcst_bad_phong, {1e-30, 1e-30}, {1e9, 1e9}, 0}
@@ -314,6 +319,7 @@ static const mcst_set mcst_chi_cone[] = {
     {0.5f, 0, 0, 0, 10}, {2, 0, 0, 0, 2}, {0.01f, 0, 0, 0, 2}, {1e-8f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_ball[] = {
     {1, 0.5f, 0, 0, 10}, {0.3f, 0.5f, 0, 0, 2}, {-1, 1.1456f, 0, 0, 2}, {1, 1e-2f, 0, 0, 2}, {0, 1, 0, 0, 2}};
+static const mcst_set mcst_chi_disk_light[] = {{1, 0.5f, 0, 0, 10}, {0.3f, 0.5f, 0, 0, 2}, {-1, 1e-2f, 0, 0, 2}};
 static const mcst_set mcst_chi_asymmetry[] = {
     {0.5f, 0, 0, 0, 10}, {0, 0, 0, 0, 2}, {0.9f, 0, 0, 0, 2}, {-0.8f, 0, 0, 0, 2}, {0.999f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_sharpness[] = {{1, 0, 0, 0, 10}, {0, 0, 0, 0, 2},   {0.1f, 0, 0, 0, 2},
@@ -354,6 +360,7 @@ static const mcst_claim mcst_claims_bilinear[] = {{MCST_NO_PARAMETER, {0.7, 0.5,
 static const mcst_claim mcst_claims_direction[] = {{MCST_NO_PARAMETER, {0.2, 0.2, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_cone[] = {{{1e-30, 0}, {2, 0}, {0.2, 0.2, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_ball[] = {{{-1e18, 1e-18}, {1e18, 1e18}, {0.1, 0.1, 0, 0, 0, 4}}};
+static const mcst_claim mcst_claims_disk_light[] = {{{-1e18, 1e-18}, {1e18, 1e18}, {0.1, 0.1, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_asymmetry[] = {{{-1, 0}, {0.99999994, 0}, {0.2, 0.6, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_sharpness[] = {{{0, 0}, {1e8, 0}, {0.2, 0.4, 0, 0, 0, 4}}};
 static const mcst_claim mcst_claims_phong_lobe[] = {
@@ -460,6 +467,7 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_COUNT_corners 2
 #define MCST_COUNT_cross 2
 #define MCST_COUNT_ball 2
+#define MCST_COUNT_disk_light 2
 #define MCST_COUNT_phong 1
 #define MCST_COUNT_ward 2
 #define MCST_COUNT_ward_gmd 2

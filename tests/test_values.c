@@ -416,6 +416,68 @@ static void ends_of_balls(void) {
           (double)sun.distance);
 }
 
+/* What the header says of a disk whose radius is `ratio` times the distance of its centre. `level` of the height of that
+ * above the point is taken away, so that some disks are seen from their edge. */
+static void disk_lights(double ratio, float level) {
+    uint64_t state = mcst_seed_for("disk_light", "values", (size_t)(1e3 * ratio));
+    for (int i = 0; i < 100000; i++) {
+        float u[2];
+        float v[2];
+        mcst_uniform(&state, 2, u, v);
+        const mcs_vec3 n = mcs_sphere_sample(v[0], v[1]).w;
+        mcs_vec3 c = any_centre(&state);
+        const float r = (float)(ratio * (double)o_len(o_v3(c.x, c.y, c.z)));
+        const float height = level * (c.x * n.x + c.y * n.y + c.z * n.z);
+        c.x -= height * n.x;
+        c.y -= height * n.y;
+        c.z -= height * n.z;
+        const o_vec3 centre = o_v3(c.x, c.y, c.z);
+        const o_vec3 normal = o_v3(n.x, n.y, n.z);
+        const o_vec3 w = o_disk_light_map(centre, normal, (ld)r, (ld)u[0], (ld)u[1]);
+        const ld distance = o_len(o_disk_light_point(centre, normal, (ld)r, (ld)u[0], (ld)u[1]));
+        if (distance < 1e-4L * (ld)r || fabsl(o_dot(w, normal)) < 1.1e-7L) continue;
+        const mcs_light s = mcs_disk_light_sample(c, n, r, u[0], u[1]);
+        const o_vec3 off = o_add(o_v3(s.w.x, s.w.y, s.w.z), o_scale(-1, w));
+        const ld err = fmaxl(fmaxl(fabsl(off.x), fabsl(off.y)), fabsl(off.z));
+        const ld want = o_disk_light_pdf_u(centre, normal, (ld)r, (ld)u[0], (ld)u[1]);
+        const ld want_w = o_disk_light_pdf(centre, normal, (ld)r, o_v3(s.w.x, s.w.y, s.w.z));
+        const float pdf = mcs_disk_light_pdf(c, n, r, s.w);
+        CHECK(err <= EPS && relative(s.pdf, want) <= 1e-7L && relative(s.distance, distance) <= 1e-7L,
+              "c (%a, %a, %a), r %a, u %a %a: w off by %Lg, pdf %.9g, not %.9Lg, distance %.9g, not %.9Lg", (double)c.x,
+              (double)c.y, (double)c.z, (double)r, (double)u[0], (double)u[1], err, (double)s.pdf, want,
+              (double)s.distance, distance);
+        if (fabsl(o_dot(w, normal)) > 1e-6L)
+            CHECK(relative(pdf, want_w) <= 1e-7L, "c (%a, %a, %a), r %a, u %a %a: pdf of w %.9g, not %.9Lg",
+                  (double)c.x, (double)c.y, (double)c.z, (double)r, (double)u[0], (double)u[1], (double)pdf, want_w);
+    }
+}
+/* In the plane, in the middle, behind, past the rim, and where floats end. */
+static void ends_of_disk_lights(void) {
+    const mcs_vec3 up = {0, 0, 1};
+    const mcs_vec3 down = {0, 0, -1};
+    const mcs_vec3 at = {0, 0, 0};
+    const mcs_vec3 beside = {2, 0, 0};
+    const mcs_vec3 above = {0, 0, 2};
+    const mcs_light edge = mcs_disk_light_sample(beside, up, 1, 0.3f, 0.6f);
+    const mcs_light middle = mcs_disk_light_sample(at, up, 1, 0.5f, 0.5f);
+    CHECK(edge.pdf == 0 && edge.distance == 0 && edge.w.x > 0.8f && edge.w.z == 0, "from its plane: %g %g %g, pdf %g",
+          (double)edge.w.x, (double)edge.w.y, (double)edge.w.z, (double)edge.pdf);
+    CHECK(middle.pdf == 0 && middle.distance == 0 && middle.w.z == 1, "from its middle: %g, pdf %g", (double)middle.w.z,
+          (double)middle.pdf);
+    CHECK(mcs_disk_light_pdf(beside, up, 1, vec3((const float[]){1, 0, 0})) == 0, "along its plane");
+    CHECK(relative(mcs_disk_light_pdf(above, up, 1, up), 4 / O_PI) <= 1e-7L &&
+              relative(mcs_disk_light_pdf(above, down, 1, up), 4 / O_PI) <= 1e-7L &&
+              mcs_disk_light_pdf(above, up, 1, down) == 0 && mcs_disk_light_invert(above, up, 1, down).x == 0,
+          "from both sides, and behind: %g", (double)mcs_disk_light_pdf(above, up, 1, down));
+    const double rim = atan(0.5);
+    const mcs_vec3 past = {(float)sin(rim + 1e-6), 0, (float)cos(rim + 1e-6)};
+    const mcs_vec3 just = {(float)sin(rim), 0, (float)cos(rim)};
+    CHECK(mcs_disk_light_pdf(above, up, 1, just) > 0 && mcs_disk_light_pdf(above, up, 1, past) == 0, "the rim");
+    const mcs_vec3 far_away = {1e18f, -1e18f, 1e18f};
+    const mcs_light speck = mcs_disk_light_sample(far_away, up, 1e-18f, 0.5f, 0.5f);
+    CHECK(speck.pdf > 1e29f && speck.pdf <= FLT_MAX && speck.distance > 1.7e18f, "a speck: pdf %g", (double)speck.pdf);
+}
+
 /* Outside the support densities are 0 and inverses are the nearer end. Rims take in the rounding of what lies on them,
  * 5e-7. */
 static void beyond_the_ends(void) {
@@ -1065,6 +1127,11 @@ static void light_values(void) {
     if (mcst_case("balls from inside")) balls(1, 2);
     if (mcst_case("balls from deep inside")) balls(2, 1e9);
     if (mcst_case("balls at their ends")) ends_of_balls();
+    static const double ratio[] = {1e-7, 1e-2, 1, 30, 3000};
+    for (size_t i = 0; i < MCST_COUNT(ratio); i++)
+        if (mcst_case("disks of %g", ratio[i])) disk_lights(ratio[i], 0);
+    if (mcst_case("disks seen from their edge")) disk_lights(0.5, 0.9999f);
+    if (mcst_case("disks at their ends")) ends_of_disk_lights();
 }
 
 int main(int argc, char **argv) {

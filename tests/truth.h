@@ -9,6 +9,7 @@
 #define OA_corners o_corners((ld)p[0], (ld)p[1], 1.0L, 3.0L),
 #define OA_cross o_corners((ld)p[0], 0.0L, 0.0L, (ld)p[1]),
 #define OA_ball o_scale((ld)p[0], o_vec(-0.5L, 0.25L, 1.0L)), (ld)p[1],
+#define OA_disk_light o_scale((ld)p[0], o_vec(-0.5L, 0.25L, 1.0L)), o_v3(0.48f, 0.6f, -0.64f), (ld)p[1],
 #define OA_phong OA_1
 #define OA_ward OA_2
 #define OA_ward_gmd OA_2 0,

@@ -19,6 +19,7 @@
 #define FORM_ARGS_corners a, b, M_(set)(1.0f), M_(set)(3.0f),
 #define FORM_ARGS_cross a, M_(set)(0.0f), M_(set)(0.0f), b,
 #define FORM_ARGS_ball B_(aside)(a), b,
+#define FORM_ARGS_disk_light B_(aside)(a), B_(tilted)(), b,
 #define FORM_MAKE_phong const M_(phong) m = M_(phong_make)(a)
 #define FORM_MAKE_ward const M_(ward) m = M_(ward_make)(a, b, MCS_WARD_GMD)
 #define FORM_MAKE_ward_gmd FORM_MAKE_ward
@@ -31,6 +32,11 @@
 /* As in adapters.h. */
 static M_(vec3) B_(aside)(F_ distance) {
     M_(vec3) v = {-0.5f * distance, 0.25f * distance, distance};
+    return v;
+}
+
+static M_(vec3) B_(tilted)(void) {
+    M_(vec3) v = {M_(set)(0.48f), M_(set)(0.6f), M_(set)(-0.64f)};
     return v;
 }
 
@@ -76,6 +82,7 @@ bench_form *const B_(forms)[] = {MCST_ROWS(FORM_NAME)};
 #undef FORM_ARGS_corners
 #undef FORM_ARGS_cross
 #undef FORM_ARGS_ball
+#undef FORM_ARGS_disk_light
 #undef FORM_MAKE_phong
 #undef FORM_MAKE_ward
 #undef FORM_MAKE_ward_gmd

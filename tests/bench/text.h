@@ -229,6 +229,25 @@ static inline text_sample text_ball(float x, float y, float z, float radius, flo
     return s;
 }
 
+/* pbrt, Disk::Sample and the conversion of its density, for a normal of unit length */
+static inline text_sample text_disk_light(const float c[3], const float n[3], float radius, float u1, float u2) {
+    const text_sample d = text_concentric(radius, u1, u2);
+    const float sign = copysignf(1, n[2]);
+    const float a = -1 / (sign + n[2]);
+    const float b = n[0] * n[1] * a;
+    text_sample s;
+    s.x = c[0] + d.x * (1 + sign * n[0] * n[0] * a) + d.y * b;
+    s.y = c[1] + d.x * sign * b + d.y * (sign + n[1] * n[1] * a);
+    s.z = c[2] - d.x * sign * n[0] - d.y * n[1];
+    const float distance2 = s.x * s.x + s.y * s.y + s.z * s.z;
+    const float inverse = 1 / sqrtf(distance2);
+    s.x *= inverse;
+    s.y *= inverse;
+    s.z *= inverse;
+    s.pdf = distance2 / (TEXT_PI * radius * radius * fabsf(s.x * n[0] + s.y * n[1] + s.z * n[2]));
+    return s;
+}
+
 /* ---- phase functions ---- */
 
 static inline text_sample text_henyey_greenstein(float g, float u1, float u2) {
