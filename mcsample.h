@@ -1289,10 +1289,15 @@ MCS_API void mcs_beckmann_eval_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, c
  * cost        vndf, bounded: 1 sqrt, 1 div, 1 sincos, and 1 sqrt, 1 div for the weight, beyond what is constant for one
  *             wo (2 to 3 sqrt, 5 to 6 div), which array functions do once. mcs_ggx: 1 sqrt, 3 div, 1 sincos, and 2
  *             sqrt, 1 div for the weight. h alone: 2 sqrt, 2 div, 1 sincos.
+ * energy      albedos are fits: within 0.25 % for alpha_x = alpha_y in [0.01,1] and all angles; f and its compensation
+ *             reflect 1 within 0.4 % there. An alpha above 1 counts as 1. Where alpha_x and alpha_y differ, the root of
+ *             their mean square is taken for both, which is a guess: 5 % off for (0.15,0.3), 16 % for (0.5,1). Cheaper
+ *             than the compensation, but not reciprocal, is Turquin's factor 1 + f0 (1/albedo - 1) to f and weights.
  * source      Trowbridge and Reitz 1975; Walter et al. 2007; Heitz 2014 (G2) and 2018 (visible normals); Dupuy and
  *             Benyoub 2023, "Sampling visible GGX normals with spherical caps"; Eto and Tokuyoshi 2023, "Bounded VNDF
  *             sampling for Smith-GGX reflections", and Tokuyoshi and Eto 2024, "Bounded VNDF sampling for the Smith-GGX
- *             BRDF" */
+ *             BRDF"; Kulla and Conty 2017, "Revisiting physically based shading at Imageworks", and Turquin 2019,
+ *             "Practical multiple scattering compensation for microfacet models" (energy) */
 #ifndef MCS_NO_LOBES
 
 /* A material. All members are private. */
@@ -1362,6 +1367,18 @@ MCS_FN float mcs_ggx_d(const mcs_ggx *m, mcs_vec3 h);
 MCS_FN float mcs_ggx_g1(const mcs_ggx *m, mcs_vec3 w);
 /* G2(wo, wi), the share that both see, for reflection: 0 where wo or wi is below the surface. */
 MCS_FN float mcs_ggx_g2(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi);
+
+/* ---- energy: what f reflects, and what it loses ----
+ * f has light meet one microfacet, so that a rough surface loses what would meet a second one. */
+
+/* The directional albedo of f: the integral of f wi.z over all wi, in (0,1]. */
+MCS_FN float mcs_ggx_albedo(const mcs_ggx *m, mcs_vec3 wo);
+/* The mean albedo: the mean over the hemisphere of the above, weighted by wo.z. */
+MCS_FN float mcs_ggx_mean_albedo(const mcs_ggx *m);
+/* A second BRDF that returns what f loses: f + this has the albedo 1 for every wo. It is reciprocal, and azimuths do
+ * not matter. mcs_cosine_sample draws it. Times F^2 E / (1 - F (1 - E)) it is that of a surface whose Fresnel factor
+ * has the mean F; E is the mean albedo. */
+MCS_FN float mcs_ggx_compensation(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi);
 
 /* ---- arrays ---- */
 
@@ -5580,6 +5597,56 @@ MCSI_FN mcs_f mcs_ggx_eval(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_sane_result(ok, d / (2.0f * mcsi_ggx_g2_divisor(&m->s, wo, wi)));
 }
 
+#ifdef MCSI_PUBLIC
+/* ---- energy ----
+ * E is the directional albedo, and 1 - E what is lost. Near the horizon E depends on z = wo.z and a = alpha by their
+ * ratio alone, and for small a the loss falls off as (a/z)^2. Both hold for (1 - E)/E = a^2 z N(z,a)/D(z,a) with
+ * polynomials where D has no terms below the third order. The coefficients minimise the largest relative error of E,
+ * which is 0.2 %, against quadrature over visible normals on 41 alphas from 0.003 to 1 times 60 angles: linear
+ * programming with bisection of the error, terms left out one by one while it stayed small. */
+
+/* The alpha that stands for both. */
+MCSI_CORE mcs_f mcsi_ggx_mean_alpha(const mcsi_slopes *m) {
+    const mcs_f square = 0.5f * (m->alpha_x * m->alpha_x + m->alpha_y * m->alpha_y);
+    return mcsi_min(mcsi_sqrt(square), mcs_set(1.0f));
+}
+/* (1 - E) / E */
+MCSI_CORE mcs_f mcsi_ggx_loss_ratio(mcs_f a, mcs_f z) {
+    z = mcsi_min(z, mcs_set(1.0f));
+    const mcs_f zz = z * z;
+    const mcs_f n =
+        (0.610558f + a * (-1.20689f + a * 16.0679f)) + z * (30.5542f + a * (-16.3081f + a * 182.542f) + zz * 16.9592f);
+    const mcs_f d = 2.90202f * a * a * a + z * a * a * (1.02765f + a * (99.1503f + a * -19.9702f)) +
+                    zz * a * a * (115.316f + a * -97.2349f) + zz * z * (1.0f + z * (40.3891f + a * -41.2091f));
+    return a * a * z * n / d;
+}
+/* 1 minus the mean of E as it is fitted, so that the compensation adds what E lacks. The logarithm is that of the
+ * tail (a/z)^2. Its error moves the sum of both by 0.16 % at most. */
+MCSI_CORE mcs_f mcsi_ggx_mean_loss(mcs_f a) {
+    const mcs_f series = -0.441671f + a * (1.93903f + a * (-1.43497f + a * 0.527626f));
+    return a * a * (series - 1.38456f * mcsi_log(a));
+}
+MCSI_FN mcs_f mcs_ggx_albedo(const mcs_ggx *m, mcs_vec3 wo) {
+    mcs_i ok = m->s.norm > 0.0f;
+    wo = mcsi_sane_upper(wo, &ok);
+    return mcsi_sane_result(ok, 1.0f / (1.0f + mcsi_ggx_loss_ratio(mcsi_ggx_mean_alpha(&m->s), wo.z)));
+}
+MCSI_FN mcs_f mcs_ggx_mean_albedo(const mcs_ggx *m) {
+    return mcsi_sane_result(m->s.norm > 0.0f, 1.0f - mcsi_ggx_mean_loss(mcsi_ggx_mean_alpha(&m->s)));
+}
+/* Kulla and Conty: (1 - E(wo)) (1 - E(wi)) / (pi (1 - mean of E)). */
+MCSI_FN mcs_f mcs_ggx_compensation(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = m->s.norm > 0.0f;
+    wo = mcsi_sane_upper(wo, &ok);
+    wi = mcsi_sane_upper(wi, &ok);
+    const mcs_f a = mcsi_ggx_mean_alpha(&m->s);
+    const mcs_f loss_o = mcsi_ggx_loss_ratio(a, wo.z);
+    const mcs_f loss_i = mcsi_ggx_loss_ratio(a, wi.z);
+    const mcs_f lost = loss_o / (1.0f + loss_o) * (loss_i / (1.0f + loss_i));
+    return mcsi_sane_result(ok, MCSI_1_PI * lost / mcsi_ggx_mean_loss(a));
+}
+#endif
+
 /* ---- half-vectors in proportion to D cos(theta_h) ----
  * The radius is r = sqrt(u1 / (1 - u1)). D is norm (1 - u1)^2 / cos^4(theta_h). */
 
@@ -9754,12 +9821,14 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_fresnel_conductor MCS_(fresnel_conductor)
 #define mcs_fresnel_dielectric MCS_(fresnel_dielectric)
 #define mcs_ggx MCS_(ggx)
+#define mcs_ggx_albedo MCS_(ggx_albedo)
 #define mcs_ggx_bounded_h_invert MCS_(ggx_bounded_h_invert)
 #define mcs_ggx_bounded_h_pdf MCS_(ggx_bounded_h_pdf)
 #define mcs_ggx_bounded_h_sample MCS_(ggx_bounded_h_sample)
 #define mcs_ggx_bounded_pdf MCS_(ggx_bounded_pdf)
 #define mcs_ggx_bounded_sample MCS_(ggx_bounded_sample)
 #define mcs_ggx_bounded_weight MCS_(ggx_bounded_weight)
+#define mcs_ggx_compensation MCS_(ggx_compensation)
 #define mcs_ggx_d MCS_(ggx_d)
 #define mcs_ggx_eval MCS_(ggx_eval)
 #define mcs_ggx_g1 MCS_(ggx_g1)
@@ -9768,6 +9837,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_ggx_h_pdf MCS_(ggx_h_pdf)
 #define mcs_ggx_h_sample MCS_(ggx_h_sample)
 #define mcs_ggx_make MCS_(ggx_make)
+#define mcs_ggx_mean_albedo MCS_(ggx_mean_albedo)
 #define mcs_ggx_pdf MCS_(ggx_pdf)
 #define mcs_ggx_sample MCS_(ggx_sample)
 #define mcs_ggx_vndf_h_invert MCS_(ggx_vndf_h_invert)
@@ -9974,6 +10044,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_ggx_g2_divisor MCSI_(ggx_g2_divisor)
 #define mcsi_ggx_h_loop MCSI_(ggx_h_loop)
 #define mcsi_ggx_half MCSI_(ggx_half)
+#define mcsi_ggx_loss_ratio MCSI_(ggx_loss_ratio)
+#define mcsi_ggx_mean_alpha MCSI_(ggx_mean_alpha)
+#define mcsi_ggx_mean_loss MCSI_(ggx_mean_loss)
 #define mcsi_ggx_one_minus_k MCSI_(ggx_one_minus_k)
 #define mcsi_ggx_pdf_loop MCSI_(ggx_pdf_loop)
 #define mcsi_ggx_radius MCSI_(ggx_radius)
@@ -10315,12 +10388,14 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_fresnel_conductor
 #undef mcs_fresnel_dielectric
 #undef mcs_ggx
+#undef mcs_ggx_albedo
 #undef mcs_ggx_bounded_h_invert
 #undef mcs_ggx_bounded_h_pdf
 #undef mcs_ggx_bounded_h_sample
 #undef mcs_ggx_bounded_pdf
 #undef mcs_ggx_bounded_sample
 #undef mcs_ggx_bounded_weight
+#undef mcs_ggx_compensation
 #undef mcs_ggx_d
 #undef mcs_ggx_eval
 #undef mcs_ggx_g1
@@ -10329,6 +10404,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_ggx_h_pdf
 #undef mcs_ggx_h_sample
 #undef mcs_ggx_make
+#undef mcs_ggx_mean_albedo
 #undef mcs_ggx_pdf
 #undef mcs_ggx_sample
 #undef mcs_ggx_vndf_h_invert
@@ -10535,6 +10611,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_ggx_g2_divisor
 #undef mcsi_ggx_h_loop
 #undef mcsi_ggx_half
+#undef mcsi_ggx_loss_ratio
+#undef mcsi_ggx_mean_alpha
+#undef mcsi_ggx_mean_loss
 #undef mcsi_ggx_one_minus_k
 #undef mcsi_ggx_pdf_loop
 #undef mcsi_ggx_radius

@@ -17,7 +17,7 @@
     X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(frame_from_tangent) X(to_world) X(to_local) \
     X(reflect) X(reflect_pdf) X(half) X(cos_d) X(schlick) X(fresnel_dielectric) X(fresnel_conductor) X(refract) \
     X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) X(ashikhmin_make) X(is_mirror) X(ggx_d) X(ggx_g1) \
-    X(ggx_g2) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
+    X(ggx_g2) X(ggx_albedo) X(ggx_mean_albedo) X(ggx_compensation) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
 #define BITS_WORDS(X) \
     X(hash) X(sobol_bits) X(load) X(store)
 #define BITS_SCALAR(X) \
@@ -186,6 +186,18 @@ FN(ggx_g1) {
 FN(ggx_g2) {
     GGX;
     PUT(0, M_(ggx_g2)(&m, IN3(3), IN3(8)));
+}
+FN(ggx_albedo) {
+    GGX;
+    PUT(0, M_(ggx_albedo)(&m, IN3(8)));
+}
+FN(ggx_mean_albedo) {
+    GGX;
+    PUT(0, M_(ggx_mean_albedo)(&m));
+}
+FN(ggx_compensation) {
+    GGX;
+    PUT(0, M_(ggx_compensation)(&m, IN3(3), IN3(8)));
 }
 #undef GGX
 FN(mis_balance) { PUT(0, M_(mis_balance)(IN(0), IN(1))); }

@@ -175,6 +175,9 @@ static void check_vectors(void) {
     TELLS("mcs_ggx_g1", mcs_ggx_g1(&m, w));
     TELLS("mcs_ggx_g2, wo", mcs_ggx_g2(&m, w, unit));
     TELLS("mcs_ggx_g2, wi", mcs_ggx_g2(&m, unit, w));
+    TELLS("mcs_ggx_albedo", mcs_ggx_albedo(&m, w));
+    TELLS("mcs_ggx_compensation, wo", mcs_ggx_compensation(&m, w, unit));
+    TELLS("mcs_ggx_compensation, wi", mcs_ggx_compensation(&m, unit, w));
 }
 
 /* Calls FUNCTION with a good index of refraction and with wrong ones. */

@@ -226,6 +226,8 @@ static void fuzz_vectors(bytes *b) {
     MUST(proper(mcs_mix_pdf(p, q, r)) && proper(mcs_reflect_pdf(p, q)));
     MUST(proper(mcs_ggx_d(&m, w)) && proper(mcs_ggx_g1(&m, w)) && proper(mcs_ggx_g2(&m, v, w)));
     MUST(mcs_ggx_g1(&m, w) <= 1.000001f && mcs_ggx_g2(&m, v, w) <= 1.000001f);
+    MUST(proper(mcs_ggx_albedo(&m, w)) && mcs_ggx_albedo(&m, w) <= 1);
+    MUST(proper(mcs_ggx_mean_albedo(&m)) && mcs_ggx_mean_albedo(&m) <= 1 && proper(mcs_ggx_compensation(&m, v, w)));
     MUST(proper(mcs_cone_from_sin2(p)) && mcs_cone_from_sin2(p) <= 1);
     MUST(mcs_is_mirror(p, q) == (p < 1e-7f && q < 1e-7f));
 }

@@ -220,12 +220,15 @@ enum {
     FROM_SIN2,
     DIELECTRIC,
     CONDUCTOR,
+    ALBEDO,
+    MEAN_ALBEDO,
+    COMPENSATION,
     VALUES
 };
-static const float value_top[VALUES] = {2, 1, 1, 1, FLT_MAX, FLT_MAX, FLT_MAX, 1, 1, 1, 1, 1};
-static const char *const value_name[VALUES] = {"cos_d",   "schlick",        "mis_balance", "mis_power",
-                                               "mix_pdf", "reflect_pdf",    "ggx_d",       "ggx_g1",
-                                               "ggx_g2",  "cone_from_sin2", "dielectric",  "conductor"};
+static const float value_top[VALUES] = {2, 1, 1, 1, FLT_MAX, FLT_MAX, FLT_MAX, 1, 1, 1, 1, 1, 1, 1, FLT_MAX};
+static const char *const value_name[VALUES] = {
+    "cos_d",  "schlick",        "mis_balance", "mis_power", "mix_pdf", "reflect_pdf", "ggx_d",       "ggx_g1",
+    "ggx_g2", "cone_from_sin2", "dielectric",  "conductor", "albedo",  "mean_albedo", "compensation"};
 
 /* in: arguments as in `arguments`, in order; out: the frame, two turned directions, the mirrored one, the half-vector,
  * the refracted one, the frame of a tangent. */
@@ -302,6 +305,9 @@ static void check_vectors(uint64_t seed, long rounds, tally *t) {
         r[FROM_SIN2] = mcs8_cone_from_sin2(eight(in[7]));
         r[DIELECTRIC] = mcs8_fresnel_dielectric(eight(in[10]), eight(in[0]));
         r[CONDUCTOR] = mcs8_fresnel_conductor(eight(in[10]), eight(in[0]), eight(in[1]));
+        r[ALBEDO] = mcs8_ggx_albedo(&m, w);
+        r[MEAN_ALBEDO] = mcs8_ggx_mean_albedo(&m);
+        r[COMPENSATION] = mcs8_ggx_compensation(&m, v, w);
         float value[VALUES][LANES];
         memcpy(value, r, sizeof value);
         for (int l = 0; l < LANES; l++) check_lane_of_vectors(in, out, value, l, t);
