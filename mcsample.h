@@ -124,6 +124,7 @@
  *   [microfacet]  half-vectors, mirroring, Schlick's Fresnel               BRDFs of your own
  *   [fresnel]     exact reflectances, refraction                           glass, water, metals
  *   [phong] [ward] [beckmann] [ggx] [ashikhmin]   five glossy lobes        glossy surfaces; start with [ggx]
+ *   [glass]       GGX microfacets that reflect and refract                 frosted glass, ice
  *   [mis]         weights of two strategies                                a light and a lobe together
  *   [tables]      densities given as numbers                               one of many lights, measured curves
  *   [env]         environment maps                                         light from all around
@@ -1414,6 +1415,46 @@ MCS_API void mcs_ggx_eval_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float
 MCS_API void mcs_ggx_h_sample_n(const mcs_ggx *m, size_t n, const float *u1, const float *u2, float *x, float *y,
                                 float *z, float *pdf);
 #endif
+#endif
+
+/* ==== [glass] rough glass, which reflects and refracts ==============================================================
+ * Microfacets of [ggx] that reflect the part F of the light and refract the rest: frosted glass, ice, rough water. wo
+ * may be on either side of the surface; wi is on the side of wo or on the other one. With eta as in [fresnel], n_o and
+ * n_i are the indices on the sides of wo and of wi: 1 above and eta below. With D, G1, G2 and t of [ggx], |w.z| in
+ * place of w.z:
+ *
+ *              reflected                      refracted
+ *   h          along wo + wi                  along n_o wo + n_i wi, to the side of wo
+ *   J          1 / (4 wo.h)                   n_i^2 |wi.h| / (n_o wo.h + n_i wi.h)^2
+ *   pdf of wi  F J v, with the density of visible normals v = 2 D (wo.h) / (|wo.z| + t(wo)); for refraction (1 - F) J v
+ *   weight     G2 / G1(wo), at most 1         G1(wi), at most 1
+ *   f          weight pdf / |wi.z|
+ *   (u1, u2)   draw h as mcs_ggx_vndf_h_sample does; u3 < F reflects
+ *
+ * light       f and weights are those of power: over all wi, f |wi.z| integrates to 1 less what masking takes, and
+ *             f / n_i^2 is symmetric in wo and wi. Refraction changes radiance by the square of the index: on paths
+ *             from the eye, multiply f and weights of refracted directions by (n_o / n_i)^2, which is 1/eta^2 for a wo
+ *             above and eta^2 for one below. Paths from lights take them as they are.
+ * parameters  m, of mcs_ggx_make. eta, the index below over that above, in [1e-3, 1e3]; others are bad. eta = 1 neither
+ *             reflects nor bends: a sample is wi = -wo with the pdf FLT_MAX, and pdf, eval and weight of a given wi are
+ *             0, as of a mirror.
+ * lost, bad   as with the BRDFs above, but a wo or wi is bad where its z is 0, not below 0. A reflected wi on the other
+ *             side, or a refracted one on the side of wo, is lost.
+ * accuracy    pdf of u 4 E, of wi and f 3 E, weights 1e-6; and what rounding of wo.h, wo and wi moves, which is more
+ *             where wo.h is nearly critical and where eta is nearly 1
+ * cost        sampling 9 sqrt, 15 div, 1 sincos; there are no array forms
+ * source      Walter et al. 2007, "Microfacet models for refraction through rough surfaces"; Heitz 2014 and 2018 */
+#ifndef MCS_NO_LOBES
+
+/* Draws wi. The weight is f |wi.z| / pdf. */
+MCS_FN mcs_brdf mcs_ggx_glass_sample(const mcs_ggx *m, float eta, mcs_vec3 wo, float u1, float u2, float u3);
+/* The density with which mcs_ggx_glass_sample draws wi. */
+MCS_FN float mcs_ggx_glass_pdf(const mcs_ggx *m, float eta, mcs_vec3 wo, mcs_vec3 wi);
+/* f(wo, wi), without the cosine. */
+MCS_FN float mcs_ggx_glass_eval(const mcs_ggx *m, float eta, mcs_vec3 wo, mcs_vec3 wi);
+/* f |wi.z| / density of wi. */
+MCS_FN float mcs_ggx_glass_weight(const mcs_ggx *m, float eta, mcs_vec3 wo, mcs_vec3 wi);
+
 #endif
 
 /* ==== [ashikhmin] Ashikhmin-Shirley, the anisotropic Phong lobe =====================================================
@@ -6013,6 +6054,137 @@ MCSI_LOOP_SAMPLE(ggx_bounded, ggx)
 MCSI_LOOP_VALUE(ggx_bounded_pdf, ggx)
 #endif
 
+/* ==== [glass] bodies ==============================================================================================
+ * Everything is mirrored at the surface where wo is below, so that wo and h are above. As in [fresnel], n_i and n_t are
+ * the indices on the side of wo and on the other one, c is wo.h and q is n_t cos_t. */
+#ifdef MCSI_PUBLIC
+
+typedef struct {
+    mcs_f sign; /* -1 where wo is below the surface */
+    mcs_f eta, n_i, n_t;
+} mcsi_glass_side;
+
+/* *wo is brought above the surface. */
+MCSI_CORE mcsi_glass_side mcsi_glass_side_of(mcs_f eta, mcs_vec3 *wo, mcs_i *ok) {
+    const mcs_i good = mcsi_eta_ok(eta);
+    MCSI_REQUIRE(good);
+    *wo = mcsi_sane_direction(*wo, ok);
+    *ok = *ok & good & (wo->z != 0.0f);
+    const mcs_f one = mcs_set(1.0f);
+    const mcs_i below = wo->z < 0.0f;
+    mcsi_glass_side side;
+    side.sign = mcsi_sel(below, -one, one);
+    side.eta = mcsi_sel(good, eta, one);
+    side.n_i = mcsi_sel(below, side.eta, one);
+    side.n_t = mcsi_sel(below, one, side.eta);
+    wo->z = mcsi_abs(wo->z);
+    return side;
+}
+/* (1 - F) J v for v = pdf_h. n_o wo.h + n_i wi.h is n_i c - q, and 1 - F is half the sum of 4 n_i c q / (n_i c + q)^2
+ * and 4 n_i n_t^2 c q / (n_t^2 c + n_i q)^2. As (n_i c - q) (n_i c + q) is n_i^2 - n_t^2, neither cancels here. */
+MCSI_CORE mcs_f mcsi_glass_refracted_pdf(const mcsi_glass_side *side, mcs_f pdf_h, mcs_f c) {
+    const mcsi_d i2 = MCSI_WIDEN(side->n_i) * MCSI_WIDEN(side->n_i);
+    const mcsi_d t2 = MCSI_WIDEN(side->n_t) * MCSI_WIDEN(side->n_t);
+    const mcs_f contrast = MCSI_NARROW(t2 - i2);
+    const mcs_f q2 = mcsi_max(MCSI_NARROW((t2 - i2) + i2 * (MCSI_WIDEN(c) * MCSI_WIDEN(c))), mcs_set(0.0f));
+    const mcs_f q = mcsi_sqrt(q2);
+    const mcs_f divisor = side->n_t * side->n_t * c + side->n_i * q;
+    const mcs_f r = side->n_t * (side->n_i * c + q) / mcsi_max(divisor, mcs_set(FLT_MIN));
+    return mcsi_quotient(2.0f * pdf_h * (side->n_i * side->n_t) * c * q2 * (1.0f + r * r), contrast * contrast);
+}
+/* factor weight / |wi.z|: with the factor |wi.z| the weight, with the density f. */
+MCSI_CORE mcs_f mcsi_glass_weighted(const mcsi_slopes *m, const mcsi_ggx_cap *cap, mcs_f wo_z, mcs_vec3 wi,
+                                    mcs_i refracts, mcs_f factor) {
+    const mcs_f z = mcsi_abs(wi.z);
+    const mcs_f t = mcsi_ggx_t(m, wi);
+    const mcs_f over = mcsi_sel(refracts, mcs_set(1.0f), 0.5f * cap->k_wo_z_plus_t);
+    return mcsi_quotient(factor * over, 0.5f * mcsi_sel(refracts, z + t, cap->t * z + t * wo_z));
+}
+MCSI_FN mcs_brdf mcs_ggx_glass_sample(const mcs_ggx *m, mcs_f eta, mcs_vec3 wo, mcs_f u1, mcs_f u2, mcs_f u3) {
+    mcs_i ok = mcsi_always();
+    const mcsi_glass_side side = mcsi_glass_side_of(eta, &wo, &ok);
+    u1 = mcsi_sane_u(u1, &ok);
+    u2 = mcsi_sane_u(u2, &ok);
+    u3 = mcsi_sane_u(u3, &ok);
+    const mcsi_ggx_cap cap = mcsi_ggx_cap_make(&m->s, wo, MCSI_GGX_VISIBLE);
+    const mcsi_ggx_half h = mcsi_ggx_draw(m, &cap, wo, u1, u2, MCSI_GGX_VISIBLE);
+    const mcs_f inv = 1.0f / (h.p2 * (h.h2 * h.scale));
+    const mcs_f q = h.p2 * h.scale * (h.p2 * inv); /* |p|^2 / |h_std|^2 */
+    const mcs_f v = m->s.norm / cap.k_wo_z_plus_t * (q * q);
+    const mcs_f two_wo_p_over_p2 = cap.t * h.h2 * h.h2 * inv;
+    const mcs_f length = mcsi_sqrt(h.p2);
+    const mcs_f c = 0.5f * two_wo_p_over_p2 * length;
+    const mcs_f reflected = mcs_fresnel_dielectric(side.sign * c, side.eta);
+    const mcs_f to_unit = side.sign / length;
+    const mcs_vec3 up = mcsi_vec3(h.p.x * to_unit, h.p.y * to_unit, h.p.z * to_unit);
+    const mcs_vec3 bent = mcs_refract(wo, up, side.eta);
+    /* Next to the critical angle rounding may find that nothing is refracted. */
+    const mcs_i refracts = (u3 >= reflected) & (bent.z != 0.0f);
+    const mcs_f refracted_pdf = mcsi_glass_refracted_pdf(&side, 2.0f * v * c, c);
+    mcs_brdf s;
+    s.wi = mcsi_sel3(refracts, bent, mcsi_mirror(wo, h.p, two_wo_p_over_p2));
+    ok = ok & ((s.wi.z < 0.0f) == refracts) & (s.wi.z != 0.0f);
+    s.pdf = mcsi_sane_result(ok, mcsi_sel(refracts, refracted_pdf, 0.5f * reflected * v));
+    const mcs_f weight = mcsi_glass_weighted(&m->s, &cap, wo.z, s.wi, refracts, mcsi_abs(s.wi.z));
+    s.weight = mcsi_sane_result(s.pdf > 0.0f, mcsi_min(weight, mcs_set(1.0f)));
+    s.wi.z = side.sign * s.wi.z;
+    return s;
+}
+
+/* A given pair of directions. */
+typedef struct {
+    mcsi_ggx_cap cap;
+    mcs_vec3 wo, wi;
+    mcs_i refracts;
+    mcs_f pdf; /* 0 where no microfacet makes wi of wo */
+} mcsi_glass_pair;
+
+/* The half-vector is along n_o wo + n_i wi. That sum cancels where the indices are alike, and is in double. */
+MCSI_CORE mcsi_glass_pair mcsi_glass_pair_of(const mcs_ggx *m, mcs_f eta, mcs_vec3 wo, mcs_vec3 wi) {
+    mcs_i ok = mcsi_always();
+    const mcsi_glass_side side = mcsi_glass_side_of(eta, &wo, &ok);
+    wi = mcsi_sane_direction(wi, &ok);
+    wi.z = side.sign * wi.z;
+    mcsi_glass_pair pair;
+    pair.wo = wo;
+    pair.wi = wi;
+    pair.refracts = wi.z < 0.0f;
+    pair.cap = mcsi_ggx_cap_make(&m->s, wo, MCSI_GGX_VISIBLE);
+    const mcsi_d n_o = MCSI_WIDEN(side.n_i);
+    const mcsi_d n_i = MCSI_WIDEN(mcsi_sel(pair.refracts, side.n_t, side.n_i));
+    const mcsi_d x = n_o * MCSI_WIDEN(wo.x) + n_i * MCSI_WIDEN(wi.x);
+    const mcsi_d y = n_o * MCSI_WIDEN(wo.y) + n_i * MCSI_WIDEN(wi.y);
+    const mcsi_d z = n_o * MCSI_WIDEN(wo.z) + n_i * MCSI_WIDEN(wi.z);
+    const mcs_f h_z = MCSI_NARROW(z);
+    const mcs_f up = mcsi_with_sign(mcs_set(1.0f), h_z);
+    const mcs_f h_wo = up * MCSI_NARROW(x * MCSI_WIDEN(wo.x) + y * MCSI_WIDEN(wo.y) + z * MCSI_WIDEN(wo.z));
+    const mcs_f h_wi = up * MCSI_NARROW(x * MCSI_WIDEN(wi.x) + y * MCSI_WIDEN(wi.y) + z * MCSI_WIDEN(wi.z));
+    ok = ok & (eta != 1.0f) & (h_z != 0.0f) & ((wi.z > 0.0f) | (pair.refracts & (h_wo > 0.0f) & (h_wi < 0.0f)));
+    const mcs_vec3 h = mcsi_sel3(ok, mcsi_vec3(MCSI_NARROW(x), MCSI_NARROW(y), h_z), wo);
+    const mcs_f length = mcsi_sqrt(mcsi_dot(h, h));
+    const mcs_f cosine = mcsi_sel(pair.refracts, h_wo / length, 0.5f * length / side.n_i);
+    const mcs_f c = mcsi_min(mcsi_max(cosine, mcs_set(0.0f)), mcs_set(1.0f));
+    const mcs_f v = mcsi_ggx_d(&m->s, h) / pair.cap.k_wo_z_plus_t;
+    const mcs_f reflected_pdf = 0.5f * mcs_fresnel_dielectric(side.sign * c, side.eta) * v;
+    const mcs_f refracted_pdf = mcsi_glass_refracted_pdf(&side, 2.0f * v * c, c);
+    pair.pdf = mcsi_sane_result(ok, mcsi_sel(pair.refracts, refracted_pdf, reflected_pdf));
+    return pair;
+}
+MCSI_FN mcs_f mcs_ggx_glass_pdf(const mcs_ggx *m, mcs_f eta, mcs_vec3 wo, mcs_vec3 wi) {
+    return mcsi_glass_pair_of(m, eta, wo, wi).pdf;
+}
+MCSI_FN mcs_f mcs_ggx_glass_eval(const mcs_ggx *m, mcs_f eta, mcs_vec3 wo, mcs_vec3 wi) {
+    const mcsi_glass_pair p = mcsi_glass_pair_of(m, eta, wo, wi);
+    const mcs_f f = mcsi_glass_weighted(&m->s, &p.cap, p.wo.z, p.wi, p.refracts, p.pdf);
+    return mcsi_sane_result(p.pdf > 0.0f, f);
+}
+MCSI_FN mcs_f mcs_ggx_glass_weight(const mcs_ggx *m, mcs_f eta, mcs_vec3 wo, mcs_vec3 wi) {
+    const mcsi_glass_pair p = mcsi_glass_pair_of(m, eta, wo, wi);
+    const mcs_f weight = mcsi_glass_weighted(&m->s, &p.cap, p.wo.z, p.wi, p.refracts, mcsi_abs(p.wi.z));
+    return mcsi_sane_result(p.pdf > 0.0f, mcsi_min(weight, mcs_set(1.0f)));
+}
+#endif
+
 /* ==== [ashikhmin] bodies ========================================================================================== */
 
 #if MCSI_W > 1
@@ -9833,6 +10005,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_ggx_eval MCS_(ggx_eval)
 #define mcs_ggx_g1 MCS_(ggx_g1)
 #define mcs_ggx_g2 MCS_(ggx_g2)
+#define mcs_ggx_glass_eval MCS_(ggx_glass_eval)
+#define mcs_ggx_glass_pdf MCS_(ggx_glass_pdf)
+#define mcs_ggx_glass_sample MCS_(ggx_glass_sample)
+#define mcs_ggx_glass_weight MCS_(ggx_glass_weight)
 #define mcs_ggx_h_invert MCS_(ggx_h_invert)
 #define mcs_ggx_h_pdf MCS_(ggx_h_pdf)
 #define mcs_ggx_h_sample MCS_(ggx_h_sample)
@@ -10057,6 +10233,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_ggx_vndf_h_loop MCSI_(ggx_vndf_h_loop)
 #define mcsi_ggx_vndf_pdf_loop MCSI_(ggx_vndf_pdf_loop)
 #define mcsi_ggx_vndf_sample_loop MCSI_(ggx_vndf_sample_loop)
+#define mcsi_glass_pair MCSI_(glass_pair)
+#define mcsi_glass_pair_of MCSI_(glass_pair_of)
+#define mcsi_glass_refracted_pdf MCSI_(glass_refracted_pdf)
+#define mcsi_glass_side MCSI_(glass_side)
+#define mcsi_glass_side_of MCSI_(glass_side_of)
+#define mcsi_glass_weighted MCSI_(glass_weighted)
 #define mcsi_hemisphere_loop MCSI_(hemisphere_loop)
 #define mcsi_henyey_greenstein MCSI_(henyey_greenstein)
 #define mcsi_henyey_greenstein_loop MCSI_(henyey_greenstein_loop)
@@ -10400,6 +10582,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_ggx_eval
 #undef mcs_ggx_g1
 #undef mcs_ggx_g2
+#undef mcs_ggx_glass_eval
+#undef mcs_ggx_glass_pdf
+#undef mcs_ggx_glass_sample
+#undef mcs_ggx_glass_weight
 #undef mcs_ggx_h_invert
 #undef mcs_ggx_h_pdf
 #undef mcs_ggx_h_sample
@@ -10624,6 +10810,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_ggx_vndf_h_loop
 #undef mcsi_ggx_vndf_pdf_loop
 #undef mcsi_ggx_vndf_sample_loop
+#undef mcsi_glass_pair
+#undef mcsi_glass_pair_of
+#undef mcsi_glass_refracted_pdf
+#undef mcsi_glass_side
+#undef mcsi_glass_side_of
+#undef mcsi_glass_weighted
 #undef mcsi_hemisphere_loop
 #undef mcsi_henyey_greenstein
 #undef mcsi_henyey_greenstein_loop

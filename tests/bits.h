@@ -17,7 +17,8 @@
     X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(frame_from_tangent) X(to_world) X(to_local) \
     X(reflect) X(reflect_pdf) X(half) X(cos_d) X(schlick) X(fresnel_dielectric) X(fresnel_conductor) X(refract) \
     X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) X(ashikhmin_make) X(is_mirror) X(ggx_d) X(ggx_g1) \
-    X(ggx_g2) X(ggx_albedo) X(ggx_mean_albedo) X(ggx_compensation) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
+    X(ggx_g2) X(ggx_albedo) X(ggx_mean_albedo) X(ggx_compensation) X(ggx_glass_sample) \
+    X(ggx_glass_pdf) X(ggx_glass_eval) X(ggx_glass_weight) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
 #define BITS_WORDS(X) \
     X(hash) X(sobol_bits) X(load) X(store)
 #define BITS_SCALAR(X) \
@@ -199,6 +200,32 @@ FN(ggx_compensation) {
     GGX;
     PUT(0, M_(ggx_compensation)(&m, IN3(3), IN3(8)));
 }
+/* The third random number and the index are made of what there is. The second case is seen from behind. */
+FN(ggx_glass_sample) {
+    GGX;
+    const F_ eta = 0.5f + 2.0f * IN(10) * IN(10);
+    const M_(brdf) s = M_(ggx_glass_sample)(&m, eta, IN3(3), IN(6), IN(7), 0.5f * (IN(6) + IN(7)));
+    M_(vec3) wo = IN3(3);
+    wo.z = -wo.z;
+    const M_(brdf) t = M_(ggx_glass_sample)(&m, eta, wo, IN(6), IN(7), 0.5f * (IN(6) + IN(7)));
+    B_(put3)(out, 0, s.wi), PUT(3, s.pdf), PUT(4, s.weight);
+    B_(put3)(out, 5, t.wi), PUT(8, t.pdf);
+}
+#define GLASS(name)                                          \
+    FN(ggx_glass_##name) {                                   \
+        GGX;                                                 \
+        const F_ eta = 0.5f + 2.0f * IN(7);                  \
+        M_(vec3) wi = IN3(8);                                \
+        PUT(0, M_(ggx_glass_##name)(&m, eta, IN3(3), wi));   \
+        PUT(1, M_(ggx_glass_##name)(&m, IN(0), wi, IN3(3))); \
+        wi.z = -wi.z;                                        \
+        PUT(2, M_(ggx_glass_##name)(&m, eta, IN3(3), wi));   \
+        PUT(3, M_(ggx_glass_##name)(&m, eta, wi, IN3(3)));   \
+    }
+GLASS(pdf)
+GLASS(eval)
+GLASS(weight)
+#undef GLASS
 #undef GGX
 FN(mis_balance) { PUT(0, M_(mis_balance)(IN(0), IN(1))); }
 FN(mis_power) { PUT(0, M_(mis_power)(IN(0), IN(1))); }

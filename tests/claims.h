@@ -46,6 +46,9 @@ static const char *const mcst_claim_sentences[] = {
     "1.5 E, weight 0.7e-6, of a sample 0.7e-6 (ggx 1.6e-6); |h| and |wi| 4 x 2^-24",
     "albedos are fits: within 0.25 % for alpha_x = alpha_y in [0.01,1] and all angles; f and its compensation reflect 1 "
     "within 0.4 % there.",
+    /* [glass] */
+    "pdf of u 4 E, of wi and f 3 E, weights 1e-6;",
+    /* [ashikhmin] */
     "pdf of u 0.8 E (an exponent below 1: 1.4 E, below 0.1: 3.7 E), of h, wi and eval 0.6 E, weight "
     "0.1e-6, |h| and |wi| 4 x 2^-24",
 };

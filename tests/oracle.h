@@ -1058,4 +1058,91 @@ static inline o_vec3 o_visible_wi(ld ax, ld ay, o_view v, o_vec3 wo, ld u1, ld u
 O_VISIBLE(ggx_vndf, 0)
 O_VISIBLE(ggx_bounded, 1)
 #undef O_VISIBLE
+
+/* ---- rough glass (Walter et al. 2007, equations 16, 17 and 21): eta is the index below over that above. wo and wi are
+ * on either side. Reflection is F times GGX, refraction has the G2 of G1 G1. ---- */
+
+typedef struct {
+    ld ax, ay, eta;
+} o_glass;
+
+static inline ld o_index_at(o_vec3 w, ld eta) { return w.z < 0.0L ? eta : 1.0L; }
+static inline o_vec3 o_upwards(o_vec3 w) { return o_vec(w.x, w.y, fabsl(w.z)); }
+/* What reflects or refracts wo to wi: the half-vector h on the side of wo, c_o = wo.h, c_i = wi.h. */
+typedef struct {
+    o_vec3 h;
+    ld n_o, n_i, c_o, c_i;
+    int exists, refracts;
+} o_facet;
+static inline o_facet o_facet_of(ld eta, o_vec3 wo, o_vec3 wi) {
+    o_facet f;
+    f.n_o = o_index_at(wo, eta);
+    f.n_i = o_index_at(wi, eta);
+    f.refracts = wo.z * wi.z < 0.0L;
+    const o_vec3 sum = o_add(o_scale(f.n_o, wo), o_scale(f.n_i, wi));
+    f.h = o_scale((sum.z * wo.z < 0.0L ? -1.0L : 1.0L) / o_len(sum), sum);
+    f.c_o = f.refracts ? o_dot(wo, f.h) : o_len(o_add(wo, wi)) / 2.0L;
+    f.c_i = f.refracts ? o_dot(wi, f.h) : f.c_o;
+    f.exists = f.refracts ? f.h.z != 0.0L && f.c_o > 0.0L && f.c_i < 0.0L : wo.z * wi.z > 0.0L;
+    return f;
+}
+/* F, or 1 - F for refraction, at c_o = c and the index of wo. */
+static inline ld o_glass_share(ld eta, o_vec3 wo, ld c, int refracts) {
+    const ld reflected = o_fresnel_dielectric(wo.z < 0.0L ? -c : c, eta);
+    return refracts ? 1.0L - reflected : reflected;
+}
+/* d(h) over d(wi) of refraction */
+static inline ld o_glass_jacobian(ld n_o, ld n_i, ld c_o, ld c_i) {
+    const ld sum = n_o * c_o + n_i * c_i;
+    return n_i * n_i * fabsl(c_i) / (sum * sum);
+}
+static inline ld o_ggx_glass_pdf(o_glass g, o_vec3 wo, o_vec3 wi) {
+    const o_facet f = o_facet_of(g.eta, wo, wi);
+    if (!f.exists) return 0.0L;
+    const ld share = o_glass_share(g.eta, wo, f.c_o, f.refracts);
+    if (!f.refracts) return share * o_ggx_vndf_pdf(g.ax, g.ay, o_upwards(wo), o_upwards(wi));
+    return share * o_glass_jacobian(f.n_o, f.n_i, f.c_o, f.c_i) *
+           o_ggx_vndf_h_pdf(g.ax, g.ay, o_upwards(wo), o_upwards(f.h));
+}
+static inline ld o_glass_g(ld ax, ld ay, o_vec3 wo, o_vec3 wi, int refracts) {
+    const o_vec3 o = o_upwards(wo);
+    const o_vec3 i = o_upwards(wi);
+    return refracts ? o_ggx_g1(ax, ay, o) * o_ggx_g1(ax, ay, i) : o_ggx_g2(ax, ay, o, i);
+}
+static inline ld o_ggx_glass_eval(o_glass g, o_vec3 wo, o_vec3 wi) {
+    const o_facet f = o_facet_of(g.eta, wo, wi);
+    if (!f.exists) return 0.0L;
+    const ld share = o_glass_share(g.eta, wo, f.c_o, f.refracts);
+    if (!f.refracts) return share * o_ggx_eval(g.ax, g.ay, o_upwards(wo), o_upwards(wi));
+    return share * o_glass_jacobian(f.n_o, f.n_i, f.c_o, f.c_i) * f.c_o * o_glass_g(g.ax, g.ay, wo, wi, 1) *
+           o_ggx_d(g.ax, g.ay, o_upwards(f.h)) / fabsl(wo.z * wi.z);
+}
+static inline ld o_ggx_glass_weight(o_glass g, o_vec3 wo, o_vec3 wi) {
+    const o_facet f = o_facet_of(g.eta, wo, wi);
+    if (!f.exists || o_glass_share(g.eta, wo, f.c_o, f.refracts) == 0.0L) return 0.0L;
+    return o_glass_g(g.ax, g.ay, wo, wi, f.refracts) / o_ggx_g1(g.ax, g.ay, o_upwards(wo));
+}
+/* From u: the cosine of the half-vector, wi for either fate of the light, and the density of wi. */
+static inline ld o_ggx_glass_cos_u(ld ax, ld ay, o_vec3 wo, ld u1, ld u2) {
+    return o_visible_cos_u(ax, ay, o_view_of(ax, ay, o_upwards(wo), 0), u1, u2);
+}
+static inline o_vec3 o_ggx_glass_map(o_glass g, o_vec3 wo, ld u1, ld u2, int refracts) {
+    const o_vec3 o = o_upwards(wo);
+    const ld side = wo.z < 0.0L ? -1.0L : 1.0L;
+    const o_view view = o_view_of(g.ax, g.ay, o, 0);
+    const o_vec3 h = o_visible_map(g.ax, g.ay, view, u1, u2);
+    const o_vec3 wi = refracts ? o_refract(o, o_scale(side, h), g.eta) : o_visible_wi(g.ax, g.ay, view, o, u1, u2);
+    return o_vec(wi.x, wi.y, side * wi.z);
+}
+static inline ld o_ggx_glass_pdf_u(o_glass g, o_vec3 wo, ld u1, ld u2, int refracts) {
+    const o_vec3 o = o_upwards(wo);
+    const o_view view = o_view_of(g.ax, g.ay, o, 0);
+    const ld c = o_visible_cos_u(g.ax, g.ay, view, u1, u2);
+    const ld share = o_glass_share(g.eta, wo, c, refracts);
+    const ld pdf_h = o_visible_h_pdf_u(g.ax, g.ay, view, o, u1, u2);
+    if (!refracts) return share * pdf_h / (4.0L * c);
+    const ld n_o = o_index_at(wo, g.eta);
+    const ld n_i = wo.z < 0.0L ? 1.0L : g.eta;
+    return share * pdf_h * o_glass_jacobian(n_o, n_i, c, -sqrtl(fmaxl(0.0L, o_snell(c, n_i / n_o))));
+}
 #endif

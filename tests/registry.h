@@ -73,8 +73,10 @@
     X(shape, row, fn, arg, base, coord, grid)
 #define MCST_ROWS(X) MCST_LIST(MCST_SEVEN, X)
 
-/* Samplers of mcsample.h that are not rows, because a table is not a handful of parameters. */
-static const char *const mcst_exempt[] = {"pwc", "pwl", "discrete", "alias", "env", "env_window", "product"};
+/* Samplers of mcsample.h that are not rows, because a table is not a handful of parameters, and a row has two random
+ * numbers. */
+static const char *const mcst_exempt[] = {"pwc", "pwl",        "discrete", "alias",
+                                          "env", "env_window", "product",  "ggx_glass"};
 
 enum { MCST_P = 6 }; /* numbers in a parameter set: p[0..2] of the sampler, p[3..5] = wo */
 

@@ -178,6 +178,11 @@ static void check_vectors(void) {
     TELLS("mcs_ggx_albedo", mcs_ggx_albedo(&m, w));
     TELLS("mcs_ggx_compensation, wo", mcs_ggx_compensation(&m, w, unit));
     TELLS("mcs_ggx_compensation, wi", mcs_ggx_compensation(&m, unit, w));
+    TELLS("mcs_ggx_glass_sample", mcs_ggx_glass_sample(&m, 1.5f, w, 0.5f, 0.5f, 0.5f));
+    TELLS("mcs_ggx_glass_pdf", mcs_ggx_glass_pdf(&m, 1.5f, w, unit));
+    TELLS("mcs_ggx_glass_eval, wo", mcs_ggx_glass_eval(&m, 1.5f, w, unit));
+    TELLS("mcs_ggx_glass_eval, wi", mcs_ggx_glass_eval(&m, 1.5f, unit, w));
+    TELLS("mcs_ggx_glass_weight", mcs_ggx_glass_weight(&m, 1.5f, unit, w));
 }
 
 /* Calls FUNCTION with a good index of refraction and with wrong ones. */
@@ -201,6 +206,12 @@ static void check_indices(void) {
     TELLS_ETA("mcs_fresnel_dielectric", mcs_fresnel_dielectric(0.5f, eta));
     TELLS_ETA("mcs_fresnel_conductor", mcs_fresnel_conductor(0.5f, eta, 3));
     TELLS_ETA("mcs_refract", mcs_refract(unit, unit, eta));
+    const mcs_ggx m = mcs_ggx_make(0.3f, 0.3f);
+    TELLS_ETA("mcs_ggx_glass_sample", mcs_ggx_glass_sample(&m, eta, unit, 0.5f, 0.5f, 0.5f));
+    TELLS_ETA("mcs_ggx_glass_pdf", mcs_ggx_glass_pdf(&m, eta, unit, unit));
+    asserted = 0;
+    mcs_ggx_glass_sample(&m, 1.5f, unit, 0.5f, 0.5f, 1);
+    CHECK(asserted > 0, "third random number");
     asserted = 0;
     mcs_fresnel_conductor(0.5f, 0.2f, -3);
     CHECK(asserted > 0, "negative extinction");

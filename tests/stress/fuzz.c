@@ -228,6 +228,10 @@ static void fuzz_vectors(bytes *b) {
     MUST(mcs_ggx_g1(&m, w) <= 1.000001f && mcs_ggx_g2(&m, v, w) <= 1.000001f);
     MUST(proper(mcs_ggx_albedo(&m, w)) && mcs_ggx_albedo(&m, w) <= 1);
     MUST(proper(mcs_ggx_mean_albedo(&m)) && mcs_ggx_mean_albedo(&m) <= 1 && proper(mcs_ggx_compensation(&m, v, w)));
+    const mcs_brdf s = mcs_ggx_glass_sample(&m, p, v, q, r, take_float(b));
+    MUST(finite3(s.wi) && proper(s.pdf) && proper(s.weight) && s.weight <= 1.000001f);
+    MUST(proper(mcs_ggx_glass_pdf(&m, p, v, w)) && proper(mcs_ggx_glass_eval(&m, p, v, w)));
+    MUST(proper(mcs_ggx_glass_weight(&m, p, v, w)) && proper(mcs_ggx_glass_pdf(&m, q, any, w)));
     MUST(proper(mcs_cone_from_sin2(p)) && mcs_cone_from_sin2(p) <= 1);
     MUST(mcs_is_mirror(p, q) == (p < 1e-7f && q < 1e-7f));
 }

@@ -223,16 +223,39 @@ enum {
     ALBEDO,
     MEAN_ALBEDO,
     COMPENSATION,
+    GLASS_PDF,
+    GLASS_EVAL,
+    GLASS_WEIGHT,
+    GLASS_SAMPLE_PDF,
+    GLASS_SAMPLE_WEIGHT,
     VALUES
 };
-static const float value_top[VALUES] = {2, 1, 1, 1, FLT_MAX, FLT_MAX, FLT_MAX, 1, 1, 1, 1, 1, 1, 1, FLT_MAX};
-static const char *const value_name[VALUES] = {
-    "cos_d",  "schlick",        "mis_balance", "mis_power", "mix_pdf", "reflect_pdf", "ggx_d",       "ggx_g1",
-    "ggx_g2", "cone_from_sin2", "dielectric",  "conductor", "albedo",  "mean_albedo", "compensation"};
+static const float value_top[VALUES] = {2, 1, 1, 1, FLT_MAX, FLT_MAX, FLT_MAX, 1, 1,       1,
+                                        1, 1, 1, 1, FLT_MAX, FLT_MAX, FLT_MAX, 1, FLT_MAX, 1};
+static const char *const value_name[VALUES] = {"cos_d",
+                                               "schlick",
+                                               "mis_balance",
+                                               "mis_power",
+                                               "mix_pdf",
+                                               "reflect_pdf",
+                                               "ggx_d",
+                                               "ggx_g1",
+                                               "ggx_g2",
+                                               "cone_from_sin2",
+                                               "dielectric",
+                                               "conductor",
+                                               "albedo",
+                                               "mean_albedo",
+                                               "compensation",
+                                               "glass_pdf",
+                                               "glass_eval",
+                                               "glass_weight",
+                                               "glass_sample, pdf",
+                                               "glass_sample, weight"};
 
 /* in: arguments as in `arguments`, in order; out: the frame, two turned directions, the mirrored one, the half-vector,
- * the refracted one, the frame of a tangent. */
-enum { VECTORS = 11 };
+ * the refracted one, the frame of a tangent, one that glass draws. */
+enum { VECTORS = 12 };
 static void check_lane_of_vectors(float in[11][LANES], float out[VECTORS][3][LANES], float value[VALUES][LANES], int l,
                                   tally *t) {
     const double n2 = dot(out[2], out[2], l);
@@ -308,6 +331,13 @@ static void check_vectors(uint64_t seed, long rounds, tally *t) {
         r[ALBEDO] = mcs8_ggx_albedo(&m, w);
         r[MEAN_ALBEDO] = mcs8_ggx_mean_albedo(&m);
         r[COMPENSATION] = mcs8_ggx_compensation(&m, v, w);
+        r[GLASS_PDF] = mcs8_ggx_glass_pdf(&m, eight(in[6]), v, w);
+        r[GLASS_EVAL] = mcs8_ggx_glass_eval(&m, eight(in[7]), v, w);
+        r[GLASS_WEIGHT] = mcs8_ggx_glass_weight(&m, eight(in[6]), v, w);
+        const mcs8_brdf s = mcs8_ggx_glass_sample(&m, eight(in[0]), v, eight(in[6]), eight(in[7]), eight(in[10]));
+        r[GLASS_SAMPLE_PDF] = s.pdf;
+        r[GLASS_SAMPLE_WEIGHT] = s.weight;
+        put(out[11], s.wi);
         float value[VALUES][LANES];
         memcpy(value, r, sizeof value);
         for (int l = 0; l < LANES; l++) check_lane_of_vectors(in, out, value, l, t);
