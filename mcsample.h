@@ -2862,9 +2862,9 @@ MCSI_CORE mcs_f mcsi_exp_both(mcs_f x, mcs_f *minus_one) {
 
 /* ---- powers ---- */
 
-/* x^e, or x^(1/e) where `root` is set, for x in [0,1] and e = n + plus in [0, 1e9 + 1], plus 0 or 1; 1 ulp. Powers below
- * 2^-125.5 are 0, as above. For roots, *quotient becomes x over the result, with its relative accuracy even where both
- * are subnormal.
+/* x^e, or x^(1/e) where `root` is set, for x in [0,1] and e = n + plus in [0, 1e9 + 1], plus 0 or 1; 1 ulp. Powers
+ * below 2^-125.5 are 0, as above. For roots, *quotient becomes x over the result, with its relative accuracy even where
+ * both are subnormal.
  *
  * x = 2^k m, where x 2^24 is a normal float in any case. log2(m) is a series in s = (m - 1)/(m + 1). All is in double,
  * so that the product of exponent and logarithm loses nothing. With the integer and the fractional part of that
@@ -3348,8 +3348,8 @@ MCSI_CORE mcs_u mcsi_scramble_reversed(mcs_u x, uint32_t seed) {
     x = x ^ (x * 0x05526c56u);
     return x ^ (x * 0x53a22864u);
 }
-/* Polynomials over the field of two elements, a bit for each coefficient. x holds several, each in a field of bits of its
- * own. Each is divided by p^s, which has so few terms where s is a power of 2. The quotient takes the field's upper
+/* Polynomials over the field of two elements, a bit for each coefficient. x holds several, each in a field of bits.
+ * Each is divided by p^s, which has no more terms than p where s is a power of 2. The quotient takes the field's upper
  * bits, and the remainder the lower ones. `low` has the lowest s bits of every field. */
 MCSI_CORE mcs_u mcsi_divide1(mcs_u x, uint32_t s, uint32_t low) { return x ^ ((x >> s) & low); }
 MCSI_CORE mcs_u mcsi_divide2(mcs_u x, uint32_t s, uint32_t low) {
@@ -8990,9 +8990,9 @@ MCS_FN uint32_t mcsi_product_heaviest(const mcsi_product_lists *l, uint32_t *til
     }
     return count;
 }
-/* A grid: values at 8 x 8 nodes, column by column; then the weights of the 8 rows of nodes, by trapezoids. To each value
- * a hundredth of their mean is added. More is added where the value of the tile without a grid is far above the mean:
- * all nodes may lie on a light below the horizon, and other light of the tile above it. Returns the mean over the
+/* A grid: values at 8 x 8 nodes, column by column; then the weights of the 8 rows of nodes, by trapezoids. To each
+ * value a hundredth of their mean is added. More is added where the value of the tile without a grid is far above the
+ * mean: all nodes may lie on a light below the horizon, and other light of the tile above it. Returns the mean over the
  * cells. */
 MCS_FN float mcsi_grid_build(const mcsi_surface *s, const float *node, float value, float *grid) {
     mcsi_corner_values_n(s, MCSI_GRID, node, grid);

@@ -109,11 +109,10 @@ static void sweep(const kernel *k) {
 }
 
 /* Bounds: half an ulp for the last rounding, plus the roundings before it weighted by their share of the result, plus
- * the fit (below 0.1 ulp but for the tail, 0.5); they hold with and without contraction. Exponentials and powers are swept down
- * to 2^-125.5, below which they are 0. The tail, worst where Phi is
- * just below 1/2: v = 1/(1 + 0.35 y) has a relative error of 2^-24, which d ln G/d ln v = 2.3 makes 2.3 ulp; the sums
- * of Horner's rule 2, its products 2, e^x 1, the last product 0.5: 8 ulp. The quantile likewise: t 1, v 0.5, Horner 3,
- * the difference t - R 1 ulp. */
+ * the fit (below 0.1 ulp but for the tail, 0.5); they hold with and without contraction. Exponentials and powers are
+ * swept down to 2^-125.5, below which they are 0. The tail, worst where Phi is just below 1/2: v = 1/(1 + 0.35 y) has a
+ * relative error of 2^-24, which d ln G/d ln v = 2.3 makes 2.3 ulp; the sums of Horner's rule 2, its products 2, e^x 1,
+ * the last product 0.5: 8 ulp. The quantile likewise: t 1, v 0.5, Horner 3, the difference t - R 1 ulp. */
 static const kernel kernels[] = {
     {"sin", sin_turns, exact_sin_turns, 0x1p-30f, 1.0f, 13, 1.5, 0},
     {"sin, t < 0", sin_turns, exact_sin_turns, -0x1p-30f, -0.125f, 31, 1.5, 1},

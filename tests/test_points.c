@@ -437,8 +437,8 @@ static void rates(void) {
 
 /* ---- points across a picture ---- */
 
-/* The pixels of a square whose sides are 2^k and a multiple of which is (x, y) have 4^k blocks of points in a row, from a
- * multiple of that on. */
+/* The pixels of a square whose sides are 2^k and a multiple of which is (x, y) have 4^k blocks of points in a row, from
+ * a multiple of that on. */
 static int square_is_block(uint32_t x, uint32_t y, uint32_t k, uint32_t log_n, uint32_t seed) {
     const uint32_t pixels = 1u << (2 * k);
     const uint32_t first = mcs_sobol_pixel(x, y, 1u << log_n, seed) >> log_n >> (2 * k);

@@ -195,7 +195,7 @@ static long double key_error(uint64_t run, uint32_t i) {
     const long double e = -log1pl(-(long double)random_u(run, i));
     return 0x1p-24L * (3 + expm1l(e) / e);
 }
-/* The kept have their keys, in order, and no other one has a key that is less than theirs, but for what rounding does. */
+/* The kept have their keys, in order, and no other one has a key less than theirs, but for what rounding does. */
 static void check_keys(const room *a, uint64_t run, uint32_t k) {
     uint32_t positive = 0;
     char is_kept[MANY] = {0};

@@ -155,9 +155,9 @@ static double peak_of(const mcst_row *row, const float *p) {
     return (double)peak;
 }
 
-/* The error of got in 1e-6 (1 + |ln(density/peak)|) of want; what is below MCST_FAINT of the peak does not count. The peak
- * is looked for only where the score would be above `least` without it. Densities above FLT_MAX saturate; subnormal
- * ones are only small. */
+/* The error of got in 1e-6 (1 + |ln(density/peak)|) of want; what is below MCST_FAINT of the peak does not count. The
+ * peak is looked for only where the score would be above `least` without it. Densities above FLT_MAX saturate;
+ * subnormal ones are only small. */
 static double in_units(const mcst_row *row, const float *p, float got, qd want, qd density, double least) {
     const double error = fabs((double)(((qd)got - want) / want));
     if (!(want < (qd)FLT_MAX && want > (qd)FLT_MIN)) return 0;
