@@ -22,8 +22,8 @@ int main(void) {
         const float u2 = mcs_pcg32_float(&rng);
         const mcs_sample2 p = mcs_disk_sample(R, u1, u2);
         const mcs_sample2 c = mcs_concentric_sample(R, u1, u2);
-        mcs_stat_add(&polar, p.x * p.x / p.pdf);
-        mcs_stat_add(&concentric, c.x * c.x / c.pdf);
+        mcs_stat_add(&polar, p.pdf > 0 ? p.x * p.x / p.pdf : 0);
+        mcs_stat_add(&concentric, c.pdf > 0 ? c.x * c.x / c.pdf : 0);
     }
     wrong |= report("polar", &polar, exact);
     wrong |= report("concentric", &concentric, exact);

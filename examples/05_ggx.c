@@ -28,7 +28,7 @@ int main(void) {
         const float u2 = mcs_pcg32_float(&rng);
         const mcs_dir h = mcs_ggx_h_sample(&m, u1, u2); /* its pdf is D(h) h.z */
         const float cos_d = wo.x * h.w.x + wo.y * h.w.y + wo.z * h.w.z;
-        mcs_stat_add(&area, cos_d > 0 ? g1 * cos_d * mcs_ggx_d(&m, h.w) / h.pdf : 0);
+        mcs_stat_add(&area, h.pdf > 0 && cos_d > 0 ? g1 * cos_d * mcs_ggx_d(&m, h.w) / h.pdf : 0);
         mcs_stat_add(&full, mcs_ggx_sample(&m, wo, u1, u2).weight);
         mcs_stat_add(&visible, mcs_ggx_vndf_sample(&m, wo, u1, u2).weight);
         mcs_stat_add(&bounded, mcs_ggx_bounded_sample(&m, wo, u1, u2).weight);

@@ -24,7 +24,7 @@ int main(void) {
         const float u2 = mcs_pcg32_float(&rng);
         const mcs_dir h = mcs_hemisphere_sample(u1, u2);
         const mcs_dir d = mcs_cosine_sample(u1, u2);
-        mcs_stat_add(&mass, mcs_ashikhmin_h_pdf(&m, h.w) / h.pdf);
+        mcs_stat_add(&mass, h.pdf > 0 ? mcs_ashikhmin_h_pdf(&m, h.w) / h.pdf : 0);
         mcs_stat_add(&brdf, mcs_ashikhmin_sample(&m, wo, u1, u2).weight);
         mcs_stat_add(&cosine, d.pdf > 0 ? mcs_ashikhmin_eval(&m, wo, d.w) * d.w.z / d.pdf : 0);
     }

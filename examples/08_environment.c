@@ -37,7 +37,7 @@ int main(void) {
         const mcs_texel s = mcs_env_sample(env, u1, u2);
         const mcs_dir d = mcs_cosine_sample(u1, u2);
         const mcs_texel at = mcs_env_texel(env, d.w);
-        mcs_stat_add(&table, s.w.z > 0 ? sky[s.row][s.col] * s.w.z / s.pdf : 0);
+        mcs_stat_add(&table, s.pdf > 0 && s.w.z > 0 ? sky[s.row][s.col] * s.w.z / s.pdf : 0);
         mcs_stat_add(&cosine, d.pdf > 0 ? sky[at.row][at.col] * d.w.z / d.pdf : 0);
     }
     free(env);

@@ -17,7 +17,7 @@ int main(void) {
     mcs_env *env = (mcs_env *)malloc(bytes);
     mcs_product *point = (mcs_product *)malloc(point_bytes);
     const mcs_vec3 up = {0, 0, 1};
-    const mcs_reflection matte = {mcs_frame_make(up), up, 1, 1, 1, MCS_PROFILE_GGX, SAMPLES};
+    const mcs_reflection matte = {mcs_frame_make(up), up, 1, 1, 1, MCS_PROFILE_GGX};
     mcs_pcg32 rng = mcs_pcg32_for(12, 1, 0);
     mcs_stat plain = {0, 0, 0};
     mcs_stat prepared = {0, 0, 0};
@@ -49,8 +49,8 @@ int main(void) {
         const float u2 = mcs_pcg32_float(&rng);
         const mcs_texel e = mcs_env_sample(env, u1, u2);
         const mcs_texel p = mcs_product_sample(point, tiles, env, u1, u2);
-        mcs_stat_add(&plain, e.w.z > 0 ? sky[e.row][e.col] * e.w.z / e.pdf : 0);
-        mcs_stat_add(&prepared, p.w.z > 0 ? sky[p.row][p.col] * p.w.z / p.pdf : 0);
+        mcs_stat_add(&plain, e.pdf > 0 && e.w.z > 0 ? sky[e.row][e.col] * e.w.z / e.pdf : 0);
+        mcs_stat_add(&prepared, p.pdf > 0 && p.w.z > 0 ? sky[p.row][p.col] * p.w.z / p.pdf : 0);
     }
     free(env);
     free(tiles);
