@@ -47,6 +47,7 @@ EXAMPLE_BINS = $(EXAMPLES:%.c=$(BUILD)/%)
 SHARED = $(BUILD)/tests/shared
 WIDE = $(SHARED)/wide16.o $(SHARED)/wide8.o $(SHARED)/wide4.o
 RENDER = $(BUILD)/examples/render
+GALLERY = $(BUILD)/examples/gallery
 
 # Two at a time unless make was given its own -j. MAKEFLAGS holds -j only while a recipe is expanded, hence no := here.
 JOBS = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),2)
@@ -152,11 +153,12 @@ mutants: ## does a test fail for every slip in tests/mutants.txt? ten minutes; b
 	$(SAY)
 	@BEGAN=$(NOW) CC='$(CC)' BUILD='$(BUILD)' sh tests/mutants.sh $(JOBS) $(ONLY)
 
-examples: ## build, run and check every example and the renderer; two minutes; build/examples
+examples: ## build, run and check every example, the gallery and the renderer; two minutes; build/examples
 	$(SAY)
 	@echo '$(CC): $(FLAGS)'
-	+@$(SUBMAKE) example-binaries $(RENDER)
-	@passed=0; failed=0; for e in $(EXAMPLE_BINS) 'sh tests/render.sh $(RENDER) $(BUILD)/render'; do \
+	+@$(SUBMAKE) example-binaries $(RENDER) $(GALLERY)
+	@mkdir -p $(BUILD)/gallery
+	@passed=0; failed=0; for e in $(EXAMPLE_BINS) '$(GALLERY) $(BUILD)/gallery' 'sh tests/render.sh $(RENDER) $(BUILD)/render'; do \
 		echo "$$e"; \
 		if $$e; then passed=$$((passed + 1)); else failed=$$((failed + 1)); echo "FAIL $$e: exit status not 0"; fi; \
 	done; \
@@ -170,6 +172,13 @@ demo: ## render the default scene with every strategy, print the strategy table;
 	@mkdir -p $(BUILD)/demo
 	$(RENDER) --strategy all $(DEMO) --out $(BUILD)/demo/spheres
 	@$(TOOK) "pictures in $(BUILD)/demo"
+
+gallery: ## draw each sampler's density, with samples on it; 15 s; build/gallery: gallery.png, one sheet, and an SVG a group
+	$(SAY)
+	+@$(SUBMAKE) $(GALLERY)
+	@mkdir -p $(BUILD)/gallery
+	@$(GALLERY) $(BUILD)/gallery
+	@$(TOOK) "pictures in $(BUILD)/gallery"
 
 hygiene: ## warnings in every language standard, index, macros, symbols, cost of including; some minutes; build/hygiene
 	$(SAY)
@@ -264,6 +273,8 @@ $(RENDER): examples/render.c $(wildcard examples/render_*.h) examples/hdr.h mcsa
 	@mkdir -p $(@D)
 	$(CC) $(FLAGS) $(OPENMP) $< -o $@ $(LIBS)
 
+$(GALLERY): $(wildcard examples/gallery_*.h) examples/render_png.h tests/bench/svg.h
+
 $(TEST_BINS) $(STRESS_BINS): CONTRACT = $(EXACT) -DMCST_LINKED
 # Headers define functions that one object or another does not call.
 SHARED_FLAGS = -DMCST_LINKED -DMCST_SHARED -Wno-unused-function -Wno-unused-variable
@@ -345,4 +356,4 @@ $(BENCH)/%: tests/bench/%.c $(BENCH_HEADERS)
 	$(CC) $(BENCH_FLAGS) $< -o $@ $(LIBS)
 
 FORCE:
-.PHONY: test cuda cuda-binaries stress stress-today stress-whole cross analyze mutants examples demo hygiene selftest install uninstall dist lib packages help clean test-binaries example-binaries FORCE bench bench-quick
+.PHONY: test cuda cuda-binaries stress stress-today stress-whole cross analyze mutants examples demo gallery hygiene selftest install uninstall dist lib packages help clean test-binaries example-binaries FORCE bench bench-quick
