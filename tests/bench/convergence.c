@@ -1,9 +1,10 @@
 /* Run time against error: direct illumination of a surface by an environment map, estimated by every strategy with
  * every kind of points; root-mean-square (rms) error over the number of samples and over seconds. Writes
- * convergence.csv and a plot per material, prints the time to reach 1 %, the slopes, the variances over that of product
- * sampling, product sampling with 1, 4, 16 and 64 samples per shading point against MIS, which targets are met, and how
- * far errors and references can be trusted. "product 4" is product sampling with a set-up for every 4 samples, as if
- * the shading point were another one then: the time is that of the set-ups too.
+ * convergence.csv, a plot per material, and convergence.svg of five curves for one scene; prints the time to reach 1 %,
+ * the slopes, the variances over that of product sampling, product sampling with 1, 4, 16 and 64 samples per shading
+ * point against MIS, which targets are met, and how far errors and references can be trusted. "product 4" is product
+ * sampling with a set-up for every 4 samples, as if the shading point were another one then: the time is that of the
+ * set-ups too.
  *
  *     convergence [--quick] [map.hdr ...]
  *
@@ -92,6 +93,10 @@ int main(int argc, char **argv) {
     }
     bench_progress("%s", "");
     bench_close(csv, "convergence.csv");
+    if (ok && plot_story(maps, count, all)) {
+        fprintf(stderr, "cannot write %s\n", bench_path("convergence.svg"));
+        ok = 0;
+    }
     const int bad = print_all(maps, count, all);
     printf("convergence: %.0f s; %s\n", bench_seconds() - start, bench.out);
     for (int e = 0; e < count; e++) {

@@ -103,6 +103,57 @@ static int plot_material(const material *m, const map *maps, int count, const re
     return 0;
 }
 
+/* convergence.svg: five curves for one scene, a glossy surface under a sky with a sun. plot_material draws all strategies
+ * for all scenes. */
+static int plot_story(const map *maps, int count, const result *all) {
+    static const struct {
+        const char *name;
+        strategy how;
+        generator kind;
+    } curve[] = {{"surface alone", BRDF, INDEPENDENT},
+                 {"map alone", ENVIRONMENT, INDEPENDENT},
+                 {"MIS", MIS_POWER, INDEPENDENT},
+                 {"MIS, Sobol", MIS_POWER, SOBOL},
+                 {"product, Sobol", PRODUCT_64, SOBOL}};
+    enum { CURVES = sizeof curve / sizeof *curve };
+    int m = 0;
+    int e = 0;
+    while (m + 1 < MATERIALS && strcmp(materials[m].file, "ggx-sharp") != 0) m++;
+    while (e + 1 < count && strcmp(maps[e].name, "sun") != 0) e++;
+    const result *r = &all[m * count + e];
+    double lo[2] = {1, 1};
+    double hi[2] = {0, 0};
+    double x[CURVES][LEVELS], y[CURVES][LEVELS];
+    for (int c = 0; c < CURVES; c++) {
+        const level *v = r->of[curve[c].how][curve[c].kind];
+        for (int l = 0; l < levels; l++) {
+            x[c][l] = 1e6 * v[l].seconds;
+            y[c][l] = v[l].rms;
+        }
+        svg_range(levels, x[c], 1, &lo[0], &hi[0]);
+        svg_range(levels, y[c], 1, &lo[1], &hi[1]);
+    }
+    char text[128];
+    const double sobol = 1e6 * price_of(r, r->of[MIS_POWER][SOBOL]).seconds;
+    const double plain = 1e6 * price_of(r, r->of[MIS_POWER][INDEPENDENT]).seconds;
+    snprintf(text, sizeof text,
+             "Sky and sun on a glossy surface: MIS takes %.0f us to 1 %% error, with Sobol points %.0f us", plain,
+             sobol);
+    svg_plot p;
+    svg_begin(&p, bench_path("convergence.svg"), text, "microseconds per estimate", "rms relative error", 1, 1,
+              lo[0] / 1.5, hi[0] * 1.5, lo[1] / 3, hi[1] * 1.5);
+    const double goal[2][2] = {{lo[0] / 1.5, GOAL}, {hi[0] * 1.5, GOAL}};
+    svg_link(&p, goal[0], goal[1]);
+    for (int c = 0; c < CURVES; c++) svg_series(&p, curve[c].name, levels, x[c], y[c], SVG_LINE);
+    svg_better(&p);
+    svg_note(&p, "GGX, alpha 0.05. Points are");
+    svg_note(&p, "independent where not Sobol.");
+    snprintf(text, sizeof text, "Marks: 16 to %u samples.", 16u << 2 * (levels - 1));
+    svg_note(&p, text);
+    svg_note(&p, "Grey line: 1 % error.");
+    return svg_end(&p);
+}
+
 static void print_time(double seconds, char mark) {
     const double us = 1e6 * seconds;
     if (us < 1e6) printf(" %c%-8.3g", mark, us);

@@ -6,6 +6,8 @@
  *     svg_keep_off(&p, n, x, y);                      no label is to lie on the marks of these points
  *     svg_label(&p, x, y, "text");                    beside a point, or not at all where there is no room
  *     svg_note(&p, "text");                           a line below the legend
+ *     svg_link(&p, from, to);                         a thin line from (from[0], from[1])
+ *     svg_better(&p);                                 lower left is better
  *     if (svg_end(&p)) fail;
  *
  * Series differ in marker shape and dash pattern, so that no colour is needed to tell them apart (colours: Okabe and
@@ -187,6 +189,23 @@ static inline void svg_series(svg_plot *p, const char *name, int n, const double
     fprintf(p->out, "</g>\n<text fill=\"black\" x=\"%d\" y=\"%.1f\">", SVG_R + 66, ly + 5);
     svg_text(p, name);
     fprintf(p->out, "</text>\n");
+}
+
+/* A thin line between two points, cut at the frame. */
+static inline void svg_link(svg_plot *p, const double *from, const double *to) {
+    if (!p->out) return;
+    fprintf(p->out,
+            "<path clip-path=\"url(#frame)\" stroke=\"#808080\" stroke-width=\"1.5\" d=\"M%.1f %.1fL%.1f %.1f\"/>\n",
+            svg_at(p, 0, from[0]), svg_at(p, 1, from[1]), svg_at(p, 0, to[0]), svg_at(p, 1, to[1]));
+}
+
+/* Says in the lower left corner that it is the place to be, with an arrow to it. */
+static inline void svg_better(svg_plot *p) {
+    if (!p->out) return;
+    fprintf(p->out, "<path stroke=\"#009e73\" stroke-width=\"2.5\" d=\"M%d %dl-18 18m0 -11v11h11\"/>\n", SVG_L + 30,
+            SVG_B - 30);
+    fprintf(p->out, "<text fill=\"#009e73\" font-weight=\"bold\" x=\"%d\" y=\"%d\">lower left is better</text>\n",
+            SVG_L + 38, SVG_B - 16);
 }
 
 static inline void svg_keep_box(svg_plot *p, double left, double right, double top, double bottom) {

@@ -12,8 +12,8 @@
  * densities of reflected directions within 40 2^-24 of the horizon, where lost or not is a matter of rounding. Results
  * that are not finite are counted apart.
  *
- * Writes throughput.csv, throughput.svg (place) and throughput_pdf.svg; prints the table, and which targets are
- * met. */
+ * Writes throughput.csv, and for eight samplers throughput.svg (place) and throughput_pdf.svg; prints the table, and
+ * which targets are met. */
 #define MCS_PACKETS 4
 #include "bench.h"
 #include "mcsample.h"
@@ -652,34 +652,57 @@ static void write_csv(void) {
     bench_close(f, "throughput.csv");
 }
 
-/* One mark per form and sampler. The least error drawn is `least`: smaller ones stand on that line. */
-static void write_svg(const char *file, int pdf, const char *ylabel, double least) {
-    double x[FORMS][SAMPLERS_MAX], y[FORMS][SAMPLERS_MAX], lo[2] = {1, 1}, hi[2] = {0, 0};
-    int n[FORMS] = {0}, k, f;
+/* Eight samplers of all kinds, by the names of their rows. The table and the CSV file have all. */
+static const char *const shown[] = {"disk",     "normal",  "cosine",      "phong",
+                                    "ward iso", "ggx iso", "ggx_bounded", "ashikhmin iso"};
+enum { SHOWN = sizeof shown / sizeof *shown };
+
+static int is_shown(const char *name) {
+    int i;
+    for (i = 0; i < SHOWN; i++)
+        if (strcmp(shown[i], name) == 0) return 1;
+    return 0;
+}
+
+/* A line per sampler, from its textbook form to its array form. Errors below `least` and above `most` stand there. */
+static void write_svg(const char *file, int pdf, const char *ylabel, double least, double most) {
+    static const int form[2] = {TEXT, ARRAY};
+    double x[2][SHOWN], y[2][SHOWN], error[SHOWN], lo = 1, hi = 0;
+    const char *name[SHOWN];
+    char label[64];
+    int n = 0, k, i;
     svg_plot plot;
-    for (k = 0; k < sampler_count; k++) {
-        for (f = 0; f < FORMS; f++) {
-            if (!(ns[k][f][0] > 0)) continue;
-            x[f][n[f]] = spread_of(ns[k][f]).median;
-            y[f][n[f]] = fmax(least, pdf ? error_of[k][f].pdf_max : error_of[k][f].max);
-            svg_range(1, &x[f][n[f]], 1, &lo[0], &hi[0]);
-            svg_range(1, &y[f][n[f]++], 1, &lo[1], &hi[1]);
+    for (k = 0; k < sampler_count && n < SHOWN; k++) {
+        if (!is_shown(samplers[k].name)) continue;
+        for (i = 0; i < 2; i++) {
+            const errors *const e = &error_of[k][form[i]];
+            x[i][n] = spread_of(ns[k][form[i]]).median;
+            y[i][n] = fmin(most, fmax(least, pdf ? e->pdf_max : e->max));
         }
+        error[n] = pdf ? error_of[k][TEXT].pdf_max : error_of[k][TEXT].max;
+        name[n++] = samplers[k].name;
     }
+    for (i = 0; i < 2; i++) svg_range(n, x[i], 1, &lo, &hi);
     svg_begin(&plot, bench_path(file),
-              pdf ? "Run time against error of the density" : "Run time against error of the sample",
-              "time per sample with pdf, ns (median)", ylabel, 1, 1, lo[0] / 1.3, hi[0] * 2, lo[1] / 2, hi[1] * 2);
-    for (f = 0; f < FORMS; f++) svg_keep_off(&plot, n[f], x[f], y[f]);
-    for (k = 0; k < sampler_count; k++) { /* only where there is room between the marks */
-        const double err = pdf ? error_of[k][TEXT].pdf_max : error_of[k][TEXT].max;
-        if (err > 50) svg_label(&plot, spread_of(ns[k][TEXT]).median, err, samplers[k].name);
+              pdf ? "From textbook formulas to mcsample.h: time and error of a density"
+                  : "From textbook formulas to mcsample.h: time and error of a sample",
+              "time per sample with its density, ns", ylabel, 1, 1, lo / 2, hi * 2.5, least / 3, most * 3);
+    for (k = 0; k < n; k++) {
+        const double from[2] = {x[0][k], y[0][k]};
+        const double to[2] = {x[1][k], y[1][k]};
+        svg_link(&plot, from, to);
     }
-    for (f = 0; f < FORMS; f++)
-        if (n[f]) svg_series(&plot, form_name[f], n[f], x[f], y[f], SVG_POINTS);
-    svg_note(&plot, "one mark per sampler and form");
+    for (i = 0; i < 2; i++) svg_keep_off(&plot, n, x[i], y[i]);
+    svg_series(&plot, "mcsample.h, arrays", n, x[1], y[1], SVG_POINTS);
+    svg_series(&plot, "textbook, libm", n, x[0], y[0], SVG_POINTS);
+    for (k = 0; k < n; k++) {
+        snprintf(label, sizeof label, error[k] > most ? "%s: %.0e" : "%s", name[k], error[k]);
+        svg_label(&plot, x[0][k], y[0][k], label);
+    }
+    svg_better(&plot);
+    svg_note(&plot, "a line: one sampler");
     svg_note(&plot, "largest error over all parameters");
-    svg_note(&plot, "text: textbook formula, libm");
-    svg_note(&plot, "n: array form, width by CPU");
+    svg_note(&plot, "a number: error beyond the top");
     if (svg_end(&plot)) {
         fprintf(stderr, "cannot write %s\n", bench_path(file));
         exit(2);
@@ -783,8 +806,8 @@ int main(int argc, char **argv) {
     measure_extras(slice);
     bench_progress("%s", "");
     write_csv();
-    write_svg("throughput.svg", 0, "largest error of the sample, ulp", 0.1);
-    write_svg("throughput_pdf.svg", 1, "largest error of the pdf, 1e-6 (1 + |ln(pdf/peak)|)", 0.01);
+    write_svg("throughput.svg", 0, "largest error of the sample, ulp", 0.3, 1e4);
+    write_svg("throughput_pdf.svg", 1, "largest error of the pdf, 1e-6 (1 + |ln(pdf/peak)|)", 0.01, 1e6);
     print_tables();
     print_targets();
     printf("wrote %s/throughput.csv, throughput.svg, throughput_pdf.svg\n", bench.out);
