@@ -214,6 +214,9 @@
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(__TINYC__)
 #define MCSI_GNU
 #endif
+#if defined(__TINYC__) && __TINYC__ <= 927
+#warning "tcc 0.9.27 loses a variable where a struct is assigned to a parameter: samples of lobes are wrong"
+#endif
 /* Kernels of a graphics processor call these functions. */
 #if defined(__CUDACC__) || defined(__HIPCC__)
 #define MCSI_DEVICE
