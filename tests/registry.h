@@ -75,8 +75,8 @@
 
 /* Samplers of mcsample.h that are not rows, because a table is not a handful of parameters, and a row has two random
  * numbers. */
-static const char *const mcst_exempt[] = {"pwc", "pwl",        "discrete", "alias",
-                                          "env", "env_window", "product",  "ggx_glass"};
+static const char *const mcst_exempt[] = {"pwc",        "pwl",     "discrete",  "alias", "env",
+                                          "env_window", "product", "ggx_glass", "pwc2"};
 
 enum { MCST_P = 6 }; /* numbers in a parameter set: p[0..2] of the sampler, p[3..5] = wo */
 

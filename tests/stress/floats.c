@@ -761,8 +761,11 @@ static void sweep_any(void) {
 }
 
 static int is_line(const mcst_row *of) { return of->shape == MCST_IS_LINE; }
-/* What has a radius that grows with one random number: half-vectors without a direction to the eye. */
-static int is_radial(const mcst_row *of) { return !is_line(of) && !of->has_wo && !(of->traits & MCST_SQUARE); }
+/* What has a radius about +z that grows with one random number: half-vectors without a direction to the eye, but no
+ * directions to a light. */
+static int is_radial(const mcst_row *of) {
+    return !is_line(of) && !of->has_wo && !(of->traits & (MCST_SQUARE | MCST_DISTANCE));
+}
 
 int main(int argc, char **argv) {
     size_t i;
