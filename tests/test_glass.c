@@ -334,7 +334,8 @@ static void check_neighbours(const scene *k, mcs_pcg32 *r) {
     const float u2 = mcs_pcg32_float(r);
     const mcs_brdf s = mcs_ggx_glass_sample(&m, k->eta, wo, u1, u2, 0);
     const mcs_brdf v = mcs_ggx_vndf_sample(&m, wo, u1, u2);
-    CHECK(s.wi.x == v.wi.x && s.wi.y == v.wi.y && s.wi.z == v.wi.z, "reflected as by mcs_ggx_vndf_sample");
+    CHECK(mcst_contracts() || (s.wi.x == v.wi.x && s.wi.y == v.wi.y && s.wi.z == v.wi.z),
+          "reflected as by mcs_ggx_vndf_sample");
     CHECK(fabs((double)s.weight - (double)v.weight) <= 8 * eps, "weight %g, not %g", (double)s.weight,
           (double)v.weight);
     const float f = mcs_fresnel_dielectric(mcs_cos_d(wo, v.wi), k->eta) * mcs_ggx_eval(&m, wo, v.wi);
@@ -456,6 +457,7 @@ int main(int argc, char **argv) {
     mcst_start(argc, argv);
     mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 307);
     mcst_group("glass");
+    if (mcst_contracts()) puts("SKIPPED: the bits of the directions of GGX, as this build contracts a*b + c");
     for (int i = 0; i < SCENES; i++)
         if (mcst_case("chi-square: alphas %g %g, eta %g, cosine %g", (double)scenes[i].alpha_x,
                       (double)scenes[i].alpha_y, (double)scenes[i].eta, (double)scenes[i].cosine))
