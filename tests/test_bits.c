@@ -166,6 +166,7 @@ template <void (*F)(const float *, float *)> __global__ void other(const float *
 #define GPU_LINE(r) {sample<mcst1_##r##_sample>, value<mcst1_##r##_pdf>, value<mcst1_##r##_invert>, NULL, NULL},
 #define GPU_PLANE GPU_LINE
 #define GPU_DIR GPU_LINE
+#define GPU_LIGHT GPU_LINE
 #define GPU_LOBE GPU_LINE
 #define GPU_VLOBE GPU_LINE
 #define GPU_BRDF(r) \
