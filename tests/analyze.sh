@@ -20,7 +20,6 @@ known() {
 bugprone-easily-swappable-parameters	(u1, u2), (ax, ay), (x, y): neighbours of one type are what formulas have
 bugprone-implicit-widening-of-multiplication-result	4 * MCSI_W is 64 at most
 bugprone-macro-parentheses	the argument is the name of a parameter in a declaration, where parentheses do not stand
-redundantInitialization	mcs_sobol_bits: a variable that every branch overwrites has a value before them
 variableScope	C99 style of the header: declarations at the head of the function
 use of uninitialized value 'l\.(ggx|gauss|phong)	mcsi_lobe_make: memset has set all of l to 0 before
 use of uninitialized value '\*tile_	mcsi_product_heaviest: entries below count have been written
