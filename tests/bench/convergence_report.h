@@ -25,6 +25,16 @@ static int fastest(const result *r, int kind) {
     return best;
 }
 
+/* The points of a curve, and what they take of both axes. */
+static void curve_points(const level *v, double x[LEVELS], double y[LEVELS], double lo[2], double hi[2]) {
+    for (int l = 0; l < levels; l++) {
+        x[l] = 1e6 * v[l].seconds;
+        y[l] = v[l].rms;
+    }
+    svg_range(levels, x, 1, &lo[0], &hi[0]);
+    svg_range(levels, y, 1, &lo[1], &hi[1]);
+}
+
 static int plot_panel(const char *file, const material *m, const map *e, const result *r) {
     static const double floor_at = 1e-6, ceiling = 10;
     static const strategy left_out[] = {PRODUCT_4, PRODUCT_16}; /* between their neighbours, with the same error */
@@ -32,15 +42,8 @@ static int plot_panel(const char *file, const material *m, const map *e, const r
     double hi[2] = {0, 0};
     const int plain = fastest(r, INDEPENDENT);
     double x[STRATEGIES + 1][LEVELS], y[STRATEGIES + 1][LEVELS];
-    for (int c = 0; c <= STRATEGIES; c++) {
-        const level *v = c < STRATEGIES ? r->of[c][SOBOL] : r->of[plain][INDEPENDENT];
-        for (int l = 0; l < levels; l++) {
-            x[c][l] = 1e6 * v[l].seconds;
-            y[c][l] = v[l].rms;
-        }
-        svg_range(levels, x[c], 1, &lo[0], &hi[0]);
-        svg_range(levels, y[c], 1, &lo[1], &hi[1]);
-    }
+    for (int c = 0; c <= STRATEGIES; c++)
+        curve_points(c < STRATEGIES ? r->of[c][SOBOL] : r->of[plain][INDEPENDENT], x[c], y[c], lo, hi);
     char text[128];
     snprintf(text, sizeof text, "%s, %.31s", m->name, e->name);
     svg_plot p;
@@ -124,15 +127,7 @@ static int plot_story(const map *maps, int count, const result *all) {
     double lo[2] = {1, 1};
     double hi[2] = {0, 0};
     double x[CURVES][LEVELS], y[CURVES][LEVELS];
-    for (int c = 0; c < CURVES; c++) {
-        const level *v = r->of[curve[c].how][curve[c].kind];
-        for (int l = 0; l < levels; l++) {
-            x[c][l] = 1e6 * v[l].seconds;
-            y[c][l] = v[l].rms;
-        }
-        svg_range(levels, x[c], 1, &lo[0], &hi[0]);
-        svg_range(levels, y[c], 1, &lo[1], &hi[1]);
-    }
+    for (int c = 0; c < CURVES; c++) curve_points(r->of[curve[c].how][curve[c].kind], x[c], y[c], lo, hi);
     char text[128];
     const double sobol = 1e6 * price_of(r, r->of[MIS_POWER][SOBOL]).seconds;
     const double plain = 1e6 * price_of(r, r->of[MIS_POWER][INDEPENDENT]).seconds;
