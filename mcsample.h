@@ -117,7 +117,7 @@
  *   [square]      a bilinear density on the unit square                    cosines over a light of four corners
  *   [disk]        points on a disk                                         lenses, round lights
  *   [triangle]    points on a triangle                                     lights made of triangles
- *   [lights]      directions towards a ball or a disk                      lights, seen from a shaded point
+ *   [lights]      directions towards balls, disks, rectangles, triangles   lights, seen from a shaded point
  *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte surfaces, spherical lights
  *   [media]       henyey_greenstein, rayleigh, von_mises_fisher            fog, skin, clear air; guiding
  *   [frame]       local and world coordinates                              every shaded point
@@ -717,8 +717,8 @@ MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, f
 #endif
 
 /* ==== [lights] directions towards a light =========================================================================
- * Maps from the unit square to the directions in which a light is seen. The point that is lit is the origin, and all
- * is in one frame, that of the world or any other.
+ * Maps from the unit square to the directions in which a light is seen. All is in one frame, that of the world or any
+ * other. For balls and disks, the point that is lit is the origin.
  *
  *   w         a direction, from the point to the light
  *
@@ -781,6 +781,95 @@ MCS_FN mcs_vec2 mcs_disk_light_invert(mcs_vec3 centre, mcs_vec3 normal, float ra
 MCS_API void mcs_disk_light_sample_n(mcs_vec3 centre, mcs_vec3 normal, float radius, size_t n, const float *u1,
                                      const float *u2, float *x, float *y, float *z, float *pdf, float *distance);
 #endif
+
+/* ---- spherical_rectangle and spherical_triangle: lights that are prepared for a point p ----
+ * Directions are uniform in the solid angle of the light, and the maps are continuous: neither the distance nor the
+ * cosine at the light is left in the estimate. All is in the space of the corners. Lights are seen from both sides.
+ * Small, distant, thin and grazing ones are as exact as others. A light is what the floats say that are given.
+ *
+ * density    1/(solid angle); 0 in directions that miss the light, and for bad input. It is a member of the prepared
+ *            light, too, for those who know that a ray hits. Where p is in the plane of the light, all densities are 0,
+ *            and samples are the direction to its centre. The same holds for a rectangle whose plane is nearer than
+ *            1e-18 of its size and distance, and for a triangle where p is over it, or over a side, and nearer to it
+ *            than about 1e-7 of its size.
+ * bad        A light is bad if one of its numbers is not finite or its area is 0.
+ * accuracy   w within 1.1 x 2^-24 of the exact map by coordinate, places on the light within 1.1 x 2^-24, pdf within
+ *            2e-7 of itself, for solid angles of 1e-12 and more and lights 1e5 times as long as wide
+ * source     Urena, Fajardo and King 2013, "An area-preserving parametrization for spherical rectangles"; Arvo 1995,
+ *            "Stratified sampling of spherical triangles"; Van Oosterom and Strackee 1983, "The solid angle of a plane
+ *            triangle" */
+
+/* A direction sampled towards such a light, and where it meets the light. */
+typedef struct {
+    mcs_vec3 w; /* of unit length */
+    float pdf;  /* per solid angle */
+    float x, y; /* coordinates on the light */
+} mcs_light_point;
+
+/* What prepared lights consist of. */
+typedef struct {
+    double x, y, z;
+} mcsi_vec3_d;
+
+/* ---- spherical_rectangle: the light with the corners c, c + edge_x, c + edge_y and c + edge_x + edge_y ----
+ * u1 goes along edge_x, in proportion to the solid angle of what is passed, and u2 along edge_y. So do the members x
+ * and y of a sample, in [0,1]: the place on the light is c + x edge_x + y edge_y. If the edges are not at right angles,
+ * edge_y counts without its part along edge_x.
+ *
+ * cost       8 divisions and 6 square roots, mostly in double; up to 8 arctangents to prepare it, 4 to invert
+ * functions  mcs_spherical_rectangle_make, mcs_spherical_rectangle_sample, mcs_spherical_rectangle_pdf,
+ *            mcs_spherical_rectangle_invert, mcs_spherical_rectangle_sample_n for arrays */
+typedef struct {
+    mcsi_vec3_d axis_x, axis_y, normal; /* of unit length; the normal points away from p */
+    double x0, x1, y0, y1;              /* the sides seen from p, in distances of p from the plane */
+    double size_y0, size_y1;            /* |y0| and |y1| */
+    double per_x, per_y;                /* 1/(x1 - x0), 1/(y1 - y0) */
+    double before, angle, behind, rest; /* halves of solid angles whose sum is pi: see the bodies */
+    double scale;                       /* of places along x: see there, too */
+    double pdf;                         /* 1/(solid angle), or 0 */
+} mcs_spherical_rectangle;
+MCS_FN mcs_spherical_rectangle mcs_spherical_rectangle_make(mcs_vec3 p, mcs_vec3 c, mcs_vec3 edge_x, mcs_vec3 edge_y);
+MCS_FN mcs_light_point mcs_spherical_rectangle_sample(const mcs_spherical_rectangle *l, float u1, float u2);
+MCS_FN float mcs_spherical_rectangle_pdf(const mcs_spherical_rectangle *l, mcs_vec3 w);
+MCS_FN mcs_vec2 mcs_spherical_rectangle_invert(const mcs_spherical_rectangle *l, mcs_vec3 w);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_spherical_rectangle_sample_n(const mcs_spherical_rectangle *l, size_t n, const float *u1,
+                                              const float *u2, float *x, float *y, float *z, float *pdf, float *light_x,
+                                              float *light_y);
+#endif
+
+/* ---- spherical_triangle: the light with the corners a, b and c ----
+ * u1 goes from corner a to c, in proportion to the solid angle of what is passed, and u2 from b to that side. The
+ * members x and y of a sample are the weights of a and b, as in [triangle]: the place on the light is
+ * x a + y b + (1 - x - y) c, and 1 - x - y is not negative in float either.
+ *
+ * cost       4 divisions and 2 square roots, mostly in double; 2 arctangents to prepare it, 1 to invert
+ * functions  mcs_spherical_triangle_make, mcs_spherical_triangle_sample, mcs_spherical_triangle_pdf,
+ *            mcs_spherical_triangle_invert, mcs_spherical_triangle_sample_n for arrays */
+typedef struct {
+    mcsi_vec3_d a, b, c;                /* directions to the corners, of unit length */
+    mcsi_vec3_d past_a, past_b, past_c; /* normals of the sides past which a, b, c are, inwards */
+    double per_a, per_b, per_c;         /* 1/(distances of the corners) */
+    double cos_bc, cos_ca, cos_ab;      /* of half the angles between the corners */
+    double angle, rest;                 /* half the solid angle, and pi less that */
+    double pdf;                         /* 1/(solid angle), or 0 */
+} mcs_spherical_triangle;
+MCS_FN mcs_spherical_triangle mcs_spherical_triangle_make(mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c);
+MCS_FN mcs_light_point mcs_spherical_triangle_sample(const mcs_spherical_triangle *l, float u1, float u2);
+MCS_FN float mcs_spherical_triangle_pdf(const mcs_spherical_triangle *l, mcs_vec3 w);
+MCS_FN mcs_vec2 mcs_spherical_triangle_invert(const mcs_spherical_triangle *l, mcs_vec3 w);
+#ifndef MCS_NO_BATCH
+MCS_API void mcs_spherical_triangle_sample_n(const mcs_spherical_triangle *l, size_t n, const float *u1,
+                                             const float *u2, float *x, float *y, float *z, float *pdf, float *weight_a,
+                                             float *weight_b);
+#endif
+
+/* mcs_pdf_to_solid_angle makes a density per area of a light one per solid angle, times distance^2/|cosine|, and
+ * mcs_pdf_to_area the reverse, both within an ulp. `distance`, 0 or more, is that of the place on the light, and
+ * `cosine` that of the angle between the direction and the normal there. The result is 0 where one of the three is 0:
+ * such a sample brings no light. */
+MCS_FN float mcs_pdf_to_solid_angle(float pdf, float distance, float cosine);
+MCS_FN float mcs_pdf_to_area(float pdf, float distance, float cosine);
 
 #endif
 
@@ -2402,7 +2491,7 @@ typedef double mcsi_d;
 /* ---- batches: the arrays of one call ----------------------------------------------------------------------------- */
 
 #if MCSI_BASE_W > 0
-enum { MCSI_IN_MAX = 3, MCSI_OUT_MAX = 5, MCSI_LANES_MAX = 16 };
+enum { MCSI_IN_MAX = 3, MCSI_OUT_MAX = 6, MCSI_LANES_MAX = 16 };
 /* A loop takes whole vectors as long as there are some. Then it takes one more over a copy of what remains, so that it
  * touches nothing beyond n. */
 typedef struct {
@@ -2471,6 +2560,11 @@ MCSI_LOUD
 /* Types of the scalar pass, for passes in which mcs_vec3 and the like are packets. */
 typedef mcs_vec3 mcsi_scalar_vec3;
 typedef mcs_frame mcsi_scalar_frame;
+#ifndef MCS_NO_LIGHTS
+typedef mcs_vec2 mcsi_scalar_vec2;
+typedef mcs_spherical_rectangle mcsi_scalar_spherical_rectangle;
+typedef mcs_spherical_triangle mcsi_scalar_spherical_triangle;
+#endif
 #ifndef MCS_NO_LOBES
 typedef mcs_phong mcsi_scalar_phong;
 typedef mcsi_slopes mcsi_scalar_slopes;
@@ -3139,17 +3233,15 @@ MCSI_CORE void mcsi_out_sample2(const mcsi_batch *b, mcs_sample2 s) {
     mcsi_out(b, 1, s.y);
     mcsi_out(b, 2, s.pdf);
 }
-MCSI_CORE void mcsi_out_dir(const mcsi_batch *b, mcs_dir s) {
-    mcsi_out(b, 0, s.w.x);
-    mcsi_out(b, 1, s.w.y);
-    mcsi_out(b, 2, s.w.z);
-    mcsi_out(b, 3, s.pdf);
+MCSI_CORE void mcsi_out_towards(const mcsi_batch *b, mcs_vec3 w, mcs_f pdf) {
+    mcsi_out(b, 0, w.x);
+    mcsi_out(b, 1, w.y);
+    mcsi_out(b, 2, w.z);
+    mcsi_out(b, 3, pdf);
 }
+MCSI_CORE void mcsi_out_dir(const mcsi_batch *b, mcs_dir s) { mcsi_out_towards(b, s.w, s.pdf); }
 MCSI_CORE void mcsi_out_brdf(const mcsi_batch *b, mcs_brdf s) {
-    mcsi_out(b, 0, s.wi.x);
-    mcsi_out(b, 1, s.wi.y);
-    mcsi_out(b, 2, s.wi.z);
-    mcsi_out(b, 3, s.pdf);
+    mcsi_out_towards(b, s.wi, s.pdf);
     mcsi_out(b, 4, s.weight);
 }
 #endif
@@ -4085,7 +4177,17 @@ typedef struct {
     mcs_vec3 w;
     mcs_f pdf, distance;
 } mcs_light;
+typedef struct {
+    mcs_vec3 w;
+    mcs_f pdf, x, y;
+} mcs_light_point;
+typedef struct {
+    mcsi_d x, y, z;
+} mcsi_vec3_d;
 #endif
+
+#define MCSI_PI 3.141592653589793
+#define MCSI_DOT_D(a, b) ((a).x * (b).x + (a).y * (b).y + (a).z * (b).z)
 
 /* Makes a number >= 0 its square root: that of a float, and one step of Newton's method. Doubles are not passed by
  * value, as gcc would tell of its ABI. */
@@ -4096,10 +4198,11 @@ MCSI_CORE void mcsi_wide_sqrt(mcsi_d *x) {
     *x = MCSI_WIDEN(root) + (*x - MCSI_WIDEN(root) * MCSI_WIDEN(root)) * MCSI_WIDEN(slope);
 }
 
-/* A vector in double. */
-typedef struct {
-    mcsi_d x, y, z;
-} mcsi_wide_vec3;
+MCSI_CORE void mcsi_widen3(const mcs_vec3 *v, mcsi_vec3_d *d) {
+    d->x = MCSI_WIDEN(v->x);
+    d->y = MCSI_WIDEN(v->y);
+    d->z = MCSI_WIDEN(v->z);
+}
 
 /* The unit vector n of some v, and what the frame of mcs_frame_make has around it: its sign and a. */
 typedef struct {
@@ -4109,39 +4212,37 @@ typedef struct {
 
 /* The length of v is in [1e-18, 1e19]. */
 MCSI_CORE mcsi_axis mcsi_axis_make(mcs_vec3 v) {
-    const mcsi_d x = MCSI_WIDEN(v.x);
-    const mcsi_d y = MCSI_WIDEN(v.y);
-    const mcsi_d z = MCSI_WIDEN(v.z);
+    mcsi_vec3_d d;
+    mcsi_widen3(&v, &d);
     mcsi_axis axis;
-    axis.length2 = x * x + y * y + z * z;
+    axis.length2 = MCSI_DOT_D(d, d);
     mcsi_d length = axis.length2;
     mcsi_wide_sqrt(&length);
     axis.inverse = 1.0 / length;
-    axis.n_x = axis.inverse * x;
-    axis.n_y = axis.inverse * y;
-    axis.n_z = axis.inverse * z;
+    axis.n_x = axis.inverse * d.x;
+    axis.n_y = axis.inverse * d.y;
+    axis.n_z = axis.inverse * d.z;
     axis.sign = MCSI_WIDEN(mcsi_with_sign(mcs_set(1.0f), v.z));
     axis.a = -1.0 / (axis.sign + axis.n_z);
     return axis;
 }
 /* x s + y t + z n: both s and t have n as a factor of what is not in one coordinate alone. */
-MCSI_CORE mcs_vec3 mcsi_from_axis(const mcsi_axis *axis, const mcsi_wide_vec3 *v) {
+MCSI_CORE mcs_vec3 mcsi_from_axis(const mcsi_axis *axis, const mcsi_vec3_d *v) {
     const mcsi_d tilt = axis->sign * axis->n_x * v->x + axis->n_y * v->y;
     const mcsi_d along = axis->a * tilt + v->z;
     return mcsi_vec3(MCSI_NARROW(v->x + axis->n_x * along), MCSI_NARROW(axis->sign * v->y + axis->n_y * along),
                      MCSI_NARROW(axis->n_z * v->z - tilt));
 }
 /* (w.s, w.t, w.n) */
-MCSI_CORE mcsi_wide_vec3 mcsi_to_axis(const mcsi_axis *axis, mcs_vec3 w) {
-    const mcsi_d x = MCSI_WIDEN(w.x);
-    const mcsi_d y = MCSI_WIDEN(w.y);
-    const mcsi_d z = MCSI_WIDEN(w.z);
-    const mcsi_d level = axis->n_x * x + axis->n_y * y;
-    const mcsi_d along = axis->a * level - z;
-    mcsi_wide_vec3 v;
-    v.x = x + axis->sign * axis->n_x * along;
-    v.y = axis->sign * y + axis->n_y * along;
-    v.z = level + axis->n_z * z;
+MCSI_CORE mcsi_vec3_d mcsi_to_axis(const mcsi_axis *axis, mcs_vec3 w) {
+    mcsi_vec3_d d;
+    mcsi_widen3(&w, &d);
+    const mcsi_d level = axis->n_x * d.x + axis->n_y * d.y;
+    const mcsi_d along = axis->a * level - d.z;
+    mcsi_vec3_d v;
+    v.x = d.x + axis->sign * axis->n_x * along;
+    v.y = axis->sign * d.y + axis->n_y * along;
+    v.z = level + axis->n_z * d.z;
     return v;
 }
 MCSI_CORE mcs_i mcsi_place_ok(mcs_vec3 p) {
@@ -4215,7 +4316,7 @@ MCSI_CORE mcs_light mcsi_ball_draw(const mcsi_ball *b, mcs_f u1, mcs_f u2) {
     mcsi_wide_sqrt(&sine);
     mcs_f s, c;
     mcsi_sincos_turns(u2, &s, &c);
-    mcsi_wide_vec3 v;
+    mcsi_vec3_d v;
     v.x = sine * MCSI_WIDEN(c);
     v.y = sine * MCSI_WIDEN(s);
     v.z = 1.0 - t;
@@ -4232,7 +4333,7 @@ MCSI_SAMPLE mcs_light mcs_ball_sample(mcs_vec3 centre, mcs_f radius, mcs_f u1, m
 #ifdef MCSI_PUBLIC
 /* w in the frame about the centre. */
 MCSI_CORE mcs_vec3 mcsi_ball_local(const mcsi_ball *b, mcs_vec3 w) {
-    const mcsi_wide_vec3 v = mcsi_to_axis(&b->axis, w);
+    const mcsi_vec3_d v = mcsi_to_axis(&b->axis, w);
     return mcsi_vec3(MCSI_NARROW(v.x), MCSI_NARROW(v.y), MCSI_NARROW(v.z));
 }
 /* A direction at the angle d beyond the rim has 1 - cos = k + d sin + d^2/2, about. */
@@ -4260,7 +4361,7 @@ MCSI_FN mcs_vec2 mcs_ball_invert(mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
 typedef struct {
     mcs_i ok;
     mcsi_axis axis;
-    mcsi_wide_vec3 centre;
+    mcsi_vec3_d centre;
     mcsi_d radius, per_area; /* 1 / the area */
     mcsi_d further;          /* further away than any point of the disk */
 } mcsi_disk_light;
@@ -4307,7 +4408,7 @@ MCSI_CORE mcs_light mcsi_disk_light_draw(const mcsi_disk_light *d, mcs_f u1, mcs
     mcsi_d distance = distance2 + MCSI_WIDEN(mcsi_sel(apart, zero, one));
     mcsi_wide_sqrt(&distance);
     const mcsi_d inverse = 1.0 / distance;
-    mcsi_wide_vec3 v;
+    mcsi_vec3_d v;
     v.x = x * inverse;
     v.y = y * inverse;
     v.z = d->centre.z * inverse;
@@ -4334,7 +4435,7 @@ typedef struct {
 
 MCSI_CORE mcsi_disk_hit mcsi_disk_light_hit(const mcsi_disk_light *d, mcs_vec3 w) {
     const mcs_f one = mcs_set(1.0f);
-    const mcsi_wide_vec3 v = mcsi_to_axis(&d->axis, w);
+    const mcsi_vec3_d v = mcsi_to_axis(&d->axis, w);
     const mcsi_d side = MCSI_WIDEN(mcsi_with_sign(one, MCSI_NARROW(v.z)));
     const mcsi_d height = side * d->centre.z;
     const mcs_f h = MCSI_NARROW(height);
@@ -4370,12 +4471,570 @@ MCSI_FN mcs_vec2 mcs_disk_light_invert(mcs_vec3 centre, mcs_vec3 normal, mcs_f r
 }
 #endif
 
+/* ---- lights that are prepared ----
+ * They are prepared, and directions inverted, one lane at a time by functions of the scalar pass; what draws and what
+ * tells a density are lanes. */
+
+/* sin(x)/x for x in [0, pi], where rest is pi - x; 2^-51. The sine is an entire function of x (pi - x) and vanishes
+ * with it: a polynomial of that keeps its digits at both ends. */
+MCSI_CORE void mcsi_sine_over_x(const mcsi_d *x, const mcsi_d *rest, mcsi_d *result) {
+    const mcsi_d v = *x * *rest;
+    const mcsi_d upper = 2.4609342067254438e-07 +
+                         v * (1.8975210143928538e-09 + v * (1.0554905298115053e-11 + v * 4.5903691425510457e-14));
+    *result =
+        *rest * (0.3183098861837907 +
+                 v * (0.032251534433199816 + v * (0.0011602715472374097 + v * (2.1586579370149189e-05 + v * upper))));
+}
+/* 1/sqrt(x), x in [0, 1e38], but at most 6e18; 2^-52 from 1e-37. That of a float times the series of 1/sqrt(1 - d),
+ * where x r^2 is 1 - d. */
+MCSI_CORE void mcsi_inverse_root(const mcsi_d *x, mcsi_d *result) {
+    const mcsi_d r = MCSI_WIDEN(1.0f / mcsi_sqrt(mcsi_max(MCSI_NARROW(*x), mcs_set(1e-37f))));
+    const mcsi_d d = 1.0 - *x * (r * r);
+    *result = r + r * (d * (0.5 + 0.375 * d));
+}
+/* s u + t v */
+MCSI_CORE void mcsi_combine(const mcsi_d *s, const mcsi_vec3_d *u, const mcsi_d *t, const mcsi_vec3_d *v,
+                            mcsi_vec3_d *result) {
+    result->x = *s * u->x + *t * v->x;
+    result->y = *s * u->y + *t * v->y;
+    result->z = *s * u->z + *t * v->z;
+}
+
+/* Copies a prepared light of the scalar pass, which is nothing but doubles, to lane k of one of lanes, and back. */
+MCSI_CORE void mcsi_put_lane(void *lanes, const void *one, size_t bytes, int k) {
+    for (size_t i = 0; i < bytes; i += sizeof(double))
+        MCSI_COPY((char *)lanes + i * MCSI_W + (size_t)k * sizeof(double), (const char *)one + i, sizeof(double));
+}
+#ifdef MCSI_PUBLIC
+MCSI_CORE void mcsi_take_lane(const void *lanes, void *one, size_t bytes, int k) {
+    for (size_t i = 0; i < bytes; i += sizeof(double))
+        MCSI_COPY((char *)one + i, (const char *)lanes + i * MCSI_W + (size_t)k * sizeof(double), sizeof(double));
+}
+MCSI_CORE mcsi_scalar_vec3 mcsi_lane3(const mcs_vec3 *v, int k) {
+    mcsi_scalar_vec3 one;
+    one.x = MCSI_LANE(v->x, k);
+    one.y = MCSI_LANE(v->y, k);
+    one.z = MCSI_LANE(v->z, k);
+    return one;
+}
+#endif
+
+#if MCSI_W == 1
+/* The angle of (x, y), y >= 0, in [0, pi]; 2^-51. 0 for (0, 0). It is the arctangent of a quotient up to tan(pi/8). */
+MCS_FN double mcsi_angle_d(double y, double x) {
+    const double size = x < 0.0 ? -x : x;
+    const int steep = y > size;
+    const double a = steep ? size / y : size > 0.0 ? y / size : 0.0;
+    const int above = a > 0.41421356237309503;
+    const double t = above ? (a - 1.0) / (a + 1.0) : a;
+    const double z = t * t;
+    double s = 0.056883492268090105 + z * (-0.043480522157164625 + z * 0.021135373157693245);
+    s = -0.090907730748084138 + z * (0.076899534963068578 + z * (-0.066402339304294086 + z * s));
+    s = -0.14285714180976467 + z * (0.11111106180455945 + z * s);
+    s = -0.33333333333328439 + z * (0.1999999999885511 + z * s);
+    const double angle = (above ? 0.25 * MCSI_PI : 0.0) + (t + t * (z * s));
+    const double turned = steep ? 0.5 * MCSI_PI - angle : angle;
+    return x < 0.0 ? MCSI_PI - turned : turned;
+}
+MCS_FN mcsi_vec3_d mcsi_make3_d(double x, double y, double z) {
+    mcsi_vec3_d v;
+    v.x = x;
+    v.y = y;
+    v.z = z;
+    return v;
+}
+MCS_FN mcsi_vec3_d mcsi_from_to_d(mcs_vec3 p, mcs_vec3 q) {
+    return mcsi_make3_d((double)q.x - (double)p.x, (double)q.y - (double)p.y, (double)q.z - (double)p.z);
+}
+MCS_FN mcsi_vec3_d mcsi_widened_d(mcs_vec3 v) { return mcsi_make3_d((double)v.x, (double)v.y, (double)v.z); }
+/* a + s b */
+MCS_FN mcsi_vec3_d mcsi_add_d(mcsi_vec3_d a, double s, mcsi_vec3_d b) {
+    return mcsi_make3_d(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
+}
+MCS_FN mcsi_vec3_d mcsi_cross_d(mcsi_vec3_d a, mcsi_vec3_d b) {
+    return mcsi_make3_d(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+MCS_FN double mcsi_length_d(mcsi_vec3_d a) { return mcsi_sqrt_d(MCSI_DOT_D(a, a)); }
+/* Makes a a unit vector and returns 1 over its length; or +z and 0 where that length is 0 or not finite. */
+MCS_FN double mcsi_unit_d(mcsi_vec3_d *a) {
+    const double length = mcsi_length_d(*a);
+    const int ok = length > 0.0 && length <= 1e150;
+    const double inverse = ok ? 1.0 / length : 0.0;
+    *a = ok ? mcsi_make3_d(a->x * inverse, a->y * inverse, a->z * inverse) : mcsi_make3_d(0.0, 0.0, 1.0);
+    return inverse;
+}
+MCS_FN double mcsi_at_most_d(double x, double most) { return x < most ? x : most; }
+/* The density for half a solid angle. */
+MCS_FN double mcsi_per_angle_d(double angle) { return angle > 1e-38 ? 0.5 / angle : 3.4028234663852886e38; }
+#endif
+
+/* ---- spherical_rectangle ----
+ * Lengths are in units of the distance of p from the plane of the light, which is z = 1. The strip of the plane from y0
+ * to y1 has the solid angle t between 0 and x, with x = s/sqrt(1 - s^2) and, by Urena et al.,
+ *
+ *   s^2 = sin^2(t) / (b0^2 + b1^2 - 2 b0 b1 cos(t)),   b = y/sqrt(1 + y^2) = sin(e)
+ *
+ * These differences cancel where the rectangle is small, distant or grazing. As products they are
+ *
+ *   1/x^2 = 4 sin((d + t)/2) sin((d - t)/2) cos((g + t)/2) cos((g - t)/2) / sin^2(t),   d = e1 - e0, g = e1 + e0
+ *
+ * (d + t)/2 is half the solid angle of the strip before x, from x = -infinity, and (d - t)/2 half of that behind x.
+ * Both are known as sums: half that of the strip before or behind the rectangle, and the share of the rectangle's own
+ * that u1 gives. `rest` is pi - d. The products of the sines and of the cosines differ by cos(e0) cos(e1), so that with
+ * size = 1/(cos(e0) cos(e1)) and q = size sin(before) sin(behind)
+ *
+ *   x = size sin(before - behind) / (2 sqrt(q (q + 1)))
+ *
+ * The member `scale` is size/(y1 - y0), as the root is taken of q/(y1 - y0)^2, which is a float for any rectangle.
+ *
+ * At that x, y is such that h = y/sqrt(1 + x^2 + y^2) is linear in u2. 1 + h and 1 - h are known of both ends without
+ * cancellation, so are their means, and sqrt(1 - h^2) is the root of their product. */
+#if MCSI_W > 1
+typedef struct {
+    mcsi_vec3_d axis_x, axis_y, normal;
+    mcsi_d x0, x1, y0, y1, size_y0, size_y1, per_x, per_y, before, angle, behind, rest, scale, pdf;
+} mcs_spherical_rectangle;
+#endif
+#if MCSI_W == 1
+MCS_FN double mcsi_distance_d(double x, double y) { return mcsi_sqrt_d(1.0 + x * x + y * y); }
+/* Half the solid angle of the strip behind x, of a triangle with a corner at infinity, by Van Oosterom and Strackee.
+ * For x < 0 it is what the strip behind -x leaves. r0 r1 + y0 y1 is a difference of squares over a sum where it
+ * cancels. */
+MCS_FN double mcsi_half_behind_d(const mcs_spherical_rectangle *l, double x) {
+    const double size = x < 0.0 ? -x : x;
+    const double height = 1.0 / l->per_y;
+    const double r0 = mcsi_distance_d(x, l->y0);
+    const double r1 = mcsi_distance_d(x, l->y1);
+    const double product = l->y0 * l->y1;
+    const double d2 = 1.0 + x * x;
+    const double cosine =
+        product < 0.0 ? d2 * (d2 + l->y0 * l->y0 + l->y1 * l->y1) / (r0 * r1 - product) : r0 * r1 + product;
+    const double angle = mcsi_angle_d(height, cosine + (size * (r0 + r1) + d2));
+    return x < 0.0 ? mcsi_angle_d(height, 1.0 + product) - angle : angle;
+}
+/* Half the solid angle of the rectangle from x0 to x, whose area is given: that of two triangles, or what other angles
+ * leave where that is more exact. */
+MCS_FN double mcsi_half_up_to_d(const mcs_spherical_rectangle *l, double x, double area) {
+    const double y0 = l->y0;
+    const double y1 = l->y1;
+    const double r00 = mcsi_distance_d(l->x0, y0);
+    const double r01 = mcsi_distance_d(l->x0, y1);
+    const double r10 = mcsi_distance_d(x, y0);
+    const double r11 = mcsi_distance_d(x, y1);
+    const double along = 1.0 + l->x0 * x;
+    const double across = r00 * r11 + (along + y0 * y1);
+    const double below = r10 * across + r11 * (along + y0 * y0) + r00 * (1.0 + x * x + y0 * y1);
+    const double above = r01 * across + r00 * (along + y1 * y1) + r11 * (1.0 + l->x0 * l->x0 + y0 * y1);
+    const double angle = mcsi_angle_d(area, below) + mcsi_angle_d(area, above);
+    const double left = ((MCSI_PI - l->rest) - l->before) - mcsi_half_behind_d(l, x);
+    return angle <= 1e-4 ? angle : left > 1e-38 ? left : 1e-38;
+}
+/* All members that x0, y0, per_x and per_y say. */
+MCS_FN void mcsi_spherical_rectangle_finish(mcs_spherical_rectangle *l) {
+    l->x1 = l->x0 + 1.0 / l->per_x;
+    l->y1 = l->y0 + 1.0 / l->per_y;
+    l->size_y0 = l->y0 < 0.0 ? -l->y0 : l->y0;
+    l->size_y1 = l->y1 < 0.0 ? -l->y1 : l->y1;
+    l->scale = l->per_y * mcsi_distance_d(0.0, l->y0) * mcsi_distance_d(0.0, l->y1);
+    l->before = mcsi_half_behind_d(l, -l->x0);
+    l->behind = mcsi_half_behind_d(l, l->x1);
+    l->rest = mcsi_angle_d(1.0 / l->per_y, -(1.0 + l->y0 * l->y1));
+    l->angle = mcsi_half_up_to_d(l, l->x1, 1.0 / (l->per_x * l->per_y));
+    l->pdf = mcsi_per_angle_d(l->angle);
+}
+/* Returns whether the light is good. A light that is not to be drawn from becomes a small one about its centre. */
+MCS_FN int mcsi_spherical_rectangle_prepare(mcs_spherical_rectangle *l, mcs_vec3 p, mcs_vec3 c, mcs_vec3 edge_x,
+                                            mcs_vec3 edge_y) {
+    const mcsi_vec3_d corner = mcsi_from_to_d(p, c);
+    const mcsi_vec3_d along_y = mcsi_widened_d(edge_y);
+    l->axis_x = mcsi_widened_d(edge_x);
+    l->normal = mcsi_cross_d(l->axis_x, along_y);
+    mcsi_vec3_d centre = mcsi_add_d(mcsi_add_d(corner, 0.5, l->axis_x), 0.5, along_y);
+    const double volume = MCSI_DOT_D(corner, l->normal);
+    const double per_edge = mcsi_unit_d(&l->axis_x);
+    const double per_area = mcsi_unit_d(&l->normal);
+    const double z = volume < 0.0 ? -volume * per_area : volume * per_area;
+    const int ok = per_area > 0.0 && mcsi_length_d(corner) <= 1e60;
+    l->axis_y = mcsi_cross_d(l->normal, l->axis_x);
+    if (volume < 0.0) l->normal = mcsi_make3_d(-l->normal.x, -l->normal.y, -l->normal.z);
+    const double extent = mcsi_length_d(corner) + mcsi_length_d(along_y) + (ok ? 1.0 / per_edge : 0.0);
+    if (ok && z > 1e-18 * extent) {
+        l->x0 = MCSI_DOT_D(corner, l->axis_x) / z;
+        l->y0 = MCSI_DOT_D(corner, l->axis_y) / z;
+        l->per_x = mcsi_at_most_d(z * per_edge, 1e30);
+        l->per_y = mcsi_at_most_d(z * (per_area / per_edge), 1e30);
+        mcsi_spherical_rectangle_finish(l);
+        return 1;
+    }
+    mcsi_unit_d(&centre);
+    l->normal = centre;
+    l->axis_x = l->axis_y = mcsi_make3_d(0.0, 0.0, 0.0);
+    l->x0 = l->y0 = -0.5e-9;
+    l->per_x = l->per_y = 1e9;
+    mcsi_spherical_rectangle_finish(l);
+    l->pdf = 0.0;
+    return ok;
+}
+/* u of the direction w; what misses the light is moved to its side. */
+MCS_FN mcs_vec2 mcsi_spherical_rectangle_find(const mcs_spherical_rectangle *l, mcs_vec3 w) {
+    mcs_vec2 u = {0.0f, 0.0f};
+    const mcsi_vec3_d direction = mcsi_widened_d(w);
+    const double z = MCSI_DOT_D(l->normal, direction);
+    if (!(z > 0.0)) return u;
+    const double w_x = MCSI_DOT_D(l->axis_x, direction);
+    const double w_y = MCSI_DOT_D(l->axis_y, direction);
+    const double x = w_x < l->x0 * z ? l->x0 : w_x > l->x1 * z ? l->x1 : w_x / z;
+    const double y = w_y < l->y0 * z ? l->y0 : w_y > l->y1 * z ? l->y1 : w_y / z;
+    u.x = (float)mcsi_at_most_d(mcsi_half_up_to_d(l, x, (x - l->x0) / l->per_y) / l->angle, 1.0);
+    const double r = mcsi_distance_d(x, y);
+    const double r0 = mcsi_distance_d(x, l->y0);
+    const double r1 = mcsi_distance_d(x, l->y1);
+    /* h - h0 and h1 - h0: of y0 and y to one side, their difference is that of squares over a sum */
+    const double part =
+        y * l->y0 > 0.0 ? (1.0 + x * x) * (y - l->y0) * (y + l->y0) / (y * r0 + l->y0 * r) : y * r0 - l->y0 * r;
+    const double all = l->y1 * l->y0 > 0.0 ? (1.0 + x * x) * (l->y1 + l->y0) / (l->per_y * (l->y1 * r0 + l->y0 * r1))
+                                           : l->y1 * r0 - l->y0 * r1;
+    u.y = (float)(part / r / (all / r1));
+    return u;
+}
+#endif
+
+/* x for u1. */
+MCSI_CORE void mcsi_spherical_rectangle_x(const mcs_spherical_rectangle *l, const mcsi_d *u, mcsi_d *x) {
+    const mcsi_d before = l->before + *u * l->angle;
+    const mcsi_d behind = l->behind + (1.0 - *u) * l->angle;
+    const mcsi_d not_before = l->rest + behind;
+    const mcsi_d not_behind = l->rest + before;
+    mcsi_d sine_before;
+    mcsi_d sine_behind;
+    mcsi_sine_over_x(&before, &not_before, &sine_before);
+    mcsi_sine_over_x(&behind, &not_behind, &sine_behind);
+    /* the sine of |before - behind|, which pi exceeds by `rest` and twice the smaller one */
+    const mcsi_d t = before - behind;
+    const mcs_f zero = mcs_set(0.0f);
+    const mcsi_d left = MCSI_WIDEN(mcsi_sel(MCSI_NARROW(t) < 0.0f, mcs_set(1.0f), zero));
+    const mcsi_d size = t * (1.0 - 2.0 * left);
+    const mcsi_d not_size = l->rest + 2.0 * (left * before + (1.0 - left) * behind);
+    mcsi_d sine;
+    mcsi_sine_over_x(&size, &not_size, &sine);
+    const mcsi_d product = l->scale * (before * sine_before) * (behind * sine_behind);
+    const mcsi_d q = product * l->per_y;
+    const mcsi_d q_plus_1 = 1.0 + product * (l->y1 - l->y0);
+    mcsi_d root;
+    mcsi_d other_root;
+    mcsi_inverse_root(&q, &root);
+    mcsi_inverse_root(&q_plus_1, &other_root);
+    *x = 0.5 * l->scale * (t * sine) * root * other_root;
+}
+/* 1 + h and 1 - h at the end y of the line at x, for d2 = 1 + x^2. */
+MCSI_CORE void mcsi_spherical_rectangle_end(const mcsi_d *d2, const mcsi_d *y, const mcsi_d *size_y, mcsi_d *plus,
+                                            mcsi_d *minus) {
+    const mcsi_d r2 = *d2 + *y * *y;
+    mcsi_d per_r;
+    mcsi_inverse_root(&r2, &per_r);
+    const mcsi_d less = *d2 / (r2 * per_r + *size_y); /* r - |y| */
+    *plus = (less + (*size_y + *y)) * per_r;
+    *minus = (less + (*size_y - *y)) * per_r;
+}
+MCSI_SAMPLE mcs_light_point mcs_spherical_rectangle_sample(const mcs_spherical_rectangle *l, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    const mcsi_d u = MCSI_WIDEN(mcsi_sane_u(u1, &ok));
+    const mcsi_d v = MCSI_WIDEN(mcsi_sane_u(u2, &ok));
+    mcsi_d x;
+    mcsi_spherical_rectangle_x(l, &u, &x);
+    const mcsi_d d2 = 1.0 + x * x;
+    mcsi_d per_d;
+    mcsi_inverse_root(&d2, &per_d);
+    mcsi_d plus0;
+    mcsi_d minus0;
+    mcsi_spherical_rectangle_end(&d2, &l->y0, &l->size_y0, &plus0, &minus0);
+    mcsi_d plus1;
+    mcsi_d minus1;
+    mcsi_spherical_rectangle_end(&d2, &l->y1, &l->size_y1, &plus1, &minus1);
+    const mcsi_d plus = (1.0 - v) * plus0 + v * plus1;
+    const mcsi_d minus = (1.0 - v) * minus0 + v * minus1;
+    const mcsi_d cos2 = plus * minus; /* 1 - h^2 */
+    mcsi_d per_cos;
+    mcsi_inverse_root(&cos2, &per_cos);
+    const mcsi_d h = 0.5 * (plus - minus);
+    const mcsi_d y = h * per_cos * (d2 * per_d);
+    const mcsi_d w_z = cos2 * per_cos * per_d;
+    const mcsi_d w_x = x * w_z;
+    const mcs_f zero = mcs_set(0.0f);
+    const mcs_f one = mcs_set(1.0f);
+    mcs_light_point s;
+    s.w.x = MCSI_NARROW(w_x * l->axis_x.x + h * l->axis_y.x + w_z * l->normal.x);
+    s.w.y = MCSI_NARROW(w_x * l->axis_x.y + h * l->axis_y.y + w_z * l->normal.y);
+    s.w.z = MCSI_NARROW(w_x * l->axis_x.z + h * l->axis_y.z + w_z * l->normal.z);
+    s.pdf = mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
+    s.x = mcsi_min(mcsi_max(MCSI_NARROW((x - l->x0) * l->per_x), zero), one);
+    s.y = mcsi_min(mcsi_max(MCSI_NARROW((y - l->y0) * l->per_y), zero), one);
+    return s;
+}
+#ifdef MCSI_PUBLIC
+MCSI_FN mcs_spherical_rectangle mcs_spherical_rectangle_make(mcs_vec3 p, mcs_vec3 c, mcs_vec3 edge_x, mcs_vec3 edge_y) {
+    mcs_spherical_rectangle l;
+    for (int k = 0; k < MCSI_W; k++) {
+        mcsi_scalar_spherical_rectangle one;
+        const int ok = mcsi_spherical_rectangle_prepare(&one, mcsi_lane3(&p, k), mcsi_lane3(&c, k),
+                                                        mcsi_lane3(&edge_x, k), mcsi_lane3(&edge_y, k));
+        MCSI_REQUIRE(ok);
+        (void)ok;
+        mcsi_put_lane(&l, &one, sizeof one, k);
+    }
+    return l;
+}
+MCSI_FN mcs_f mcs_spherical_rectangle_pdf(const mcs_spherical_rectangle *l, mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    w = mcsi_sane_direction(w, &ok);
+    mcsi_vec3_d d;
+    mcsi_widen3(&w, &d);
+    const mcsi_d x = MCSI_DOT_D(d, l->axis_x);
+    const mcsi_d y = MCSI_DOT_D(d, l->axis_y);
+    const mcsi_d z = MCSI_DOT_D(d, l->normal);
+    const mcs_f past_x = mcsi_min(MCSI_NARROW(x - l->x0 * z), MCSI_NARROW(l->x1 * z - x));
+    const mcs_f past_y = mcsi_min(MCSI_NARROW(y - l->y0 * z), MCSI_NARROW(l->y1 * z - y));
+    ok = ok & (mcsi_min(past_x, past_y) >= 0.0f); /* where z < 0 it is not */
+    return mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
+}
+MCSI_FN mcs_vec2 mcs_spherical_rectangle_invert(const mcs_spherical_rectangle *l, mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    w = mcsi_sane_direction(w, &ok);
+    mcs_vec2 u = mcsi_vec2(mcs_set(0.0f), mcs_set(0.0f));
+    for (int k = 0; k < MCSI_W; k++) {
+        mcsi_scalar_spherical_rectangle one;
+        mcsi_take_lane(l, &one, sizeof one, k);
+        const mcsi_scalar_vec2 found = mcsi_spherical_rectangle_find(&one, mcsi_lane3(&w, k));
+        MCSI_LANE(u.x, k) = found.x;
+        MCSI_LANE(u.y, k) = found.y;
+    }
+    return mcsi_uv(ok, u.x, u.y);
+}
+#endif
+
+/* ---- spherical_triangle ----
+ * The side from A to C carries a point C', u1 the share of the triangle A, B, C' in the solid angle. With `angle` half
+ * of that of the triangle, and capital letters the half angles between corners, Arvo's C' is such that the angle s from
+ * A to it has
+ *
+ *   cot(s/2) = cot(CA) + cos(BC) sin((1 - u1) angle) / (cos(AB) sin(CA) sin(u1 angle))
+ *
+ * All terms are positive. As weights of the unit vectors to C and A that is c (c cos(CA) + a) and a (a cos(CA) + c),
+ * with c = cos(AB) sin(u1 angle) and a = cos(BC) sin((1 - u1) angle): there is no angle at a corner in it. pi - u1
+ * angle is the sum of `rest` and (1 - u1) angle.
+ *
+ * The sample is between B and C'. With k the cosine of half their distance, which is the length of half their sum,
+ * sin^2 of half the distance of the sample from B is u2 (1 - k^2). */
+#if MCSI_W > 1
+typedef struct {
+    mcsi_vec3_d a, b, c, past_a, past_b, past_c;
+    mcsi_d per_a, per_b, per_c, cos_bc, cos_ca, cos_ab, angle, rest, pdf;
+} mcs_spherical_triangle;
+#endif
+#if MCSI_W == 1
+/* The normal of the side between two corners, for their distances: s a x (b - a). */
+MCS_FN mcsi_vec3_d mcsi_side_d(double s, mcsi_vec3_d a, mcsi_vec3_d edge) {
+    const mcsi_vec3_d normal = mcsi_cross_d(a, edge);
+    return mcsi_make3_d(s * normal.x, s * normal.y, s * normal.z);
+}
+/* Six times the volume of the tetrahedron of p and a triangle, signed. It keeps most digits if a is next to p. */
+MCS_FN double mcsi_volume_d(mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
+    const mcsi_vec3_d to_a = mcsi_from_to_d(p, a);
+    const mcsi_vec3_d normal = mcsi_cross_d(mcsi_from_to_d(a, b), mcsi_from_to_d(a, c));
+    return MCSI_DOT_D(to_a, normal);
+}
+/* Returns whether the light is good. A light that is not to be drawn from becomes its centre. */
+MCS_FN int mcsi_spherical_triangle_prepare(mcs_spherical_triangle *l, mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
+    const mcsi_vec3_d to_a = mcsi_from_to_d(p, a);
+    const mcsi_vec3_d to_b = mcsi_from_to_d(p, b);
+    const mcsi_vec3_d to_c = mcsi_from_to_d(p, c);
+    const mcsi_vec3_d normal = mcsi_cross_d(mcsi_from_to_d(a, b), mcsi_from_to_d(a, c));
+    mcsi_vec3_d centre = mcsi_add_d(mcsi_add_d(to_a, 1.0, to_b), 1.0, to_c);
+    const int ok = mcsi_length_d(normal) > 0.0 && mcsi_length_d(centre) <= 1e60;
+    l->a = to_a;
+    l->b = to_b;
+    l->c = to_c;
+    l->per_a = mcsi_unit_d(&l->a);
+    l->per_b = mcsi_unit_d(&l->b);
+    l->per_c = mcsi_unit_d(&l->c);
+    const double volume = l->per_b > l->per_a && l->per_b > l->per_c ? mcsi_volume_d(p, b, c, a)
+                          : l->per_c > l->per_a                      ? mcsi_volume_d(p, c, a, b)
+                                                                     : mcsi_volume_d(p, a, b, c);
+    const double turn = volume < 0.0 ? -1.0 : 1.0;
+    l->past_a = mcsi_side_d(turn * l->per_b * l->per_c, to_b, mcsi_from_to_d(b, c));
+    l->past_b = mcsi_side_d(turn * l->per_c * l->per_a, to_c, mcsi_from_to_d(c, a));
+    l->past_c = mcsi_side_d(turn * l->per_a * l->per_b, to_a, mcsi_from_to_d(a, b));
+    const mcsi_vec3_d a_and_b = mcsi_add_d(l->a, 1.0, l->b);
+    l->cos_bc = 0.5 * mcsi_length_d(mcsi_add_d(l->b, 1.0, l->c));
+    l->cos_ca = 0.5 * mcsi_length_d(mcsi_add_d(l->c, 1.0, l->a));
+    l->cos_ab = 0.5 * mcsi_length_d(a_and_b);
+    const double sine = turn * volume * l->per_a * l->per_b * l->per_c;
+    const double cosine = 2.0 * l->cos_ab * l->cos_ab + MCSI_DOT_D(a_and_b, l->c);
+    l->angle = mcsi_angle_d(sine, cosine);
+    l->rest = mcsi_angle_d(sine, -cosine);
+    l->pdf = mcsi_per_angle_d(l->angle);
+    if (ok && sine > 0.0 && (sine > 1e-7 || cosine > 1e-7)) return 1;
+    mcsi_unit_d(&centre);
+    l->a = l->b = l->c = centre;
+    l->per_a = l->per_b = l->per_c = l->cos_bc = l->cos_ca = l->cos_ab = l->angle = l->rest = 1.0;
+    l->pdf = 0.0;
+    return ok;
+}
+/* u of the direction w. The weights of a and c in w, as far as they are positive, are those of C'; c/a is the positive
+ * root of a quadratic equation, whose terms are added with one sign. */
+MCS_FN mcs_vec2 mcsi_spherical_triangle_find(const mcs_spherical_triangle *l, mcs_vec3 w) {
+    mcs_vec2 u = {0.0f, 0.0f};
+    mcsi_vec3_d direction = mcsi_widened_d(w);
+    const double from_a = MCSI_DOT_D(l->past_a, direction);
+    const double from_c = MCSI_DOT_D(l->past_c, direction);
+    const double part_a = from_a > 0.0 ? from_a : 0.0;
+    const double part_c = from_c > 0.0 ? from_c : 0.0;
+    const double less = part_c - part_a;
+    const double mixed = 2.0 * l->cos_ca * part_a;
+    const double root = mcsi_sqrt_d(less * less + 2.0 * l->cos_ca * part_c * mixed);
+    const double c = l->cos_bc * (less > 0.0 ? less + root : 2.0 * l->cos_ca * part_c);
+    const double a = l->cos_ab * (less > 0.0 ? mixed : root - less);
+    double sine;
+    mcsi_sine_over_x(&l->angle, &l->rest, &sine);
+    const double half_angle = 0.5 * l->angle;
+    const double not_half = l->rest + half_angle;
+    double half_sine;
+    mcsi_sine_over_x(&half_angle, &not_half, &half_sine);
+    half_sine *= half_angle;
+    u.x = (float)(mcsi_angle_d(c * l->angle * sine, a + c * (1.0 - 2.0 * half_sine * half_sine)) / l->angle);
+    mcsi_unit_d(&direction);
+    mcsi_vec3_d end = mcsi_make3_d(part_a * l->a.x + part_c * l->c.x, part_a * l->a.y + part_c * l->c.y,
+                                   part_a * l->a.z + part_c * l->c.z);
+    mcsi_unit_d(&end);
+    const mcsi_vec3_d part = mcsi_add_d(direction, -1.0, l->b);
+    const mcsi_vec3_d all = mcsi_add_d(end, -1.0, l->b);
+    const double part2 = MCSI_DOT_D(part, part);
+    const double all2 = MCSI_DOT_D(all, all);
+    u.y = part2 < all2 ? (float)(part2 / all2) : 1.0f;
+    return u;
+}
+#endif
+
+/* The weights of the unit vectors to a and c in C' for u1. */
+MCSI_CORE void mcsi_spherical_triangle_end(const mcs_spherical_triangle *l, const mcsi_d *u, mcsi_d *part_a,
+                                           mcsi_d *part_c) {
+    const mcsi_d share_c = *u * l->angle;
+    const mcsi_d share_a = (1.0 - *u) * l->angle;
+    const mcsi_d not_c = l->rest + share_a;
+    const mcsi_d not_a = l->rest + share_c;
+    mcsi_d sine_c;
+    mcsi_d sine_a;
+    mcsi_sine_over_x(&share_c, &not_c, &sine_c);
+    mcsi_sine_over_x(&share_a, &not_a, &sine_a);
+    const mcsi_d c = l->cos_ab * (*u * sine_c);
+    const mcsi_d a = l->cos_bc * ((1.0 - *u) * sine_a);
+    *part_a = a * (a * l->cos_ca + c);
+    *part_c = c * (c * l->cos_ca + a);
+}
+MCSI_SAMPLE mcs_light_point mcs_spherical_triangle_sample(const mcs_spherical_triangle *l, mcs_f u1, mcs_f u2) {
+    mcs_i ok = mcsi_always();
+    const mcsi_d u = MCSI_WIDEN(mcsi_sane_u(u1, &ok));
+    const mcsi_d v = MCSI_WIDEN(mcsi_sane_u(u2, &ok));
+    mcsi_d part_a;
+    mcsi_d part_c;
+    mcsi_spherical_triangle_end(l, &u, &part_a, &part_c);
+    mcsi_vec3_d end;
+    mcsi_combine(&part_a, &l->a, &part_c, &l->c, &end);
+    const mcsi_d length2 = MCSI_DOT_D(end, end);
+    mcsi_d per_length;
+    mcsi_inverse_root(&length2, &per_length);
+    mcsi_vec3_d sum;
+    sum.x = l->b.x + per_length * end.x;
+    sum.y = l->b.y + per_length * end.y;
+    sum.z = l->b.z + per_length * end.z;
+    const mcsi_d k2 = 0.25 * MCSI_DOT_D(sum, sum);
+    const mcsi_d square = v * (v + (1.0 - v) / k2);
+    mcsi_d root;
+    mcsi_inverse_root(&square, &root);
+    const mcsi_d q = square * root * per_length;
+    const mcsi_d part_b = 1.0 - 2.0 * v * (1.0 - k2) - q * MCSI_DOT_D(end, l->b);
+    mcsi_vec3_d w;
+    mcsi_combine(&part_b, &l->b, &q, &end, &w);
+    const mcsi_d at_a = q * part_a * l->per_a;
+    const mcsi_d at_b = part_b * l->per_b;
+    const mcsi_d per_sum = 1.0 / (at_a + at_b + q * part_c * l->per_c);
+    mcs_light_point s;
+    s.w = mcsi_vec3(MCSI_NARROW(w.x), MCSI_NARROW(w.y), MCSI_NARROW(w.z));
+    s.pdf = mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
+    s.x = mcsi_min(MCSI_NARROW(at_a * per_sum), mcs_set(1.0f));
+    s.y = mcsi_min(mcsi_max(MCSI_NARROW(at_b * per_sum), mcs_set(0.0f)), 1.0f - s.x);
+    return s;
+}
+#ifdef MCSI_PUBLIC
+MCSI_FN mcs_spherical_triangle mcs_spherical_triangle_make(mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
+    mcs_spherical_triangle l;
+    for (int k = 0; k < MCSI_W; k++) {
+        mcsi_scalar_spherical_triangle one;
+        const int ok = mcsi_spherical_triangle_prepare(&one, mcsi_lane3(&p, k), mcsi_lane3(&a, k), mcsi_lane3(&b, k),
+                                                       mcsi_lane3(&c, k));
+        MCSI_REQUIRE(ok);
+        (void)ok;
+        mcsi_put_lane(&l, &one, sizeof one, k);
+    }
+    return l;
+}
+MCSI_FN mcs_f mcs_spherical_triangle_pdf(const mcs_spherical_triangle *l, mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    w = mcsi_sane_direction(w, &ok);
+    mcsi_vec3_d d;
+    mcsi_widen3(&w, &d);
+    const mcs_f from_a = MCSI_NARROW(MCSI_DOT_D(l->past_a, d));
+    const mcs_f from_b = MCSI_NARROW(MCSI_DOT_D(l->past_b, d));
+    const mcs_f from_c = MCSI_NARROW(MCSI_DOT_D(l->past_c, d));
+    ok = ok & (mcsi_min(mcsi_min(from_a, from_b), from_c) >= 0.0f);
+    return mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
+}
+MCSI_FN mcs_vec2 mcs_spherical_triangle_invert(const mcs_spherical_triangle *l, mcs_vec3 w) {
+    mcs_i ok = mcsi_always();
+    w = mcsi_sane_direction(w, &ok);
+    mcs_vec2 u = mcsi_vec2(mcs_set(0.0f), mcs_set(0.0f));
+    for (int k = 0; k < MCSI_W; k++) {
+        mcsi_scalar_spherical_triangle one;
+        mcsi_take_lane(l, &one, sizeof one, k);
+        const mcsi_scalar_vec2 found = mcsi_spherical_triangle_find(&one, mcsi_lane3(&w, k));
+        MCSI_LANE(u.x, k) = found.x;
+        MCSI_LANE(u.y, k) = found.y;
+    }
+    return mcsi_uv(ok, u.x, u.y);
+}
+#endif
+
+#if MCSI_W == 1
+/* pdf distance^2/|cosine|, or its inverse, in double, where it does not overflow; 0 where an argument is 0 or bad. */
+MCS_FN float mcsi_converted(float pdf, float distance, float cosine, int to_area) {
+    const float size = mcsi_abs(cosine);
+    if (!(pdf > 0.0f && distance > 0.0f && size > 0.0f)) return 0.0f;
+    if (!(mcsi_max(mcsi_max(pdf, distance), size) <= FLT_MAX)) return 0.0f;
+    const double d2 = (double)distance * (double)distance;
+    const double result = (double)pdf * (to_area ? (double)size / d2 : d2 / (double)size);
+    return result < 3.4028234663852886e38 ? (float)result : FLT_MAX;
+}
+#endif
+#ifdef MCSI_PUBLIC
+MCSI_CORE mcs_f mcsi_each_converted(mcs_f pdf, mcs_f distance, mcs_f cosine, int to_area) {
+    MCSI_REQUIRE(pdf >= 0.0f && pdf <= FLT_MAX && distance >= 0.0f && distance <= FLT_MAX);
+    MCSI_REQUIRE(mcsi_abs(cosine) <= FLT_MAX);
+    mcs_f result = pdf;
+    for (int k = 0; k < MCSI_W; k++)
+        MCSI_LANE(result, k) = mcsi_converted(MCSI_LANE(pdf, k), MCSI_LANE(distance, k), MCSI_LANE(cosine, k), to_area);
+    return result;
+}
+MCSI_FN mcs_f mcs_pdf_to_solid_angle(mcs_f pdf, mcs_f distance, mcs_f cosine) {
+    return mcsi_each_converted(pdf, distance, cosine, 0);
+}
+MCSI_FN mcs_f mcs_pdf_to_area(mcs_f pdf, mcs_f distance, mcs_f cosine) {
+    return mcsi_each_converted(pdf, distance, cosine, 1);
+}
+#endif
+
 #ifdef MCSI_LOOPS
 MCSI_CORE void mcsi_out_light(const mcsi_batch *b, mcs_light s) {
-    mcsi_out(b, 0, s.w.x);
-    mcsi_out(b, 1, s.w.y);
-    mcsi_out(b, 2, s.w.z);
-    mcsi_out(b, 3, s.pdf);
+    mcsi_out_towards(b, s.w, s.pdf);
     mcsi_out(b, 4, s.distance);
 }
 MCSI_LOOP void mcsi_ball_loop(mcsi_scalar_vec3 centre, float radius, size_t n, const float *u1, const float *u2,
@@ -4395,6 +5054,26 @@ MCSI_LOOP void mcsi_disk_light_loop(mcsi_scalar_vec3 centre, mcsi_scalar_vec3 no
     b.out[4] = distance;
     MCSI_EACH(b) { mcsi_out_light(&b, mcsi_disk_light_draw(&d, mcsi_in(&b, 0), mcsi_in(&b, 1))); }
 }
+/* The prepared light is spread to lanes once for the call. */
+#define MCSI_LOOP_OF_LIGHT(NAME)                                                                                  \
+    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##NAME *l, size_t n, const float *u1, const float *u2,    \
+                                      float *x, float *y, float *z, float *pdf, float *light_x, float *light_y) { \
+        mcs_##NAME lanes;                                                                                         \
+        for (int k = 0; k < MCSI_W; k++) mcsi_put_lane(&lanes, l, sizeof *l, k);                                  \
+        mcsi_batch b;                                                                                             \
+        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                              \
+        b.out[4] = light_x;                                                                                       \
+        b.out[5] = light_y;                                                                                       \
+        MCSI_EACH(b) { mcsi_out_light_point(&b, mcs_##NAME##_sample(&lanes, mcsi_in(&b, 0), mcsi_in(&b, 1))); }   \
+    }
+MCSI_CORE void mcsi_out_light_point(const mcsi_batch *b, mcs_light_point s) {
+    mcsi_out_towards(b, s.w, s.pdf);
+    mcsi_out(b, 4, s.x);
+    mcsi_out(b, 5, s.y);
+}
+MCSI_LOOP_OF_LIGHT(spherical_rectangle)
+MCSI_LOOP_OF_LIGHT(spherical_triangle)
+#undef MCSI_LOOP_OF_LIGHT
 #endif
 #endif /* MCS_NO_LIGHTS */
 
@@ -10037,6 +10716,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_i MCSI_I
 #define mcs_is_mirror MCS_(is_mirror)
 #define mcs_light MCS_(light)
+#define mcs_light_point MCS_(light_point)
 #define mcs_linear_invert MCS_(linear_invert)
 #define mcs_linear_pdf MCS_(linear_pdf)
 #define mcs_linear_sample MCS_(linear_sample)
@@ -10050,6 +10730,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_normal_invert MCS_(normal_invert)
 #define mcs_normal_pdf MCS_(normal_pdf)
 #define mcs_normal_sample MCS_(normal_sample)
+#define mcs_pdf_to_area MCS_(pdf_to_area)
+#define mcs_pdf_to_solid_angle MCS_(pdf_to_solid_angle)
 #define mcs_phong MCS_(phong)
 #define mcs_phong_eval MCS_(phong_eval)
 #define mcs_phong_lobe_invert MCS_(phong_lobe_invert)
@@ -10081,6 +10763,16 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_sphere_invert MCS_(sphere_invert)
 #define mcs_sphere_pdf MCS_(sphere_pdf)
 #define mcs_sphere_sample MCS_(sphere_sample)
+#define mcs_spherical_rectangle MCS_(spherical_rectangle)
+#define mcs_spherical_rectangle_invert MCS_(spherical_rectangle_invert)
+#define mcs_spherical_rectangle_make MCS_(spherical_rectangle_make)
+#define mcs_spherical_rectangle_pdf MCS_(spherical_rectangle_pdf)
+#define mcs_spherical_rectangle_sample MCS_(spherical_rectangle_sample)
+#define mcs_spherical_triangle MCS_(spherical_triangle)
+#define mcs_spherical_triangle_invert MCS_(spherical_triangle_invert)
+#define mcs_spherical_triangle_make MCS_(spherical_triangle_make)
+#define mcs_spherical_triangle_pdf MCS_(spherical_triangle_pdf)
+#define mcs_spherical_triangle_sample MCS_(spherical_triangle_sample)
 #define mcs_store MCS_(store)
 #define mcs_tent_invert MCS_(tent_invert)
 #define mcs_tent_pdf MCS_(tent_pdf)
@@ -10157,6 +10849,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_blurred_value MCSI_(blurred_value)
 #define mcsi_brdf MCSI_(brdf)
 #define mcsi_cancelled MCSI_(cancelled)
+#define mcsi_combine MCSI_(combine)
 #define mcsi_concentric_loop MCSI_(concentric_loop)
 #define mcsi_cone_loop MCSI_(cone_loop)
 #define mcsi_cone_ok MCSI_(cone_ok)
@@ -10180,6 +10873,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_divide2 MCSI_(divide2)
 #define mcsi_divide3 MCSI_(divide3)
 #define mcsi_dot MCSI_(dot)
+#define mcsi_each_converted MCSI_(each_converted)
 #define mcsi_env_angles MCSI_(env_angles)
 #define mcsi_env_angles_loop MCSI_(env_angles_loop)
 #define mcsi_env_direction MCSI_(env_direction)
@@ -10250,8 +10944,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_henyey_greenstein_s2 MCSI_(henyey_greenstein_s2)
 #define mcsi_in MCSI_(in)
 #define mcsi_in_radii MCSI_(in_radii)
+#define mcsi_inverse_root MCSI_(inverse_root)
 #define mcsi_inverted MCSI_(inverted)
 #define mcsi_largest MCSI_(largest)
+#define mcsi_lane3 MCSI_(lane3)
 #define mcsi_linear MCSI_(linear)
 #define mcsi_linear_loop MCSI_(linear_loop)
 #define mcsi_linear_make MCSI_(linear_make)
@@ -10278,8 +10974,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_out_brdf MCSI_(out_brdf)
 #define mcsi_out_dir MCSI_(out_dir)
 #define mcsi_out_light MCSI_(out_light)
+#define mcsi_out_light_point MCSI_(out_light_point)
 #define mcsi_out_sample1 MCSI_(out_sample1)
 #define mcsi_out_sample2 MCSI_(out_sample2)
+#define mcsi_out_towards MCSI_(out_towards)
 #define mcsi_philox_blocks MCSI_(philox_blocks)
 #define mcsi_philox_fill_loop MCSI_(philox_fill_loop)
 #define mcsi_philox_rounds MCSI_(philox_rounds)
@@ -10296,6 +10994,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_power_loop MCSI_(power_loop)
 #define mcsi_power_of_2 MCSI_(power_of_2)
 #define mcsi_power_to_60 MCSI_(power_to_60)
+#define mcsi_put_lane MCSI_(put_lane)
 #define mcsi_q MCSI_Q
 #define mcsi_quotient MCSI_(quotient)
 #define mcsi_rarely MCSI_(rarely)
@@ -10322,6 +11021,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_side MCSI_(side)
 #define mcsi_side_load MCSI_(side_load)
 #define mcsi_sincos_turns MCSI_(sincos_turns)
+#define mcsi_sine_over_x MCSI_(sine_over_x)
 #define mcsi_slope_brdf MCSI_(slope_brdf)
 #define mcsi_slope_draw MCSI_(slope_draw)
 #define mcsi_slope_h_sample MCSI_(slope_h_sample)
@@ -10340,6 +11040,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_sobol_loop MCSI_(sobol_loop)
 #define mcsi_sobol_reversed MCSI_(sobol_reversed)
 #define mcsi_sphere_loop MCSI_(sphere_loop)
+#define mcsi_spherical_rectangle_end MCSI_(spherical_rectangle_end)
+#define mcsi_spherical_rectangle_loop MCSI_(spherical_rectangle_loop)
+#define mcsi_spherical_rectangle_x MCSI_(spherical_rectangle_x)
+#define mcsi_spherical_triangle_end MCSI_(spherical_triangle_end)
+#define mcsi_spherical_triangle_loop MCSI_(spherical_triangle_loop)
 #define mcsi_spread MCSI_(spread)
 #define mcsi_spread_direction MCSI_(spread_direction)
 #define mcsi_spread_frame MCSI_(spread_frame)
@@ -10347,6 +11052,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_store_int MCSI_(store_int)
 #define mcsi_stored MCSI_(stored)
 #define mcsi_sum MCSI_(sum)
+#define mcsi_take_lane MCSI_(take_lane)
 #define mcsi_tan2 MCSI_(tan2)
 #define mcsi_tent_loop MCSI_(tent_loop)
 #define mcsi_tile_bounds MCSI_(tile_bounds)
@@ -10373,6 +11079,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_uv MCSI_(uv)
 #define mcsi_vec2 MCSI_(vec2)
 #define mcsi_vec3 MCSI_(vec3)
+#define mcsi_vec3_d MCSI_(vec3_d)
 #define mcsi_visibility MCSI_(visibility)
 #define mcsi_von_mises_fisher MCSI_(von_mises_fisher)
 #define mcsi_von_mises_fisher_loop MCSI_(von_mises_fisher_loop)
@@ -10397,7 +11104,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_warps_loop MCSI_(warps_loop)
 #define mcsi_weighted MCSI_(weighted)
 #define mcsi_wide_sqrt MCSI_(wide_sqrt)
-#define mcsi_wide_vec3 MCSI_(wide_vec3)
+#define mcsi_widen3 MCSI_(widen3)
 #define mcsi_with_sign MCSI_(with_sign)
 
 /* MCSI_W is the number of lanes of a pass, MCS_(x) the public name x of that width, MCSI_(x) a private one. */
@@ -10614,6 +11321,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_i
 #undef mcs_is_mirror
 #undef mcs_light
+#undef mcs_light_point
 #undef mcs_linear_invert
 #undef mcs_linear_pdf
 #undef mcs_linear_sample
@@ -10627,6 +11335,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_normal_invert
 #undef mcs_normal_pdf
 #undef mcs_normal_sample
+#undef mcs_pdf_to_area
+#undef mcs_pdf_to_solid_angle
 #undef mcs_phong
 #undef mcs_phong_eval
 #undef mcs_phong_lobe_invert
@@ -10658,6 +11368,16 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_sphere_invert
 #undef mcs_sphere_pdf
 #undef mcs_sphere_sample
+#undef mcs_spherical_rectangle
+#undef mcs_spherical_rectangle_invert
+#undef mcs_spherical_rectangle_make
+#undef mcs_spherical_rectangle_pdf
+#undef mcs_spherical_rectangle_sample
+#undef mcs_spherical_triangle
+#undef mcs_spherical_triangle_invert
+#undef mcs_spherical_triangle_make
+#undef mcs_spherical_triangle_pdf
+#undef mcs_spherical_triangle_sample
 #undef mcs_store
 #undef mcs_tent_invert
 #undef mcs_tent_pdf
@@ -10734,6 +11454,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_blurred_value
 #undef mcsi_brdf
 #undef mcsi_cancelled
+#undef mcsi_combine
 #undef mcsi_concentric_loop
 #undef mcsi_cone_loop
 #undef mcsi_cone_ok
@@ -10757,6 +11478,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_divide2
 #undef mcsi_divide3
 #undef mcsi_dot
+#undef mcsi_each_converted
 #undef mcsi_env_angles
 #undef mcsi_env_angles_loop
 #undef mcsi_env_direction
@@ -10827,8 +11549,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_henyey_greenstein_s2
 #undef mcsi_in
 #undef mcsi_in_radii
+#undef mcsi_inverse_root
 #undef mcsi_inverted
 #undef mcsi_largest
+#undef mcsi_lane3
 #undef mcsi_linear
 #undef mcsi_linear_loop
 #undef mcsi_linear_make
@@ -10855,8 +11579,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_out_brdf
 #undef mcsi_out_dir
 #undef mcsi_out_light
+#undef mcsi_out_light_point
 #undef mcsi_out_sample1
 #undef mcsi_out_sample2
+#undef mcsi_out_towards
 #undef mcsi_philox_blocks
 #undef mcsi_philox_fill_loop
 #undef mcsi_philox_rounds
@@ -10873,6 +11599,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_power_loop
 #undef mcsi_power_of_2
 #undef mcsi_power_to_60
+#undef mcsi_put_lane
 #undef mcsi_q
 #undef mcsi_quotient
 #undef mcsi_rarely
@@ -10899,6 +11626,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_side
 #undef mcsi_side_load
 #undef mcsi_sincos_turns
+#undef mcsi_sine_over_x
 #undef mcsi_slope_brdf
 #undef mcsi_slope_draw
 #undef mcsi_slope_h_sample
@@ -10917,6 +11645,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_sobol_loop
 #undef mcsi_sobol_reversed
 #undef mcsi_sphere_loop
+#undef mcsi_spherical_rectangle_end
+#undef mcsi_spherical_rectangle_loop
+#undef mcsi_spherical_rectangle_x
+#undef mcsi_spherical_triangle_end
+#undef mcsi_spherical_triangle_loop
 #undef mcsi_spread
 #undef mcsi_spread_direction
 #undef mcsi_spread_frame
@@ -10924,6 +11657,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_store_int
 #undef mcsi_stored
 #undef mcsi_sum
+#undef mcsi_take_lane
 #undef mcsi_tan2
 #undef mcsi_tent_loop
 #undef mcsi_tile_bounds
@@ -10950,6 +11684,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_uv
 #undef mcsi_vec2
 #undef mcsi_vec3
+#undef mcsi_vec3_d
 #undef mcsi_visibility
 #undef mcsi_von_mises_fisher
 #undef mcsi_von_mises_fisher_loop
@@ -10974,7 +11709,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_warps_loop
 #undef mcsi_weighted
 #undef mcsi_wide_sqrt
-#undef mcsi_wide_vec3
+#undef mcsi_widen3
 #undef mcsi_with_sign
 #endif
 
@@ -11092,6 +11827,16 @@ MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const fl
 MCS_API void mcs_disk_light_sample_n(mcs_vec3 centre, mcs_vec3 normal, float radius, size_t n, const float *u1,
                                      const float *u2, float *x, float *y, float *z, float *pdf, float *distance) {
     MCSI_WIDEST(disk_light_loop, (centre, normal, radius, n, u1, u2, x, y, z, pdf, distance));
+}
+MCS_API void mcs_spherical_rectangle_sample_n(const mcs_spherical_rectangle *l, size_t n, const float *u1,
+                                              const float *u2, float *x, float *y, float *z, float *pdf, float *light_x,
+                                              float *light_y) {
+    MCSI_WIDEST(spherical_rectangle_loop, (l, n, u1, u2, x, y, z, pdf, light_x, light_y));
+}
+MCS_API void mcs_spherical_triangle_sample_n(const mcs_spherical_triangle *l, size_t n, const float *u1,
+                                             const float *u2, float *x, float *y, float *z, float *pdf, float *weight_a,
+                                             float *weight_b) {
+    MCSI_WIDEST(spherical_triangle_loop, (l, n, u1, u2, x, y, z, pdf, weight_a, weight_b));
 }
 #endif
 MCS_API void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {

@@ -44,22 +44,9 @@ MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
     M_(store)(a + 2 * MCST_W, v.z);
 }
 
-/* A light that lies neither on an axis nor in front: at (-1/2, 1/4, 1) times a distance. */
-MCST_HD static inline M_(vec3) A_(aside)(F_ distance) {
-    M_(vec3) v;
-    v.x = -0.5f * distance;
-    v.y = 0.25f * distance;
-    v.z = distance;
-    return v;
-}
-/* The normal of a light: 50 degrees from that direction. */
-MCST_HD static inline M_(vec3) A_(tilted)(void) {
-    M_(vec3) v;
-    v.x = M_(set)(0.48f);
-    v.y = M_(set)(0.6f);
-    v.z = M_(set)(-0.64f);
-    return v;
-}
+#define L_ A_
+#include "row_lights.h"
+#undef L_
 
 #define LD(i) M_(load)(p + (i)*MCST_W)
 #define WO A_(load3)(p + 3 * MCST_W)
@@ -70,6 +57,8 @@ MCST_HD static inline M_(vec3) A_(tilted)(void) {
 #define ARGS_cross LD(0), M_(set)(0.0f), M_(set)(0.0f), LD(1),
 #define ARGS_ball A_(aside)(LD(0)), LD(1),
 #define ARGS_disk_light A_(aside)(LD(0)), A_(tilted)(), LD(1),
+#define MAKE_rectangle const M_(spherical_rectangle) m = A_(row_rectangle)(LD(0), LD(1))
+#define MAKE_triangle const M_(spherical_triangle) m = A_(row_triangle)(LD(0), LD(1))
 #define MAKE_phong const M_(phong) m = M_(phong_make)(LD(0))
 #define MAKE_ward MAKE_ward_gmd
 #define MAKE_ward_gmd const M_(ward) m = M_(ward_make)(LD(0), LD(1), MCS_WARD_GMD)
@@ -138,6 +127,7 @@ MCST_HD static inline M_(vec3) A_(tilted)(void) {
 #define MCST_DIR(row, fn, args, unused) MCST_DIRECTION(row, fn, (void)p, ARGS_##args)
 #define MCST_LIGHT(row, fn, args, unused) \
     MCST_TOWARDS(row, fn, light, M_(store)(out + 4 * MCST_W, s.distance), (void)p, ARGS_##args)
+#define MCST_POLYGON(row, fn, mat, unused) MCST_TOWARDS(row, fn, light_point, (void)0, MAKE_##mat, LEAD_M)
 #define MCST_LOBE(row, fn, mat, unused) MCST_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
 #define MCST_VLOBE(row, fn, mat, unused) MCST_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
 
@@ -187,6 +177,11 @@ MCST_ROWS(MCST_ADAPT)
     MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
         mcs_##fn##_sample_n(ARGS_##args n, u1, u2, out[0], out[1], out[2], out[3], out[4]);                          \
     }
+#define MCST_N_POLYGON(row, fn, mat, unused)                                                                         \
+    MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
+        MAKE_##mat;                                                                                                  \
+        mcs_##fn##_sample_n(&m, n, u1, u2, out[0], out[1], out[2], out[3], NULL, NULL);                              \
+    }
 #define MCST_N_LOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
 #define MCST_N_VLOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
 #define MCST_N_BRDF(row, fn, mat, base)                                                                              \
@@ -211,6 +206,7 @@ MCST_ROWS(MCST_ADAPT_N)
 #undef MCST_N_DIRECTION
 #undef MCST_N_DIR
 #undef MCST_N_LIGHT
+#undef MCST_N_POLYGON
 #undef MCST_N_LOBE
 #undef MCST_N_VLOBE
 #undef MCST_N_BRDF
@@ -231,6 +227,8 @@ MCST_ROWS(MCST_ADAPT_N)
 #undef ARGS_cross
 #undef ARGS_ball
 #undef ARGS_disk_light
+#undef MAKE_rectangle
+#undef MAKE_triangle
 #undef MAKE_phong
 #undef MAKE_ward
 #undef MAKE_ward_gmd
@@ -247,6 +245,7 @@ MCST_ROWS(MCST_ADAPT_N)
 #undef LEAD_M_WO
 #undef MCST_DIR
 #undef MCST_LIGHT
+#undef MCST_POLYGON
 #undef MCST_LOBE
 #undef MCST_VLOBE
 #undef MCST_BRDF

@@ -16,6 +16,7 @@
 #define BITS_WIDE(X) \
     X(u01) X(u01_open) X(sobol) X(r2) X(cone_from_sin2) X(frame_make) X(frame_from_tangent) X(to_world) X(to_local) \
     X(reflect) X(reflect_pdf) X(half) X(cos_d) X(schlick) X(fresnel_dielectric) X(fresnel_conductor) X(refract) \
+    X(pdf_to_solid_angle) X(pdf_to_area) X(spherical_rectangle_make) X(spherical_triangle_make) \
     X(phong_make) X(ward_make) X(beckmann_make) X(ggx_make) X(ashikhmin_make) X(is_mirror) X(ggx_d) X(ggx_g1) \
     X(ggx_g2) X(ggx_albedo) X(ggx_mean_albedo) X(ggx_compensation) X(ggx_glass_sample) \
     X(ggx_glass_pdf) X(ggx_glass_eval) X(ggx_glass_weight) X(mis_balance) X(mis_power) X(mix_pdf) X(set)
@@ -175,6 +176,20 @@ FN(ward_make) {
     }
 }
 FN(is_mirror) { PUT_WORD(0, (U_)M_(is_mirror)(IN(0), IN(1)) & 1u); } /* lanes give all bits for yes */
+/* A light beside and before the point, with the places on it. */
+FN(pdf_to_solid_angle) { PUT(0, M_(pdf_to_solid_angle)(IN(0), IN(1), IN(5))); }
+FN(pdf_to_area) { PUT(0, M_(pdf_to_area)(IN(0), IN(1), IN(5))); }
+#define POLYGON(name)                                                                     \
+    FN(name##_make) {                                                                     \
+        const M_(vec3) up = {M_(set)(0.0f), IN(6), M_(set)(1.0f)};                        \
+        const M_(name) l = M_(name##_make)(IN3(8), up, IN3(3), IN3(0));                   \
+        const M_(light_point) s = M_(name##_sample)(&l, IN(6), IN(7));                    \
+        B_(put3)(out, 0, s.w), PUT(3, s.pdf), PUT(4, s.x), PUT(5, s.y);                   \
+        PUT(6, M_(name##_pdf)(&l, IN3(3))), B_(put2)(out, 7, M_(name##_invert)(&l, s.w)); \
+    }
+POLYGON(spherical_rectangle)
+POLYGON(spherical_triangle)
+#undef POLYGON
 #define GGX const M_(ggx) m = M_(ggx_make)(IN(0), IN(1))
 FN(ggx_d) {
     GGX;

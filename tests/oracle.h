@@ -582,6 +582,196 @@ static inline o_vec2 o_disk_light_invert(o_vec3 c, o_vec3 n, ld r, o_vec3 w) {
     return o_concentric_invert(r, o_v2(o_dot(axes[0], off), o_dot(axes[1], off)));
 }
 
+/* Solid angles of rectangles and triangles are by Van Oosterom and Strackee 1983. Their maps are found by search for an
+ * area, not by formulas of their own: the truth is what the papers define. */
+
+/* Where on [0,1] the increasing f reaches `want`: by the Illinois method, which halves what is known of an end that
+ * stays twice, and by bisection each sixth time. */
+typedef ld o_increasing(const void *of, ld t);
+static inline ld o_reach(o_increasing *f, const void *of, ld want) {
+    ld low = 0.0L;
+    ld high = 1.0L;
+    ld below = f(of, low) - want;
+    ld above = f(of, high) - want;
+    if (below + want == 0.0L && want <= 1e-18L * (above + want)) return 0.0L;
+    int side = 0;
+    for (int i = 0; i < 200 && high - low > 1e-19L * high && below < 0.0L && above > 0.0L; i++) {
+        ld t = i % 6 == 5 ? 0.5L * (low + high) : low - below * (high - low) / (above - below);
+        if (!(t > low && t < high)) t = 0.5L * (low + high);
+        const ld off = f(of, t) - want;
+        if (fabsl(off) <= 1e-13L * want) return t;
+        if (off < 0.0L) {
+            low = t;
+            below = off;
+            if (side < 0) above *= 0.5L;
+            side = -1;
+        } else {
+            high = t;
+            above = off;
+            if (side > 0) below *= 0.5L;
+            side = 1;
+        }
+    }
+    return !(below < 0.0L) ? low : !(above > 0.0L) ? high : 0.5L * (low + high);
+}
+static inline ld o_volume(o_vec3 a, o_vec3 b, o_vec3 c) {
+    return fabsl(o_dot(a, o_cross(o_add(b, o_scale(-1.0L, a)), o_add(c, o_scale(-1.0L, a)))));
+}
+static inline ld o_solid_angle(ld volume, o_vec3 a, o_vec3 b, o_vec3 c) {
+    const ld l = o_len(a);
+    const ld m = o_len(b);
+    const ld n = o_len(c);
+    return 2.0L * atan2l(volume, l * m * n + o_dot(a, b) * n + o_dot(b, c) * l + o_dot(c, a) * m);
+}
+/* a + t (b - a) */
+static inline o_vec3 o_between(o_vec3 a, o_vec3 b, ld t) { return o_add(a, o_scale(t, o_add(b, o_scale(-1.0L, a)))); }
+
+typedef struct {
+    o_vec3 w;
+    ld x, y; /* on the light */
+} o_light;
+
+typedef struct {
+    o_vec3 a, b, c;
+} o_triangle;
+static inline ld o_triangle_up_to(const void *of, ld t) {
+    const o_triangle *l = (const o_triangle *)of;
+    return o_solid_angle(t * o_volume(l->a, l->b, l->c), l->a, l->b, o_between(l->a, l->c, t));
+}
+/* Arvo 1995: C' on the side from A to C so that A, B, C' has the share u1, then z = 1 - u2 (1 - C'.B) about B */
+static inline o_light o_triangle_light(o_triangle l, ld u1, ld u2) {
+    const ld t = o_reach(o_triangle_up_to, &l, u1 * o_triangle_up_to(&l, 1.0L));
+    const o_vec3 end = o_between(l.a, l.c, t);
+    const o_vec3 b = o_unit(l.b);
+    const o_vec3 e = o_unit(end);
+    const ld half_sine = 0.5L * o_len(o_add(e, o_scale(-1.0L, b)));
+    const ld angle = 2.0L * atan2l(half_sine, 0.5L * o_len(o_add(e, b)));
+    const ld part = 2.0L * asinl(sqrtl(u2) * half_sine);
+    const ld from_b = sinl(angle - part) / o_len(l.b);
+    const ld from_end = sinl(part) / o_len(end);
+    o_light s;
+    s.w = o_unit(o_add(o_scale(from_b, l.b), o_scale(from_end, end)));
+    s.x = from_end * (1.0L - t) / (from_b + from_end);
+    s.y = from_b / (from_b + from_end);
+    return s;
+}
+static inline o_vec3 o_spherical_triangle_map(o_triangle l, ld u1, ld u2) { return o_triangle_light(l, u1, u2).w; }
+static inline ld o_spherical_triangle_pdf_u(o_triangle l, ld u1, ld u2) {
+    (void)u1;
+    (void)u2;
+    return 1.0L / o_triangle_up_to(&l, 1.0L);
+}
+static inline ld o_spherical_triangle_pdf(o_triangle l, o_vec3 w) {
+    const ld all = o_dot(l.a, o_cross(l.b, l.c)) < 0.0L ? -1.0L : 1.0L;
+    const int inside = all * o_dot(w, o_cross(l.a, l.b)) >= 0.0L && all * o_dot(w, o_cross(l.b, l.c)) >= 0.0L &&
+                       all * o_dot(w, o_cross(l.c, l.a)) >= 0.0L;
+    return inside ? o_spherical_triangle_pdf_u(l, 0.0L, 0.0L) : 0.0L;
+}
+/* C' is where the plane through B and w meets the side. */
+static inline o_vec2 o_spherical_triangle_invert(o_triangle l, o_vec3 w) {
+    const ld all = o_dot(l.a, o_cross(l.b, l.c)) < 0.0L ? -1.0L : 1.0L;
+    const ld part_a = fmaxl(all * o_dot(w, o_cross(l.b, l.c)), 0.0L);
+    const ld part_c = fmaxl(all * o_dot(w, o_cross(l.a, l.b)), 0.0L);
+    if (part_a + part_c == 0.0L) return o_v2(0.0L, 0.0L);
+    const ld t = part_c / (part_a + part_c);
+    const o_vec3 b = o_scale(-1.0L, o_unit(l.b));
+    const ld along = o_len(o_add(o_unit(w), b)) / o_len(o_add(o_unit(o_between(l.a, l.c, t)), b));
+    return o_v2(o_triangle_up_to(&l, t) / o_triangle_up_to(&l, 1.0L), along * along);
+}
+
+/* Of the axes x and y and the distance z, for x from x0 to x0 + width and y from y0 to y0 + height. */
+typedef struct {
+    o_vec3 axis_x, axis_y, normal;
+    ld x0, y0, z, width, height;
+    ld x; /* of a line along y */
+} o_rectangle;
+static inline o_rectangle o_rectangle_make(o_vec3 corner, o_vec3 edge_x, o_vec3 edge_y) {
+    o_rectangle l;
+    l.width = o_len(edge_x);
+    l.axis_x = o_unit(edge_x);
+    const o_vec3 across = o_add(edge_y, o_scale(-o_dot(edge_y, l.axis_x), l.axis_x));
+    l.height = o_len(across);
+    l.axis_y = o_unit(across);
+    l.normal = o_cross(l.axis_x, l.axis_y);
+    l.z = o_dot(corner, l.normal);
+    if (l.z < 0.0L) l.normal = o_scale(-1.0L, l.normal);
+    l.z = fabsl(l.z);
+    l.x0 = o_dot(corner, l.axis_x);
+    l.y0 = o_dot(corner, l.axis_y);
+    l.x = l.x0;
+    return l;
+}
+static inline ld o_rectangle_up_to(const void *of, ld t) {
+    const o_rectangle *l = (const o_rectangle *)of;
+    const o_vec3 a = o_vec(l->x0, l->y0, l->z);
+    const o_vec3 b = o_vec(l->x0 + t * l->width, l->y0, l->z);
+    const o_vec3 c = o_vec(l->x0 + t * l->width, l->y0 + l->height, l->z);
+    const o_vec3 d = o_vec(l->x0, l->y0 + l->height, l->z);
+    const ld volume = l->z * t * l->width * l->height;
+    return o_solid_angle(volume, a, b, c) + o_solid_angle(volume, a, c, d);
+}
+/* sin(e) - sin(e0) of the elevations of y and y0 over the plane y = 0, as 2 cos((e + e0)/2) sin((e - e0)/2). The mean
+ * is known by what it lacks of a quarter turn. */
+static inline ld o_rectangle_rise(const void *of, ld t) {
+    const o_rectangle *l = (const o_rectangle *)of;
+    const ld d = hypotl(l->x, l->z);
+    const ld y = l->y0 + t * l->height;
+    const int mirrored = y + l->y0 < 0.0L;
+    const ld mean = atan2l(d, mirrored ? -y : y) + atan2l(d, mirrored ? -l->y0 : l->y0);
+    return 2.0L * sinl(0.5L * mean) * sinl(0.5L * atan2l(d * t * l->height, d * d + y * l->y0));
+}
+/* Urena, Fajardo, King 2013: the share u1 is before x, and y is uniform in the sine of its elevation */
+static inline o_light o_rectangle_light(o_rectangle l, ld u1, ld u2) {
+    o_light s;
+    s.x = o_reach(o_rectangle_up_to, &l, u1 * o_rectangle_up_to(&l, 1.0L));
+    l.x = l.x0 + s.x * l.width;
+    s.y = o_reach(o_rectangle_rise, &l, u2 * o_rectangle_rise(&l, 1.0L));
+    const o_vec3 in_plane = o_add(o_scale(l.x, l.axis_x), o_scale(l.y0 + s.y * l.height, l.axis_y));
+    s.w = o_unit(o_add(in_plane, o_scale(l.z, l.normal)));
+    return s;
+}
+static inline o_vec3 o_spherical_rectangle_map(o_rectangle l, ld u1, ld u2) { return o_rectangle_light(l, u1, u2).w; }
+static inline ld o_spherical_rectangle_pdf_u(o_rectangle l, ld u1, ld u2) {
+    (void)u1;
+    (void)u2;
+    return 1.0L / o_rectangle_up_to(&l, 1.0L);
+}
+/* The place on the light that w meets, or one far outside. */
+static inline o_vec2 o_rectangle_place(o_rectangle l, o_vec3 w) {
+    const ld z = o_dot(w, l.normal);
+    if (!(z > 0.0L)) return o_v2(-1e9L, -1e9L);
+    return o_v2((o_dot(w, l.axis_x) / z * l.z - l.x0) / l.width, (o_dot(w, l.axis_y) / z * l.z - l.y0) / l.height);
+}
+static inline ld o_spherical_rectangle_pdf(o_rectangle l, o_vec3 w) {
+    const o_vec2 place = o_rectangle_place(l, w);
+    const int inside = place.x >= 0.0L && place.x <= 1.0L && place.y >= 0.0L && place.y <= 1.0L;
+    return inside ? o_spherical_rectangle_pdf_u(l, 0.0L, 0.0L) : 0.0L;
+}
+static inline o_vec2 o_spherical_rectangle_invert(o_rectangle l, o_vec3 w) {
+    const o_vec2 place = o_rectangle_place(l, w);
+    const ld x = fminl(fmaxl(place.x, 0.0L), 1.0L);
+    const ld y = fminl(fmaxl(place.y, 0.0L), 1.0L);
+    l.x = l.x0 + x * l.width;
+    return o_v2(o_rectangle_up_to(&l, x) / o_rectangle_up_to(&l, 1.0L),
+                o_rectangle_rise(&l, y) / o_rectangle_rise(&l, 1.0L));
+}
+
+/* Those of the rows, about +z. */
+static inline o_triangle o_row_triangle(float a, float b) {
+    const float height = a * b;
+    o_triangle l;
+    l.a = o_v3(-a, -height, 1.25f - 0.25f * height);
+    l.b = o_v3(0.9f * a, -0.5f * height, 1.25f - 0.125f * height);
+    l.c = o_v3(0.25f * a, height, 1.25f + 0.25f * height);
+    return l;
+}
+static inline o_rectangle o_row_rectangle(float a, float b) {
+    const float height = a * b;
+    const float z = 1.0f - 0.0625f * a;
+    return o_rectangle_make(o_v3(-0.25f * a, -0.5f * height, z - 0.0625f * height), o_v3(a, 0.0f, 0.25f * a),
+                            o_v3(0.0f, height, 0.125f * height));
+}
+
 /* ---- directions where light is scattered ---- */
 
 /* The direction at the distances minus_z = 1 - z and plus_z = 1 + z from the poles, by the nearer one. */

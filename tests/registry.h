@@ -32,6 +32,11 @@
     M(X, LINE, power, power, 1, -, POWER, power, line, 1, 0)                      \
     M(X, LINE, evenpower, evenpower, 1, -, EVENPOWER, power, line, 1, 0)          \
     M(X, LINE, smoothstep, smoothstep, 2, -, BETWEEN, ends, line, 1, 0)
+#define MCST_LIGHTS(M, X)                                                                                              \
+    M(X, LIGHT, ball, ball, ball, -, BY_TRUTH, ball, ball, 0, MCST_WHOLE | MCST_DISTANCE)                              \
+    M(X, LIGHT, disk_light, disk_light, disk_light, -, BY_TRUTH, disk_light, disk_light, 0, MCST_FREE | MCST_DISTANCE) \
+    M(X, POLYGON, spherical_rectangle, spherical_rectangle, rectangle, -, BY_TRUTH, light, direction, 0, MCST_FREE)    \
+    M(X, POLYGON, spherical_triangle, spherical_triangle, triangle, -, BY_TRUTH, light, direction, 0, MCST_FREE)
 #define MCST_MEDIA(M, X)                                                                                 \
     M(X, DIR, henyey_greenstein, henyey_greenstein, 1, -, BY_TRUTH, asymmetry, asymmetry, 1, MCST_WHOLE) \
     M(X, DIR, rayleigh, rayleigh, 0, -, SPHERE, none, direction, 0, MCST_WHOLE)                          \
@@ -48,9 +53,7 @@
     M(X, DIR, hemisphere, hemisphere, 0, -, HEMISPHERE, none, direction, 0, 0)                   \
     M(X, DIR, cosine, cosine, 0, -, HEMISPHERE, none, direction, 0, 0)                           \
     M(X, DIR, cone, cone, 1, -, CONE, cone, cone, 0, MCST_WHOLE)                                 \
-    M(X, LIGHT, ball, ball, ball, -, BY_TRUTH, ball, ball, 0, MCST_WHOLE | MCST_DISTANCE)        \
-    M(X, LIGHT, disk_light, disk_light, disk_light, -, BY_TRUTH, disk_light, disk_light, 0,      \
-      MCST_WHOLE | MCST_DISTANCE | MCST_SQUARE)                                                  \
+    MCST_LIGHTS(M, X)                                                                            \
     MCST_MEDIA(M, X)                                                                             \
     M(X, LOBE, phong_lobe, phong_lobe, phong, -, COSPOWER, phong, phong_lobe, 1, 0)              \
     M(X, BRDF, phong, phong, phong, phong, COSPOWER, phong, phong, 1, MCST_ABOUT_R)              \
@@ -82,7 +85,7 @@ enum { MCST_P = 6 }; /* numbers in a parameter set: p[0..2] of the sampler, p[3.
 
 enum mcst_measure { MCST_LENGTH, MCST_AREA, MCST_SOLID_ANGLE, MCST_SOLID_ANGLE_OF_H };
 /* Of DIR every coordinate is held to 2^-23, of BRDF to 16 roundings, of others to 8: test_oracle.c. LIGHT is DIR with a
- * distance. */
+ * distance, POLYGON DIR of a light that is prepared. */
 enum mcst_shape { MCST_IS_LINE, MCST_IS_PLANE, MCST_IS_DIR, MCST_IS_LOBE, MCST_IS_VLOBE, MCST_IS_BRDF };
 /* The coordinates (s, t) in [0,1]^2 in which a lobe has a comparable mass everywhere: see bins.h. */
 enum mcst_coord {
@@ -136,13 +139,14 @@ typedef struct {
 
 /* What sets a row apart, as bits. */
 enum {
-    MCST_QUANTILE = 1, /* the place is the quantile of the normal distribution, which has a few roundings more */
-    MCST_SQUARE = 2,   /* no random number is an azimuth */
-    MCST_ABOUT_R = 4,  /* a lobe about the mirrored direction, not of half-vectors */
-    MCST_GAUSS = 8,    /* Gaussian half-vectors: the error of a density grows with their exponent */
-    MCST_VISIBLE = 16, /* visible normals */
-    MCST_WHOLE = 32,   /* directions of the whole sphere: one below the horizon is as good */
-    MCST_DISTANCE = 64 /* the distance of a light, where others have a weight */
+    MCST_QUANTILE = 1,  /* the place is the quantile of the normal distribution, which has a few roundings more */
+    MCST_SQUARE = 2,    /* no random number is an azimuth */
+    MCST_ABOUT_R = 4,   /* a lobe about the mirrored direction, not of half-vectors */
+    MCST_GAUSS = 8,     /* Gaussian half-vectors: the error of a density grows with their exponent */
+    MCST_VISIBLE = 16,  /* visible normals */
+    MCST_WHOLE = 32,    /* directions of the whole sphere: one below the horizon is as good */
+    MCST_DISTANCE = 64, /* the distance of a light, where others have a weight */
+    MCST_FREE = MCST_WHOLE | MCST_SQUARE
 };
 
 /* The figures of accuracy that mcsample.h states, as numbers: test_oracle.c holds the header to them on its grids, and
@@ -223,6 +227,9 @@ static const float mcst_grid_sharpness[][2] = {{1, 0},     {0, 0},     {1e-30f, 
                                                {1e-6f, 0}, {1e-3f, 0}, {0.1f, 0},   {0.34f, 0}, {0.5f, 0},  {3, 0},
                                                {8, 0},     {16, 0},    {30, 0},     {40, 0},    {50, 0},    {100, 0},
                                                {1e4f, 0},  {1e6f, 0},  {1e8f, 0}};
+/* Half the width of a light at the distance 1, and its height over its width. */
+static const float mcst_grid_light[][2] = {{0.5f, 1},   {1e-6f, 1}, {1, 1e-5f},     {1e-6f, 0.1f}, {1e4f, 1},
+                                           {30, 0.03f}, {3, 1},     {1e-3f, 1e-3f}, {1e3f, 10},    {1e-4f, 1e-5f}};
 static const float mcst_grid_phong[][2] = {{10, 0},  {0, 0},    {1e-3f, 0}, {1e-2f, 0}, {0.5f, 0}, {1, 0},   {2, 0},
                                            {100, 0}, {1e3f, 0}, {1e4f, 0},  {1e5f, 0},  {1e6f, 0}, {1e9f, 0}};
 static const float mcst_grid_alpha[][2] = {{0.5f, 0.2f},   {0.2f, 0.5f},   {1, 1},         {0.3f, 0.3f},
@@ -266,6 +273,11 @@ static inline int mcst_bad_ball(int i, float v) {
 }
 static inline int mcst_bad_asymmetry(int i, float v) { return i == 0 && mcst_outside(v, -1, 1); }
 static inline int mcst_bad_sharpness(int i, float v) { return i == 0 && mcst_outside(v, 0, 1e8f); }
+/* A light without an area; beyond the grids there are such that are no lights for float. */
+static inline int mcst_bad_light(int i, float v) {
+    if (i >= 2) return 0;
+    return !(fabsf(v) <= FLT_MAX) || v == 0 ? 1 : v >= 1e-6f && v <= (i ? 10 : 1e4f) ? 0 : -1;
+}
 static inline int mcst_bad_phong(int i, float v) { return i == 0 && !(v >= 0); }
 static inline int mcst_bad_alpha(int i, float v) {
     (void)i;
@@ -290,6 +302,7 @@ static inline int mcst_bad_exponents(int i, float v) {
 #define MCST_DOMAIN_disk_light {mcst_bad_ball, {1e-18, 1e-18}, {1e18, 1e18}, 1}
 #define MCST_DOMAIN_asymmetry {mcst_bad_asymmetry, {1e-30, 0}, {0.99999994, 0}, 1}
 #define MCST_DOMAIN_sharpness {mcst_bad_sharpness, {1e-30, 0}, {1e8, 0}, 0}
+#define MCST_DOMAIN_light {mcst_bad_light, {1e-6, 1e-5}, {1e4, 10}, 0}
 #define MCST_DOMAIN_phong {mcst_bad_phong, {1e-30, 1e-30}, {1e9, 1e9}, 0}
 #define MCST_DOMAIN_alpha {mcst_bad_alpha, {1e-7, 1e-7}, {1e4, 1e4}, 0}
 #define MCST_DOMAIN_exponents {mcst_bad_exponents, {1e-30, 1e-30}, {1e9, 1e9}, 0}
@@ -326,6 +339,8 @@ static const mcst_set mcst_chi_asymmetry[] = {
     {0.5f, 0, 0, 0, 10}, {0, 0, 0, 0, 2}, {0.9f, 0, 0, 0, 2}, {-0.8f, 0, 0, 0, 2}, {0.999f, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_sharpness[] = {{1, 0, 0, 0, 10}, {0, 0, 0, 0, 2},   {0.1f, 0, 0, 0, 2},
                                               {10, 0, 0, 0, 2}, {100, 0, 0, 0, 2}, {1e6f, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_light[] = {
+    {0.5f, 1, 0, 0, 10}, {30, 0.3f, 0, 0, 2}, {1e-3f, 1e-2f, 0, 0, 2}, {1e4f, 1, 0, 0, 2}};
 static const mcst_set mcst_chi_phong[] = {{10, 0, 0.5f, 0.7f, 10},     {0, 0, 0.7f, 2, 2},    {1, 0, 1, 0, 2},
                                           {100, 0, 0.0871557f, -2, 2}, {1e4f, 0, 0.7f, 1, 2}, {50, 0, 1e-3f, 1.1f, 2},
                                           {1e6f, 0, 0.3f, -1, 2}};
@@ -414,6 +429,7 @@ static const mcst_claim mcst_claims_ashikhmin[] = {
 #define MCST_DECLARE_PLANE MCST_DECLARE_UV
 #define MCST_DECLARE_DIR MCST_DECLARE_UV
 #define MCST_DECLARE_LIGHT MCST_DECLARE_UV
+#define MCST_DECLARE_POLYGON MCST_DECLARE_UV
 #define MCST_DECLARE_LOBE MCST_DECLARE_UV
 #define MCST_DECLARE_VLOBE MCST_DECLARE_UV
 #define MCST_DECLARE_BRDF(row)                                                                             \
@@ -470,6 +486,8 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_COUNT_cross 2
 #define MCST_COUNT_ball 2
 #define MCST_COUNT_disk_light 2
+#define MCST_COUNT_rectangle 2
+#define MCST_COUNT_triangle 2
 #define MCST_COUNT_phong 1
 #define MCST_COUNT_ward 2
 #define MCST_COUNT_ward_gmd 2
@@ -482,6 +500,7 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_SHAPE_PLANE(row) MCST_IS_PLANE, MCST_AREA
 #define MCST_SHAPE_DIR(row) MCST_IS_DIR, MCST_SOLID_ANGLE
 #define MCST_SHAPE_LIGHT(row) MCST_IS_DIR, MCST_SOLID_ANGLE
+#define MCST_SHAPE_POLYGON(row) MCST_IS_DIR, MCST_SOLID_ANGLE
 #define MCST_SHAPE_LOBE(row) MCST_IS_LOBE, MCST_SOLID_ANGLE_OF_H
 #define MCST_SHAPE_VLOBE(row) MCST_IS_VLOBE, MCST_SOLID_ANGLE_OF_H
 #define MCST_SHAPE_BRDF(row) MCST_IS_BRDF, MCST_SOLID_ANGLE
@@ -489,6 +508,7 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_SIZE_PLANE 2, 2
 #define MCST_SIZE_DIR 2, 3
 #define MCST_SIZE_LIGHT 2, 3
+#define MCST_SIZE_POLYGON 2, 3
 #define MCST_SIZE_LOBE 2, 3
 #define MCST_SIZE_VLOBE 2, 3
 #define MCST_SIZE_BRDF 2, 3
@@ -496,6 +516,7 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_WO_PLANE 0
 #define MCST_WO_DIR 0
 #define MCST_WO_LIGHT 0
+#define MCST_WO_POLYGON 0
 #define MCST_WO_LOBE 0
 #define MCST_WO_VLOBE 1
 #define MCST_WO_BRDF 1
@@ -503,6 +524,7 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_T_PLANE(row) MCST_TAIL_UV(row)
 #define MCST_T_DIR(row) MCST_TAIL_UV(row)
 #define MCST_T_LIGHT(row) MCST_TAIL_UV(row)
+#define MCST_T_POLYGON(row) MCST_TAIL_UV(row)
 #define MCST_T_LOBE(row) MCST_TAIL_UV(row)
 #define MCST_T_VLOBE(row) MCST_TAIL_UV(row)
 #define MCST_T_BRDF(row) MCST_TAIL_BRDF(row)

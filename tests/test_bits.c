@@ -167,6 +167,7 @@ template <void (*F)(const float *, float *)> __global__ void other(const float *
 #define GPU_PLANE GPU_LINE
 #define GPU_DIR GPU_LINE
 #define GPU_LIGHT GPU_LINE
+#define GPU_POLYGON GPU_LINE
 #define GPU_LOBE GPU_LINE
 #define GPU_VLOBE GPU_LINE
 #define GPU_BRDF(r) \

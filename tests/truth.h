@@ -10,6 +10,8 @@
 #define OA_cross o_corners((ld)p[0], 0.0L, 0.0L, (ld)p[1]),
 #define OA_ball o_scale((ld)p[0], o_vec(-0.5L, 0.25L, 1.0L)), (ld)p[1],
 #define OA_disk_light o_scale((ld)p[0], o_vec(-0.5L, 0.25L, 1.0L)), o_v3(0.48f, 0.6f, -0.64f), (ld)p[1],
+#define OA_rectangle o_row_rectangle(p[0], p[1]),
+#define OA_triangle o_row_triangle(p[0], p[1]),
 #define OA_phong OA_1
 #define OA_ward OA_2
 #define OA_ward_gmd OA_2 0,
@@ -65,6 +67,7 @@
     MCST_O_UV(row, fn, OA_##args, o_vec3, mcst_o3, MCST_PUT3) \
     MCST_O_INVERT(row, fn, OA_##args, mcst_o3)
 #define MCST_O_LIGHT(row, fn, args) MCST_O_DIR(row, fn, args)
+#define MCST_O_POLYGON(row, fn, args) MCST_O_DIR(row, fn, args)
 #define MCST_O_LOBE(row, fn, args) MCST_O_DIR(row, fn, args)
 #define MCST_O_VLOBE(row, fn, args)                                    \
     MCST_O_UV(row, fn, MCST_LEAD_WO(args), o_vec3, mcst_o3, MCST_PUT3) \

@@ -13,6 +13,10 @@
 #endif
 #define B_(name) FORM_CAT(bench, BENCH_W, _##name)
 
+#define L_ B_
+#include "row_lights.h"
+#undef L_
+
 #define FORM_ARGS_0
 #define FORM_ARGS_1 a,
 #define FORM_ARGS_2 a, b,
@@ -20,6 +24,8 @@
 #define FORM_ARGS_cross a, M_(set)(0.0f), M_(set)(0.0f), b,
 #define FORM_ARGS_ball B_(aside)(a), b,
 #define FORM_ARGS_disk_light B_(aside)(a), B_(tilted)(), b,
+#define FORM_MAKE_rectangle const M_(spherical_rectangle) m = B_(row_rectangle)(a, b)
+#define FORM_MAKE_triangle const M_(spherical_triangle) m = B_(row_triangle)(a, b)
 #define FORM_MAKE_phong const M_(phong) m = M_(phong_make)(a)
 #define FORM_MAKE_ward const M_(ward) m = M_(ward_make)(a, b, MCS_WARD_GMD)
 #define FORM_MAKE_ward_gmd FORM_MAKE_ward
@@ -28,17 +34,6 @@
 #define FORM_MAKE_beckmann const M_(beckmann) m = M_(beckmann_make)(a, b)
 #define FORM_MAKE_ggx const M_(ggx) m = M_(ggx_make)(a, b)
 #define FORM_MAKE_ashikhmin const M_(ashikhmin) m = M_(ashikhmin_make)(a, b)
-
-/* As in adapters.h. */
-static M_(vec3) B_(aside)(F_ distance) {
-    M_(vec3) v = {-0.5f * distance, 0.25f * distance, distance};
-    return v;
-}
-
-static M_(vec3) B_(tilted)(void) {
-    M_(vec3) v = {M_(set)(0.48f), M_(set)(0.6f), M_(set)(-0.64f)};
-    return v;
-}
 
 #define FORM(row, prepare, type, call, keep)                                                                       \
     static void B_(row)(const float *p, size_t n, const float *u1, const float *u2, float *const out[BENCH_OUT]) { \
@@ -63,6 +58,7 @@ static M_(vec3) B_(tilted)(void) {
          (M_(store)(x + i, s.x), M_(store)(y + i, s.y)))
 #define FORM_DIR(row, fn, args) FORM(row, (void)0, dir, M_(fn##_sample)(FORM_ARGS_##args FORM_U), FORM_XYZ(s.w))
 #define FORM_LIGHT(row, fn, args) FORM(row, (void)0, light, M_(fn##_sample)(FORM_ARGS_##args FORM_U), FORM_XYZ(s.w))
+#define FORM_POLYGON(row, fn, mat) FORM(row, FORM_MAKE_##mat, light_point, M_(fn##_sample)(&m, FORM_U), FORM_XYZ(s.w))
 #define FORM_LOBE(row, fn, mat) FORM(row, FORM_MAKE_##mat, dir, M_(fn##_sample)(&m, FORM_U), FORM_XYZ(s.w))
 #define FORM_VLOBE(row, fn, mat) FORM(row, FORM_MAKE_##mat, dir, M_(fn##_sample)(&m, wo, FORM_U), FORM_XYZ(s.w))
 #define FORM_BRDF(row, fn, mat) FORM(row, FORM_MAKE_##mat, brdf, M_(fn##_sample)(&m, wo, FORM_U), FORM_XYZ(s.wi))
@@ -83,6 +79,8 @@ bench_form *const B_(forms)[] = {MCST_ROWS(FORM_NAME)};
 #undef FORM_ARGS_cross
 #undef FORM_ARGS_ball
 #undef FORM_ARGS_disk_light
+#undef FORM_MAKE_rectangle
+#undef FORM_MAKE_triangle
 #undef FORM_MAKE_phong
 #undef FORM_MAKE_ward
 #undef FORM_MAKE_ward_gmd
@@ -98,6 +96,7 @@ bench_form *const B_(forms)[] = {MCST_ROWS(FORM_NAME)};
 #undef FORM_PLANE
 #undef FORM_DIR
 #undef FORM_LIGHT
+#undef FORM_POLYGON
 #undef FORM_LOBE
 #undef FORM_VLOBE
 #undef FORM_BRDF

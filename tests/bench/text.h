@@ -248,6 +248,89 @@ static inline text_sample text_disk_light(const float c[3], const float n[3], fl
     return s;
 }
 
+typedef struct {
+    float x, y, z;
+} text_vec3;
+static inline text_vec3 text_vector(float x, float y, float z) {
+    text_vec3 v;
+    v.x = x;
+    v.y = y;
+    v.z = z;
+    return v;
+}
+static inline float text_dot(text_vec3 a, text_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline text_vec3 text_cross(text_vec3 a, text_vec3 b) {
+    return text_vector(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+static inline text_vec3 text_sum(float s, text_vec3 a, float t, text_vec3 b) {
+    return text_vector(s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z);
+}
+static inline text_vec3 text_unit(text_vec3 a) { return text_sum(1 / sqrtf(text_dot(a, a)), a, 0, a); }
+static inline float text_clamped(float x, float lo, float hi) { return fminf(fmaxf(x, lo), hi); }
+static inline float text_acos(float x) { return acosf(text_clamped(x, -1, 1)); }
+
+/* Urena, Fajardo and King 2013, listing, with the rectangle of the tests */
+static inline text_sample text_spherical_rectangle(float a, float b, float u1, float u2) {
+    const float height = a * b;
+    const text_vec3 corner = text_vector(-0.25f * a, -0.5f * height, 1.0f - 0.0625f * a - 0.0625f * height);
+    const text_vec3 edge_x = text_vector(a, 0, 0.25f * a), edge_y = text_vector(0, height, 0.125f * height);
+    const text_vec3 x = text_unit(edge_x), y = text_unit(edge_y);
+    text_vec3 z = text_cross(x, y);
+    float z0 = text_dot(corner, z);
+    if (z0 > 0) {
+        z0 = -z0;
+        z = text_sum(-1, z, 0, z);
+    }
+    const float x0 = text_dot(corner, x), y0 = text_dot(corner, y);
+    const float x1 = x0 + sqrtf(text_dot(edge_x, edge_x)), y1 = y0 + sqrtf(text_dot(edge_y, edge_y));
+    const text_vec3 n0 = text_unit(text_vector(0, z0, -y0)), n1 = text_unit(text_vector(-z0, 0, x1));
+    const text_vec3 n2 = text_unit(text_vector(0, -z0, y1)), n3 = text_unit(text_vector(z0, 0, -x0));
+    const float g2 = text_acos(-text_dot(n2, n3)), g3 = text_acos(-text_dot(n3, n0));
+    const float k = 2 * TEXT_PI - g2 - g3;
+    const float angle = text_acos(-text_dot(n0, n1)) + text_acos(-text_dot(n1, n2)) - k;
+    const float au = u1 * angle + k;
+    const float fu = (cosf(au) * n0.z - n2.z) / sinf(au);
+    const float cu = text_clamped(copysignf(1 / sqrtf(fu * fu + n0.z * n0.z), fu), -1, 1);
+    const float xu = text_clamped(-(cu * z0) / sqrtf(fmaxf(1 - cu * cu, 1e-12f)), x0, x1);
+    const float d = sqrtf(xu * xu + z0 * z0);
+    const float h0 = y0 / sqrtf(d * d + y0 * y0), h1 = y1 / sqrtf(d * d + y1 * y1);
+    const float h = h0 + u2 * (h1 - h0);
+    const float yv = h * h < 1 - 1e-6f ? h * d / sqrtf(1 - h * h) : y1;
+    const text_vec3 w = text_unit(text_sum(1, text_sum(xu, x, yv, y), z0, z));
+    text_sample s;
+    s.x = w.x;
+    s.y = w.y;
+    s.z = w.z;
+    s.pdf = 1 / angle;
+    return s;
+}
+/* Arvo 1995, with the triangle of the tests */
+static inline text_sample text_spherical_triangle(float p, float q, float u1, float u2) {
+    const float height = p * q;
+    const text_vec3 a = text_unit(text_vector(-p, -height, 1.25f - 0.25f * height));
+    const text_vec3 b = text_unit(text_vector(0.9f * p, -0.5f * height, 1.25f - 0.125f * height));
+    const text_vec3 c = text_unit(text_vector(0.25f * p, height, 1.25f + 0.25f * height));
+    const text_vec3 ab = text_unit(text_cross(a, b)), bc = text_unit(text_cross(b, c)),
+                    ca = text_unit(text_cross(c, a));
+    const float alpha = text_acos(-text_dot(ab, ca));
+    const float beta = text_acos(-text_dot(bc, ab)), gamma = text_acos(-text_dot(ca, bc));
+    const float area = alpha + beta + gamma - TEXT_PI;
+    const float sn = sinf(u1 * area - alpha), cs = cosf(u1 * area - alpha);
+    const float u = cs - cosf(alpha), v = sn + sinf(alpha) * text_dot(a, b);
+    const float at = text_clamped(((v * cs - u * sn) * cosf(alpha) - v) / ((v * sn + u * cs) * sinf(alpha)), -1, 1);
+    const text_vec3 from_a = text_unit(text_sum(1, c, -text_dot(c, a), a));
+    const text_vec3 end = text_sum(at, a, sqrtf(1 - at * at), from_a);
+    const float z = 1 - u2 * (1 - text_dot(end, b));
+    const text_vec3 from_b = text_unit(text_sum(1, end, -text_dot(end, b), b));
+    const text_vec3 w = text_sum(z, b, sqrtf(fmaxf(0, 1 - z * z)), from_b);
+    text_sample s;
+    s.x = w.x;
+    s.y = w.y;
+    s.z = w.z;
+    s.pdf = 1 / area;
+    return s;
+}
+
 /* ---- phase functions ---- */
 
 static inline text_sample text_henyey_greenstein(float g, float u1, float u2) {

@@ -67,6 +67,8 @@ TEXT3(cone, text_cone(a, u, v))
 TEXT3(ball, text_ball(-0.5f * a, 0.25f * a, a, b, u, v))
 static const float tilted[3] = {0.48f, 0.6f, -0.64f};
 TEXT3(disk_light, text_disk_light((const float[]){-0.5f * a, 0.25f * a, a}, tilted, b, u, v))
+TEXT3(spherical_rectangle, text_spherical_rectangle(a, b, u, v))
+TEXT3(spherical_triangle, text_spherical_triangle(a, b, u, v))
 TEXT3(henyey_greenstein, text_henyey_greenstein(a, u, v))
 TEXT3(rayleigh, text_rayleigh(u, v))
 TEXT3(von_mises_fisher, text_von_mises_fisher(a, u, v))
@@ -172,6 +174,8 @@ static const sampler listed[] = {
     {"cone", "cone", ALL, 0.5f, 0, cone_text, 0, 1, NULL, NULL},
     {"ball", "ball", ALL, 2, 1, ball_text, 0, 1, NULL, NULL},
     {"disk_light", "disk_light", ALL, 2, 1, disk_light_text, 0, 1, NULL, NULL},
+    {"spherical_rectangle", "spherical_rectangle", ALL, 0.5f, 1, spherical_rectangle_text, 0, 1, NULL, NULL},
+    {"spherical_triangle", "spherical_triangle", ALL, 0.5f, 1, spherical_triangle_text, 0, 1, NULL, NULL},
     {"henyey_greenstein", "henyey_greenstein", ALL, 0.5f, 0, henyey_greenstein_text, 0, 1, NULL, NULL},
     {"rayleigh", "rayleigh", ALL, 0, 0, rayleigh_text, 0, 1, NULL, NULL},
     {"von_mises_fisher", "von_mises_fisher", ALL, 10, 0, von_mises_fisher_text, 0, 1, NULL, NULL},
