@@ -766,7 +766,8 @@ MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const fl
  *            whose w is on the side of the normal.
  * radius     in [1e-18, 1e18]; below 1e-15 of the largest coordinate of centre it counts as that
  * map        the point is that of mcs_concentric_sample, in the frame of mcs_frame_make(normal), and w is its
- *            direction. Where it is within 1e-18 of the point that is lit, w is +z and the density 0.
+ *            direction. Where it is within 1e-18 of the point that is lit, w is +z and the density 0. Where the density
+ *            is 0, or too small for a float, pdf and distance are 0.
  * density    distance^2 / (pi radius^2 |w.normal|); 0 where w misses the disk by more than an angle of 2^-23, and where
  *            |w.normal| is below 1e-7
  * accuracy   coordinates within 2^-24, pdf and distance within 1e-7 of themselves, for samples whose distance is 1e-4
@@ -4418,7 +4419,7 @@ MCSI_CORE mcs_light mcsi_disk_light_draw(const mcsi_disk_light *d, mcs_f u1, mcs
     mcs_light light;
     light.w = mcsi_sel3(apart, mcsi_from_axis(&d->axis, &v), mcsi_vec3(zero, zero, one));
     light.pdf = mcsi_sane_result(ok & lit, MCSI_NARROW(counts * counts * pdf));
-    light.distance = mcsi_sane_result(ok & lit, MCSI_NARROW(distance));
+    light.distance = mcsi_sane_result(light.pdf > 0.0f, MCSI_NARROW(distance));
     return light;
 }
 MCSI_SAMPLE mcs_light mcs_disk_light_sample(mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_f u1, mcs_f u2) {

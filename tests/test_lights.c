@@ -1,5 +1,5 @@
 /* Lights anywhere, of any size: spherical rectangles and triangles against the truth of oracle.h; points in the plane
- * of a light, lights that are none, densities per area and per solid angle, lanes and arrays. */
+ * of a light, lights that are none or too faint, densities per area and per solid angle, lanes and arrays. */
 #include <float.h>
 #include <math.h>
 #include "mcs_test.h"
@@ -195,6 +195,13 @@ static void no_lights(void) {
         dark("not finite", s);
     }
 }
+/* A disk whose density is below all floats counts as none: it has no distance either. */
+static void faint_disk(void) {
+    const mcs_vec3 centre = {2e-18f, -1e-18f, 4e-18f};
+    const mcs_vec3 normal = {0.48f, 0.6f, -0.64f};
+    const mcs_light s = mcs_disk_light_sample(centre, normal, 1e18f, 0.5f, 0.5f);
+    CHECK(s.pdf == 0 && s.distance == 0, "%g %g", (double)s.pdf, (double)s.distance);
+}
 /* Where p approaches the plane over the light, the solid angle approaches 2 pi. */
 static void half_of_all(void) {
     const mcs_vec3 a = {-1, -1, 0};
@@ -322,6 +329,7 @@ int main(int argc, char **argv) {
     }
     if (mcst_case("half of all directions")) half_of_all();
     if (mcst_case("no light")) no_lights();
+    if (mcst_case("a disk too faint")) faint_disk();
     if (mcst_case("per area and per solid angle")) conversions(&r);
     if (mcst_arrays_contract()) puts("SKIPPED: the bits of lanes and arrays, as this build contracts a*b + c");
     else if (mcst_case("places in lanes and arrays")) check_places(&r);

@@ -170,12 +170,16 @@ static double exponent_of(const mcst_row *row, const setting *s, q3 x) {
     const q3 h = row->shape == MCST_IS_BRDF ? add(s->wo, x) : x;
     return row->traits & MCST_GAUSS ? (double)(tan2_of(h) * per_alpha2(s->a, s->b, h)) : 0;
 }
-/* The error of a density or value at a given direction, in its unit. */
+/* The error of a density or value at a given direction, in its unit; what is below MCST_FAINT of the peak does not
+ * count here either. */
 static double at_direction(const mcst_row *row, const setting *s, const float *p, q3 x, float got, qd want, qd density,
                            double least) {
     if (!(row->traits & MCST_GAUSS)) return in_units(row, p, got, want, density, least);
     if (!(want < (qd)FLT_MAX && want > (qd)FLT_MIN)) return 0;
-    return fabs((double)(((qd)got - want) / want)) / (1e-6 * (1 + exponent_of(row, s, x)));
+    const double unit = 1e-6 * (1 + exponent_of(row, s, x));
+    const double error = fabs((double)(((qd)got - want) / want));
+    if (!(error / unit > least)) return error / unit;
+    return (error - MCST_FAINT * fmax(peak_of(row, p), (double)density) / (double)density) / unit;
 }
 
 /* What the weight of a sample belongs to: the half-vector of the exact point and the float direction wi. */
