@@ -1,67 +1,37 @@
 /* render.c - the main example of mcsample.h: how a renderer uses it.
  *
- * A row of spheres, one per BRDF, on a matte ground, in the open or in a room, lit by a latitude-longitude environment
- * map: direct illumination with visibility, estimated by uniform, cosine, BRDF, environment, multiple importance or
- * product sampling, or by tables of regions that learn which light they see. Writes PNG and Radiance .hdr pictures and
- * prints what each strategy cost and how far its mean may be off.
+ * A row of spheres, one per material, on a matte ground. Light comes from a latitude-longitude environment map, in the
+ * open or through the window of a room, or at night from two lamps. A sample of the picture is a camera ray, what it
+ * hits, and an estimate of the light that is reflected from there: the integral of f L V cos over the directions wi,
+ * where f is the BRDF, L the radiance that comes from wi, V whether anything is in its way, and cos that of wi to the
+ * normal. Each strategy draws wi in another way. All have the same mean; variance and cost differ, which is printed.
  *
  *     cc -O2 -std=c99 -I. -fopenmp examples/render.c -o render -lm       (-fopenmp is optional: without it, one thread)
  *     ./render --strategy all sunrise.hdr
  *
- * Here are the loop over pixels, the tables that are printed, the joining of parts, and main. The rest, by subject:
+ * Read this file from here to its end. What it calls is, by subject, in
  *
- *     render_strategy.h    direct illumination: where each strategy calls mcsample.h
+ *     render_point.h       a point that is lit
+ *     render_product.h     strategies that draw from map times BRDF
  *     render_learning.h    regions of the scene, which learn from shadow rays
- *     render_material.h    materials made of the BRDFs of mcsample.h
+ *     render_material.h    materials made of the BRDFs of mcsample.h, and glass
  *     render_light.h       the environment map
- *     render_scene.h       spheres, ground, room and camera
+ *     render_lamps.h       lamps: a rectangle and a ball
+ *     render_scene.h       spheres, ground, room and camera: what rays meet
  *     render_options.h     the command line
- *     render_picture.h     PNG and Radiance files
- *     render_parts.h       files of parts of a picture, made by many processes
+ *     render_progress.h    how long to go on
+ *     render_report.h      the error of a picture, and the tables that are printed
+ *     render_picture.h     pixels, PNG and Radiance files
+ *     render_parts.h       parts of a picture, made by many processes
  *
  * World: z up, lengths in sphere radii. Shading happens in the local frame of mcsample.h: normal on +z, wo to the eye,
- * wi to the light. Colours are linear RGB with the primaries of sRGB, kept in a vec3.
+ * wi to the light. Colours are linear RGB with the primaries of sRGB, kept in a vec3. Letters, in all files but those
+ * of formats: s scene, e environment, o options, x a lit point, p a position, w a direction in the world, m a material.
  */
 #define _POSIX_C_SOURCE 200809L /* clock_gettime, fileno, isatty */
-#include <time.h>
-#include <unistd.h>
 #include "render_parts.h"
-#include "render_strategy.h"
-
-/* ---- Rendering ---- */
-
-#define PASS 16 /* samples per pixel between two looks at the error; 1 with --seconds */
-
-typedef struct {
-    unsigned spp;
-    double samples, wall, cpu; /* light samples; seconds on the clock, and of all threads together */
-    double mean, error;        /* of the luminance of the picture; the standard error of that mean, INFINITY: unknown */
-    double mse[OBJECTS];       /* mean squared error of a pixel, by object */
-} outcome;
-
-typedef struct {
-    const char *what;
-    double start, last, rows, done; /* seconds; rows times samples, -1 where nobody watches */
-} progress;
-
-static double seconds(clockid_t clock_id) {
-    struct timespec t;
-    clock_gettime(clock_id, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void progress_row(progress *p, uint32_t samples) {
-    if (p->rows < 0) return;
-    OMP(omp critical(progress)) {
-        const double now = seconds(CLOCK_MONOTONIC);
-        p->done += samples;
-        if (now - p->last > 0.2) {
-            p->last = now;
-            fprintf(stderr, "\r%-8s %.0f %%, %.0f s left \033[K", p->what, 100 * p->done / p->rows,
-                    fmax(0, (now - p->start) * (p->rows / p->done - 1)));
-        }
-    }
-}
+#include "render_product.h"
+#include "render_progress.h"
 
 /* What is rendered, and how. */
 typedef struct {
@@ -69,286 +39,206 @@ typedef struct {
     const scene *s;
     const environment *e;
     strategy how;
-    learning *l; /* NULL for strategies that do not learn */
+    learning *regions; /* NULL for strategies that do not learn */
 } job;
 
-static void render_pixel(const job *j, float x, float y, pixel *p, shadow_rays *rays) {
-    const float px = (x + mcs_pcg32_float(&p->rng)) / (float)j->o->w; /* a box filter: anywhere in the pixel */
-    const float py = (y + mcs_pcg32_float(&p->rng)) / (float)j->o->h;
-    const vec3 w = camera_ray(j->s, px, py);
-    surface at;
-    vec3 c;
-    if (intersect(j->s, j->s->eye, w, &at)) {
-        const uint16_t number = j->l ? region_of(j->l, j->s, &at) : 0;
-        lit_point here = {j->s, j->e, &at, &p->rng, j->l, number, rays, 0};
-        c = direct(&here, j->how, j->o->lights);
-        p->drawn += here.drawn;
-    } else {
-        c = radiance(j->e, w);
-    }
-    p->object = p->luminance.n > 0 && at.object != p->object ? NO_OBJECT : at.object;
-    p->sum = add(p->sum, c);
-    mcs_stat_add(&p->luminance, luminance(c));
+static vec3 trace(const job *j, vec3 w, int *seen, pixel_sums *pixel, shadow_rays *rays);
+static vec3 shade(const job *j, const surface *hit, pixel_sums *pixel, shadow_rays *rays);
+static vec3 reflect(lit_point *x, uint32_t estimates);
+static vec3 reflect_hemisphere(const lit_point *x, int cosine);
+static vec3 reflect_brdf(const lit_point *x, int mis);
+static vec3 reflect_light(const lit_point *x, int mis);
+static incoming light_draw(const lit_point *x);
+static incoming light_along(const lit_point *x, vec3 w);
+
+/* ---- from the camera to a surface ---- */
+
+/* One sample of a pixel. */
+static void sample_pixel(const job *j, uint32_t col, uint32_t row, pixel_sums *pixel, shadow_rays *rays) {
+    const float right = (float)col + mcs_pcg32_float(&pixel->rng); /* a box filter: anywhere in the pixel */
+    const float down = (float)row + mcs_pcg32_float(&pixel->rng);
+    const vec3 w = camera_ray(j->s, right / (float)j->o->width, down / (float)j->o->height);
+    int seen = NO_OBJECT;
+    const vec3 color = trace(j, w, &seen, pixel, rays);
+    pixel_add(pixel, seen, color);
 }
 
-/* n samples of each pixel of row y. */
-static void render_row(const job *j, uint32_t y, uint32_t n, pixel *row) {
+/* The light that the camera sees along w. Glass sends the ray on, until it meets light or another material. What glass
+ * has sent on 32 times counts as black: hardly anything is left of it. *seen becomes the object that is met first. */
+static vec3 trace(const job *j, vec3 w, int *seen, pixel_sums *pixel, shadow_rays *rays) {
+    vec3 p = j->s->eye;
+    vec3 weight = {1, 1, 1};
+    surface hit = {NO_OBJECT, NULL, p, w, mcs_frame_make(w)};
+    for (int passed = 0; passed < 32; passed++) {
+        const int met = intersect(j->s, p, w, hit.object, &hit);
+        if (passed == 0) *seen = hit.object;
+        if (!met) return mul(weight, light_in_sight(j->s, j->e, p, w));
+        if (!(hit.m->eta > 0)) return mul(weight, shade(j, &hit, pixel, rays));
+        const float u_choice = mcs_pcg32_float(&pixel->rng);
+        const float u1 = mcs_pcg32_float(&pixel->rng);
+        const float u2 = mcs_pcg32_float(&pixel->rng);
+        const bounce b = glass_sample(hit.m, hit.wo, u_choice, u1, u2);
+        if (!(b.pdf > 0)) return black;
+        weight = mul(weight, b.weight);
+        p = hit.p;
+        w = mcs_to_world(&hit.frame, b.wi);
+    }
+    return black;
+}
+
+/* The light that a surface reflects to where the ray came from. */
+static vec3 shade(const job *j, const surface *hit, pixel_sums *pixel, shadow_rays *rays) {
+    lit_point x = {.s = j->s, .e = j->e, .hit = hit, .how = j->how, .rng = &pixel->rng, .regions = j->regions};
+    lamps_view lamps;
+    if (j->s->by_lamps) {
+        lamps = lamps_from(&j->s->lamps, hit->p, j->how == AREA);
+        x.lamps = &lamps;
+    }
+    if (j->regions) {
+        x.region = region_of(j->regions, j->s, hit);
+        x.rays = rays;
+    }
+    const vec3 reflected = reflect(&x, j->o->lights);
+    pixel->drawn += x.drawn;
+    return reflected;
+}
+
+/* ---- estimates of the light that a surface reflects ---- */
+
+/* The mean of so many estimates. */
+static vec3 reflect(lit_point *x, uint32_t estimates) {
+    vec3 sum = black;
+    x->drawn += estimates;
+    if (x->how == PRODUCT || x->how == LEARNED) return scale(1 / (float)estimates, reflect_product(x, estimates));
+    if (x->how == REGION) return scale(1 / (float)estimates, reflect_region(x, estimates));
+    for (uint32_t i = 0; i < estimates; i++) {
+        switch (x->how) {
+        case UNIFORM: sum = add(sum, reflect_hemisphere(x, 0)); break;
+        case COSINE: sum = add(sum, reflect_hemisphere(x, 1)); break;
+        case BRDF: sum = add(sum, reflect_brdf(x, 0)); break;
+        case MIS:
+            if (point_bounce_is_due(x)) sum = add(sum, reflect_brdf(x, 1));
+            sum = add(sum, reflect_light(x, 1));
+            break;
+        default: sum = add(sum, reflect_light(x, 0)); /* ENVIRONMENT, ANGLE, AREA */
+        }
+    }
+    return scale(1 / (float)estimates, sum);
+}
+
+/* By a direction of the hemisphere above the point, whatever its material and its light. */
+static vec3 reflect_hemisphere(const lit_point *x, int cosine) {
+    const float u1 = mcs_pcg32_float(x->rng);
+    const float u2 = mcs_pcg32_float(x->rng);
+    const mcs_dir d = cosine ? mcs_cosine_sample(u1, u2) : mcs_hemisphere_sample(u1, u2);
+    const vec3 w = mcs_to_world(&x->hit->frame, d.w);
+    if (!(d.pdf > 0 && point_sees(x, w))) return black;
+    const vec3 f_cos = material_eval(x->hit->m, x->hit->wo, d.w);
+    return scale(1 / d.pdf, mul(f_cos, light_along(x, w).radiance));
+}
+
+/* By a direction drawn from the BRDF. With mis it is one half of a multi-sample estimator with the power heuristic
+ * (Veach and Guibas, "Optimally combining sampling techniques", 1995), without it an estimator by itself. */
+static vec3 reflect_brdf(const lit_point *x, int mis) {
+    const bounce b = point_bounce(x);
+    const vec3 w = mcs_to_world(&x->hit->frame, b.wi);
+    if (!(b.pdf > 0 && point_sees(x, w))) return black;
+    const incoming light = light_along(x, w);
+    const vec3 value = mul(b.weight, light.radiance);
+    if (!mis) return value;
+    const float share = x->hit->m->share;
+    return scale(mcs_mis_power(share * b.pdf, light.pdf) / share, value);
+}
+
+/* By a direction drawn from the light. With mis it is the other half. */
+static vec3 reflect_light(const lit_point *x, int mis) {
+    const material *m = x->hit->m;
+    const incoming light = light_draw(x);
+    const vec3 wi = mcs_to_local(&x->hit->frame, light.w);
+    if (!(light.pdf > 0 && wi.z > 0 && point_sees(x, light.w))) return black;
+    const vec3 value = scale(1 / light.pdf, mul(material_eval(m, x->hit->wo, wi), light.radiance));
+    if (!mis) return value;
+    return scale(mcs_mis_power(light.pdf, m->share * material_pdf(m, x->hit->wo, wi)), value);
+}
+
+/* ---- light that comes to a point ---- */
+
+static incoming light_draw(const lit_point *x) {
+    const float u1 = mcs_pcg32_float(x->rng);
+    const float u2 = mcs_pcg32_float(x->rng);
+    if (x->s->by_lamps) return lamps_draw(x->lamps, u1, u2);
+    const mcs_texel t = mcs_env_sample(x->e->table, u1, u2);
+    return incoming_make(t.w, t.pdf, radiance_at(x->e, t.col, t.row));
+}
+
+/* From the direction w, with the density with which light_draw draws it. */
+static incoming light_along(const lit_point *x, vec3 w) {
+    if (x->s->by_lamps) return lamps_along(x->lamps, w);
+    const mcs_texel t = mcs_env_texel(x->e->table, w);
+    return incoming_make(w, t.pdf, radiance_at(x->e, t.col, t.row));
+}
+
+/* ---- the picture ---- */
+
+/* So many samples of each pixel of a row. */
+static void render_row(const job *j, uint32_t row, uint32_t samples, pixel_sums *pixel) {
     shadow_rays rays;
     rays.count = 0;
-    for (uint32_t x = 0; x < j->o->w; x++)
-        for (uint32_t i = 0; i < n; i++) render_pixel(j, (float)x, (float)y, row + x, &rays);
-    if (j->l) shadow_rays_deliver(j->l, &rays);
+    for (uint32_t col = 0; col < j->o->width; col++)
+        for (uint32_t i = 0; i < samples; i++) sample_pixel(j, col, row, pixel + col, &rays);
+    if (j->regions) shadow_rays_deliver(j->regions, &rays);
 }
 
-/* Samples per pixel of the next pass. What learns begins with short passes, 1, 1, 2, 4, ...: it learns each time that
- * the samples have doubled. */
-static unsigned pass_length(const job *j, unsigned done) {
-    unsigned n = PASS;
-    if (j->l && done < n) n = done > 0 ? done : 1;
-    if (j->o->seconds > 0) n = 1;
-    return n < j->o->spp - done ? n : j->o->spp - done;
-}
-
-/* The pixels are strata of equal size, each with its own independent samples: the variance of the mean of the picture
- * is the sum of the variances of the pixel means over the square of their number. What differs between pixels is
- * picture, not error. As with any estimate: where samples hardly ever find a small bright light, both the mean and its
- * error come out low until they do. */
-static void picture_statistics(const pixel *p, size_t n, outcome *r) {
-    double pixels = 0;
-    double variance = 0;
-    double count[OBJECTS] = {0};
-    r->mean = r->samples = 0;
-    memset(r->mse, 0, sizeof r->mse);
-    for (size_t i = 0; i < n; i++) {
-        if (!(p[i].luminance.n > 0)) continue; /* in another part */
-        pixels++;
-        const double e = mcs_stat_error(&p[i].luminance);
-        r->mean += p[i].luminance.mean;
-        r->samples += p[i].drawn;
-        variance += e * e;
-        if (p[i].object != NO_OBJECT) {
-            r->mse[p[i].object] += e * e;
-            count[p[i].object]++;
-        }
-    }
-    for (int k = 0; k < OBJECTS; k++) r->mse[k] /= fmax(count[k], 1);
-    r->mean /= pixels;
-    r->error = r->spp > 1 ? sqrt(variance) / pixels : INFINITY; /* one sample tells nothing of its error */
-}
-
-/* Whether another pass is needed. */
-static int unfinished(const options *o, const outcome *r) {
-    if (o->error > 0 && r->spp > 0 && r->error <= o->error * r->mean) return 0;
-    if (o->seconds > 0 && r->spp > 1 && r->cpu >= o->seconds) return 0;
-    return r->spp < o->spp;
-}
-
-static void render_passes(const job *j, pixel *image, outcome *r, progress *p) {
+/* Every pixel has its own stream of random numbers, seeded from (seed, pixel, strategy), and owns all that it changes.
+ * What pixels learn from each other changes between passes only. So the picture does not depend on the number of
+ * threads. Returns 0 after a complaint. */
+static int render(job *j, pixel_sums *image, outcome *result) {
     const options *o = j->o;
-    const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - r->cpu;
-    while (unfinished(o, r)) {
-        const uint32_t n = pass_length(j, r->spp);
+    const size_t pixels = (size_t)o->width * o->height;
+    const int learns = j->how == REGION || j->how == LEARNED;
+    progress bar = progress_start(o, j->how);
+    memset(result, 0, sizeof *result);
+    memset(image, 0, pixels * sizeof *image);
+    for (size_t i = 0; i < pixels; i++) image[i].rng = mcs_pcg32_for(o->seed, i, j->how);
+    j->regions = learns ? learning_make(j->s, j->e, pixels, j->how == REGION) : NULL;
+    if (learns && !j->regions) return 0;
+    while (unfinished(o, result)) {
+        const uint32_t samples = pass_length(o, learns, result->spp);
         OMP(omp parallel for schedule(dynamic) num_threads(o->threads))
-        for (int y = (int)o->part - 1; y < (int)o->h; y += (int)o->parts) {
-            render_row(j, (uint32_t)y, n, image + (size_t)y * o->w);
-            progress_row(p, n);
+        for (int row = (int)o->part - 1; row < (int)o->height; row += (int)o->parts) {
+            render_row(j, (uint32_t)row, samples, image + (size_t)row * o->width);
+            progress_row(&bar, samples);
         }
-        r->spp += n;
-        if (j->l && (r->spp & (r->spp - 1)) == 0) learning_advance(j->l);
-        picture_statistics(image, (size_t)o->w * o->h, r);
-        if (p->rows >= 0 && o->error > 0 && r->mean > 0) /* the error falls with the root of the samples */
-            p->rows = fmin(p->rows, p->done * fmax(1, pow(r->error / (o->error * r->mean), 2)));
-        r->cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
-        if (p->rows >= 0 && o->seconds > 0) p->rows = fmin(p->rows, p->done * fmax(1, o->seconds / r->cpu));
+        result->spp += samples;
+        if (learns && lesson_is_due(result->spp)) learning_advance(j->regions);
+        picture_statistics(image, pixels, result);
+        progress_pass(&bar, o, result);
     }
-}
-
-/* Every pixel has its own stream, seeded from (seed, pixel, strategy), and owns all that it changes. What pixels learn
- * from each other changes between passes only. So the picture does not depend on the number of threads. Returns 0 after
- * a complaint. */
-static int render(const options *o, const scene *s, const environment *e, strategy how, pixel *image, outcome *r) {
-    const size_t pixels = (size_t)o->w * o->h;
-    memset(r, 0, sizeof *r);
-    progress p = {strategy_name[how], seconds(CLOCK_MONOTONIC), 0, 0, 0};
-    p.rows = (o->h + o->parts - o->part) / o->parts * (double)o->spp;
-    const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
-    const int watched = isatty(fileno(stderr));
-    if (!watched) p.rows = -1;
-    for (size_t i = 0; i < pixels; i++) {
-        memset(&image[i], 0, sizeof image[i]);
-        image[i].rng = mcs_pcg32_for(o->seed, i, how);
-    }
-    job j = {o, s, e, how, NULL};
-    if (how == REGION || how == LEARNED) {
-        j.l = learning_make(s, e, pixels, how == REGION);
-        if (!j.l) return 0;
-    }
-    r->cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
-    render_passes(&j, image, r, &p);
-    if (watched) fputs("\r\033[K", stderr);
-    r->wall = seconds(CLOCK_MONOTONIC) - p.start;
-    learning_free(j.l);
+    progress_end(&bar, result);
+    learning_free(j->regions);
     return 1;
-}
-
-/* ---- The command ---- */
-
-/* Sends what has been printed on its way: to a file or a pipe nothing would go before the end, and nothing at all after
- * Ctrl-C. */
-static int flush_output(void) {
-    if (fflush(stdout) != 0 || ferror(stdout)) return complain("standard output", "cannot write: %s", strerror(errno));
-    return 1;
-}
-
-static double efficiency(const outcome *r) {
-    return r->error > 0 && r->cpu > 0 ? 1 / (r->error * r->error * r->cpu) : 0;
-}
-
-static void print_head(void) { puts("strategy  spp     samples    wall s   cpu s       mean  std error  efficiency"); }
-
-static void print_row(strategy how, const outcome *r) {
-    printf("%-8s%5u  %10.0f  %8.2f  %6.2f  %9.6g", strategy_name[how], r->spp, r->samples, r->wall, r->cpu, r->mean);
-    if (r->spp > 1) printf("  %9.3g  %10.4g\n", r->error, efficiency(r));
-    else printf("  %9s  %10s\n", "unknown", "unknown");
-}
-
-static void print_comparison(const options *o, const outcome *result) {
-    int best = -1;
-    for (int i = 0; i < STRATEGIES; i++)
-        if (o->wanted[i] && (best < 0 || efficiency(&result[i]) > efficiency(&result[best]))) best = i;
-    puts("\nstrategy  of best  deviation");
-    for (int i = 0; i < STRATEGIES; i++) {
-        const outcome *r = &result[i];
-        const outcome *b = &result[best];
-        if (!o->wanted[i]) continue;
-        printf("%-8s  %7.3f  %9.2f\n", strategy_name[i], efficiency(b) > 0 ? efficiency(r) / efficiency(b) : 1,
-               i != best ? (r->mean - b->mean) / fmax(hypot(r->error, b->error), 1e-300) : 0);
-    }
-    puts("of best: efficiency over the highest;\n"
-         "deviation: from the mean of the most efficient, in standard errors of the difference");
-}
-
-/* Over the pixels that show nothing but that object. */
-static void print_objects(const options *o, const outcome *result) {
-    static const char *const name[] = {"matte",  "Phong",  "Ward.18", "Ward ani", "GGX.06",
-                                       "GGX.12", "GGX.40", "A.-S.",   "ground",   "walls"};
-    const int objects = o->in_room ? OBJECTS : WALLS;
-    printf("\nmean squared error of a pixel x cpu s, over that of mis\nstrategy");
-    for (int k = 0; k < objects; k++) printf(" %9s", name[k]);
-    putchar('\n');
-    for (int i = 0; i < STRATEGIES; i++) {
-        if (!o->wanted[i] || i == MIS) continue;
-        printf("%-8s", strategy_name[i]);
-        for (int k = 0; k < objects; k++) {
-            const double mis = result[MIS].mse[k] * result[MIS].cpu;
-            printf(" %9.3g", mis > 0 ? result[i].mse[k] * result[i].cpu / mis : 0);
-        }
-        putchar('\n');
-    }
 }
 
 /* Renders every strategy that is wanted, prints its row and writes its pictures. `next` is how far the image of one is
  * from that of the next: 0 where all share one. Returns 0 after a complaint. */
-static int render_all(const options *o, const scene *s, const environment *e, pixel *image, size_t next,
-                      outcome *result) {
-    printf("%s %u x %u, picture %u x %u, ", o->map ? o->map : "built-in sky", e->map.w, e->map.h, o->w, o->h);
-    if (o->given[O_PART]) printf("part %u of %u, ", o->part, o->parts);
-    printf("%d thread%s\n", o->threads, o->threads > 1 ? "s" : "");
+static int render_all(job *j, pixel_sums *image, size_t next, outcome *result) {
+    const options *o = j->o;
+    print_title(o, j->e);
     print_head();
     int ok = flush_output();
     for (int i = 0; ok && i < STRATEGIES; i++) {
         if (!o->wanted[i]) continue;
-        ok = render(o, s, e, (strategy)i, image, &result[i]);
-        if (ok) print_row((strategy)i, &result[i]);
-        const double took[2] = {result[i].wall, result[i].cpu};
+        j->how = (strategy)i;
+        ok = render(j, image, &result[i]);
+        if (ok) print_row(j->how, &result[i]);
         ok = ok && flush_output();
-        if (ok && o->given[O_PART]) ok = sums_write(o, (strategy)i, e, image, took);
-        else if (ok) ok = write_pictures(o, (strategy)i, e, image);
+        if (ok)
+            ok = o->given[O_PART] ? sums_write(o, j->how, j->e, image, &result[i])
+                                  : write_pictures(o, j->how, j->e, image);
         image += next;
     }
     return ok;
 }
-
-static void print_tables(const options *o, unsigned count, const outcome *result) {
-    puts("samples: light samples; efficiency: 1 / (std error^2 x cpu s)");
-    if (count < 2 || o->spp < 2 || o->given[O_PART]) return;
-    print_comparison(o, result);
-    if (o->wanted[MIS]) print_objects(o, result);
-}
-
-static int reached_error(const options *o, const outcome *result) {
-    char error[64];
-    for (int i = 0; i < STRATEGIES; i++)
-        if (o->wanted[i] && o->error > 0 && !(result[i].error <= o->error * result[i].mean))
-            return complain(strategy_name[i], "error %s not reached with %u sample%s per pixel", plain(o->error, error),
-                            result[i].spp, result[i].spp > 1 ? "s" : "");
-    return 1;
-}
-
-/* ---- Parts ---- */
-
-static unsigned count_strategies(const options *o) {
-    unsigned count = 0;
-    for (int i = 0; i < STRATEGIES; i++) count += o->wanted[i] != 0;
-    return count;
-}
-
-/* Reads the pixels of all files, `image` being all zeros, and prints the rows that single runs print. Processor times
- * are added; of wall times, the longest stays. Returns 0 after a complaint. */
-static int merge_files(const options *asked, const options *o, pixel *image, outcome *result) {
-    const size_t pixels = (size_t)o->w * o->h;
-    pixel *start[STRATEGIES] = {NULL};
-    for (int i = 0; i < STRATEGIES; i++) {
-        start[i] = image;
-        if (o->wanted[i]) image += pixels;
-    }
-    memset(result, 0, STRATEGIES * sizeof *result);
-    for (int i = 0; i < asked->files; i++) {
-        sums s;
-        if (!sums_read(asked->file[i], &s, start)) return 0;
-        result[s.how].wall = fmax(result[s.how].wall, s.wall);
-        result[s.how].cpu += s.cpu;
-    }
-    for (int i = 0; i < STRATEGIES; i++)
-        if (o->wanted[i] && !sums_complete(o, (strategy)i, start[i])) return 0;
-    printf("%u parts, picture %u x %u\n", o->parts, o->w, o->h);
-    print_head();
-    for (int i = 0; i < STRATEGIES; i++) {
-        if (!o->wanted[i]) continue;
-        result[i].spp = o->spp;
-        picture_statistics(start[i], pixels, &result[i]);
-        print_row((strategy)i, &result[i]);
-    }
-    return 1;
-}
-
-/* Does what a single run does behind the rendering. Returns 0 after a complaint. */
-static int merge(const options *asked) {
-    sums first;
-    if (!sums_survey(asked, &first) || !can_write_pictures(&first.o)) return 0;
-    const options *o = &first.o;
-    environment e;
-    memset(&e, 0, sizeof e);
-    e.irradiance = bits_float(first.irradiance);
-    const unsigned count = count_strategies(o);
-    const size_t pixels = (size_t)o->w * o->h;
-    pixel *image = calloc(count * pixels, sizeof *image);
-    outcome result[STRATEGIES];
-    int ok = image ? merge_files(asked, o, image, result) : complain("--merge", "not enough memory for the picture");
-    if (ok) print_tables(o, count, result);
-    ok = ok && flush_output();
-    const pixel *next = image;
-    for (int i = 0; ok && i < STRATEGIES; i++) {
-        if (!o->wanted[i]) continue;
-        ok = write_pictures(o, (strategy)i, &e, next);
-        next += pixels;
-    }
-    ok = ok && write_sheets(o, &e, image, count);
-    free(image);
-    return ok;
-}
-
-/* ---- Main ---- */
 
 int main(int argc, char **argv) {
     options o;
@@ -360,23 +250,21 @@ int main(int argc, char **argv) {
     if (o.merge) return merge(&o) ? 0 : 1;
     if (!(o.given[O_PART] ? can_write_sums(&o) : can_write_pictures(&o))) return 1;
     const unsigned count = count_strategies(&o);
-    const size_t pixels = (size_t)o.w * o.h;
+    const size_t pixels = (size_t)o.width * o.height;
     const int sheets = o.stack || o.beside; /* they need all pictures at once */
-    pixel *image;
-    image = malloc((sheets ? count : 1) * pixels * sizeof *image);
+    pixel_sums *image = malloc((sheets ? count : 1) * pixels * sizeof *image);
     environment e;
     memset(&e, 0, sizeof e);
-    int ok = image ? environment_make(&e, o.map) : complain("--size", "not enough memory for the picture");
+    int ok = image ? environment_make(&e, &o) : complain("--size", "not enough memory for the picture");
     if (ok) {
-        const scene s = scene_make(o.in_room, o.w, o.h, e.main_light);
+        const scene s = scene_make(o.kind, (float)o.height / (float)o.width, e.main_light);
+        job j = {&o, &s, &e, UNIFORM, NULL};
         outcome result[STRATEGIES];
-        ok = render_all(&o, &s, &e, image, sheets ? pixels : 0, result);
+        ok = render_all(&j, image, sheets ? pixels : 0, result);
         if (ok) print_tables(&o, count, result);
         ok = ok && flush_output() && (!sheets || write_sheets(&o, &e, image, count)) && reached_error(&o, result);
     }
     free(image);
-    free(e.map.pixel);
-    free(e.table);
-    free(e.tiles);
+    environment_free(&e);
     return ok ? 0 : 1;
 }

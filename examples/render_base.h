@@ -20,6 +20,7 @@ static vec3 vec(float x, float y, float z) {
     v.z = z;
     return v;
 }
+static const vec3 black = {0, 0, 0};
 static vec3 add(vec3 a, vec3 b) { return vec(a.x + b.x, a.y + b.y, a.z + b.z); }
 static vec3 sub(vec3 a, vec3 b) { return vec(a.x - b.x, a.y - b.y, a.z - b.z); }
 static vec3 mul(vec3 a, vec3 b) { return vec(a.x * b.x, a.y * b.y, a.z * b.z); }

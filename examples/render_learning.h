@@ -46,119 +46,121 @@ typedef struct {
 
 /* ---- which region a point belongs to ---- */
 
-/* 2 k where the largest component of n is component k, 2 k + 1 where it is negative. */
-static unsigned main_axis(vec3 n) {
-    const float x = fabsf(n.x);
-    const float y = fabsf(n.y);
-    const float z = fabsf(n.z);
-    if (x >= y && x >= z) return n.x < 0;
-    if (y >= z) return 2u + (n.y < 0);
-    return 4u + (n.z < 0);
+/* 2 k where the largest component of the normal is component k, 2 k + 1 where it is negative. */
+static unsigned main_axis(vec3 normal) {
+    const float x = fabsf(normal.x);
+    const float y = fabsf(normal.y);
+    const float z = fabsf(normal.z);
+    if (x >= y && x >= z) return normal.x < 0;
+    if (y >= z) return 2u + (normal.y < 0);
+    return 4u + (normal.z < 0);
 }
 
-static unsigned cell_of(float x) { return (unsigned)fminf(fmaxf(x, 0), CELLS - 1); }
+static unsigned cell_of(float place) { return (unsigned)fminf(fmaxf(place, 0), CELLS - 1); }
 
 /* Where the number of the region of a point is kept. */
-static uint16_t *region_place(learning *l, const scene *s, const surface *x) {
-    const int of_sphere = x->object < SPHERES;
+static uint16_t *region_place(learning *regions, const scene *s, const surface *hit) {
+    const int of_sphere = hit->object < SPHERES;
     const float edge = of_sphere ? 0.75f : 1.5f; /* three eighths of a sphere; objects that are larger have 16 cells */
     const float low = of_sphere ? -1 : -0.5f * CELLS * edge;
-    const vec3 p = in_scene_axes(s, of_sphere ? sub(x->p, s->center[x->object]) : x->p);
-    const unsigned a = cell_of((p.x - low) / edge);
-    const unsigned b = cell_of((p.y - low) / edge);
-    const unsigned c = cell_of((p.z - low) / edge);
-    return &l->number[x->object][main_axis(in_scene_axes(s, x->frame.n))][a][b][c];
+    const vec3 p = in_scene_axes(s, of_sphere ? sub(hit->p, s->center[hit->object]) : hit->p);
+    const unsigned i = cell_of((p.x - low) / edge);
+    const unsigned j = cell_of((p.y - low) / edge);
+    const unsigned k = cell_of((p.z - low) / edge);
+    return &regions->number[hit->object][main_axis(in_scene_axes(s, hit->frame.n))][i][j][k];
 }
 
-static uint16_t region_of(learning *l, const scene *s, const surface *x) {
-    const uint16_t number = *region_place(l, s, x);
-    return number ? number : (uint16_t)x->object;
+static uint16_t region_of(learning *regions, const scene *s, const surface *hit) {
+    const uint16_t number = *region_place(regions, s, hit);
+    return number ? number : (uint16_t)hit->object;
 }
 
 /* ---- making regions ---- */
 
-static void learning_free(learning *l) {
-    for (uint32_t i = 0; l && i < l->count; i++) {
-        free(l->list[i].known);
-        free(l->list[i].fresh);
-        free(l->list[i].table);
+static void learning_free(learning *regions) {
+    for (uint32_t i = 0; regions && i < regions->count; i++) {
+        free(regions->list[i].known);
+        free(regions->list[i].fresh);
+        free(regions->list[i].table);
     }
-    free(l);
+    free(regions);
 }
 
-static int region_make(learning *l, int object, int with_table) {
+static int region_make(learning *regions, int object, int with_table) {
     const size_t bytes = mcs_region_bytes(TILES);
-    region *g = &l->list[l->count++];
+    region *g = &regions->list[regions->count++];
     g->object = object;
     g->known = malloc(bytes);
     g->fresh = malloc(bytes);
     if (with_table) g->table = malloc(mcs_product_table_bytes(TILES));
     if (!g->known || !g->fresh || (with_table && !g->table)) return complain("regions", "not enough memory");
-    mcs_region_start(g->known, bytes, l->light->tiles);
-    mcs_region_start(g->fresh, bytes, l->light->tiles);
+    mcs_region_start(g->known, bytes, regions->light->tiles);
+    mcs_region_start(g->fresh, bytes, regions->light->tiles);
     return 1;
 }
 
 /* A whole object stands in for what a region has not seen yet. */
-static void region_tabulate(const learning *l, region *g) {
-    const mcs_region *whole = l->list[g->object].known;
+static void region_tabulate(const learning *regions, region *g) {
+    const mcs_region *whole = regions->list[g->object].known;
     if (g->known != whole) mcs_region_inherit(g->known, whole);
     g->tabulated = g->known->rays;
     if (!g->table) return;
-    mcs_product_build_region(g->table, mcs_product_table_bytes(TILES), l->light->tiles, l->light->table, g->known);
+    mcs_product_build_region(g->table, mcs_product_table_bytes(TILES), regions->light->tiles, regions->light->table,
+                             g->known);
 }
 
 /* Looks at points all over the picture: each makes the region that it lies in, and is added to it if that has too few.
  */
-static int learning_probe(learning *l, const scene *s, uint32_t probes) {
+static int learning_probe(learning *regions, const scene *s, uint32_t probes) {
     for (uint32_t i = 0; i < probes; i++) {
-        surface x;
-        if (!intersect(s, s->eye, camera_ray(s, mcs_sobol(i, 0, 0), mcs_sobol(i, 1, 0)), &x)) continue;
-        uint16_t *number = region_place(l, s, &x);
-        if (!*number && l->count < sizeof l->list / sizeof *l->list) {
-            *number = (uint16_t)l->count;
-            if (!region_make(l, x.object, l->list[0].table != NULL)) return 0;
+        surface hit;
+        const vec3 w = camera_ray(s, mcs_sobol(i, 0, 0), mcs_sobol(i, 1, 0));
+        if (!intersect(s, s->eye, w, NO_OBJECT, &hit)) continue;
+        uint16_t *number = region_place(regions, s, &hit);
+        if (!*number && regions->count < sizeof regions->list / sizeof *regions->list) {
+            *number = (uint16_t)regions->count;
+            if (!region_make(regions, hit.object, regions->list[0].table != NULL)) return 0;
         }
-        region *g = &l->list[*number ? *number : x.object];
+        region *g = &regions->list[*number ? *number : hit.object];
         if (g->known->points >= POINTS) continue;
-        const mcs_reflection r = reflection_of(&x);
-        mcs_region_add_point(g->known, l->light->tiles, l->light->table, &r);
-        mcs_region_add_point(l->list[x.object].known, l->light->tiles, l->light->table, &r);
+        const mcs_reflection r = reflection_of(&hit);
+        mcs_region_add_point(g->known, regions->light->tiles, regions->light->table, &r);
+        mcs_region_add_point(regions->list[hit.object].known, regions->light->tiles, regions->light->table, &r);
     }
     return 1;
 }
 
 /* Returns NULL after a complaint. */
 static learning *learning_make(const scene *s, const environment *e, size_t pixels, int with_tables) {
-    learning *l = calloc(1, sizeof *l);
-    if (!l) {
+    learning *regions = calloc(1, sizeof *regions);
+    if (!regions) {
         complain("regions", "not enough memory");
         return NULL;
     }
-    l->light = e;
+    regions->light = e;
     int ok = 1;
-    for (int i = 0; ok && i < OBJECTS; i++) ok = region_make(l, i, with_tables);
-    ok = ok && learning_probe(l, s, pixels < PROBES ? (uint32_t)pixels : PROBES);
-    for (uint32_t i = 0; ok && i < l->count; i++) region_tabulate(l, &l->list[i]);
-    if (ok) return l;
-    learning_free(l);
+    for (int i = 0; ok && i < OBJECTS; i++) ok = region_make(regions, i, with_tables);
+    ok = ok && learning_probe(regions, s, pixels < PROBES ? (uint32_t)pixels : PROBES);
+    for (uint32_t i = 0; ok && i < regions->count; i++) region_tabulate(regions, &regions->list[i]);
+    if (ok) return regions;
+    learning_free(regions);
     return NULL;
 }
 
 /* ---- learning ---- */
 
-static void shadow_rays_deliver(learning *l, shadow_rays *r) {
+static void shadow_rays_deliver(learning *regions, shadow_rays *rays) {
     OMP(omp critical(deliver)) {
-        for (uint32_t i = 0; i < r->count; i++) {
-            mcs_region_add_ray(l->list[r->ray[i].region].fresh, r->ray[i].tile, r->ray[i].through);
+        for (uint32_t i = 0; i < rays->count; i++) {
+            mcs_region_add_ray(regions->list[rays->ray[i].region].fresh, rays->ray[i].tile, rays->ray[i].through);
         }
     }
-    r->count = 0;
+    rays->count = 0;
 }
 
-static void shadow_rays_add(learning *l, shadow_rays *r, uint16_t number, uint32_t tile, int through) {
-    if (r->count == sizeof r->ray / sizeof *r->ray) shadow_rays_deliver(l, r);
-    shadow_ray *ray = &r->ray[r->count++];
+static void shadow_rays_add(learning *regions, shadow_rays *rays, uint16_t number, uint32_t tile, int through) {
+    if (rays->count == sizeof rays->ray / sizeof *rays->ray) shadow_rays_deliver(regions, rays);
+    shadow_ray *ray = &rays->ray[rays->count++];
     ray->region = number;
     ray->tile = (uint16_t)tile;
     ray->through = (uint16_t)through;
@@ -166,17 +168,17 @@ static void shadow_rays_add(learning *l, shadow_rays *r, uint16_t number, uint32
 
 /* Between passes, by one thread: rays that wait become known, and tables that know half of them or less are built anew.
  */
-static void learning_advance(learning *l) {
-    for (uint32_t i = 0; i < l->count; i++) {
-        const region *g = &l->list[i];
+static void learning_advance(learning *regions) {
+    for (uint32_t i = 0; i < regions->count; i++) {
+        const region *g = &regions->list[i];
         if (!(g->fresh->rays > 0)) continue;
         mcs_region_merge(g->known, g->fresh);
-        if (i >= OBJECTS) mcs_region_merge(l->list[g->object].known, g->fresh);
+        if (i >= OBJECTS) mcs_region_merge(regions->list[g->object].known, g->fresh);
         mcs_region_decay(g->fresh, 0);
     }
-    for (uint32_t i = 0; i < l->count; i++) {
-        const float rays = l->list[i].known->rays;
-        if (rays > 0 && rays >= 2 * l->list[i].tabulated) region_tabulate(l, &l->list[i]);
+    for (uint32_t i = 0; i < regions->count; i++) {
+        const float rays = regions->list[i].known->rays;
+        if (rays > 0 && rays >= 2 * regions->list[i].tabulated) region_tabulate(regions, &regions->list[i]);
     }
 }
 

@@ -11,9 +11,18 @@
 #define OMP(directive)
 #endif
 
-typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, PRODUCT, REGION, LEARNED, STRATEGIES } strategy;
-static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine",  "brdf",   "env",
-                                                      "mis",     "product", "region", "learned"};
+typedef enum { OPEN, ROOM, LAMPS, SCENES } scene_kind;
+static const char *const scene_name[SCENES] = {"spheres", "room", "lamps"};
+
+/* Those from ANGLE on are for lamps alone, those that name an environment or its tables for the other scenes. */
+typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, PRODUCT, REGION, LEARNED, ANGLE, AREA, STRATEGIES } strategy;
+static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine", "brdf",    "env",   "mis",
+                                                      "product", "region", "learned", "angle", "area"};
+
+static int strategy_fits(strategy how, scene_kind kind) {
+    if (how == ANGLE || how == AREA) return kind == LAMPS;
+    return kind != LAMPS || how <= BRDF || how == MIS;
+}
 
 typedef enum {
     O_SCENE,
@@ -34,13 +43,14 @@ typedef enum {
 } option;
 
 typedef struct {
-    unsigned w, h, spp, lights;
+    unsigned width, height, spp, lights;
     double seconds; /* of processor time after which to stop, 0: take spp samples */
     double error;   /* relative standard error of the mean at which to stop, 0: take spp samples */
     uint64_t seed;
     unsigned part, parts; /* from 1; 1 and 1: the whole */
-    int help, merge, threads, in_room, wanted[STRATEGIES];
-    int given[OPTIONS]; /* which options were */
+    scene_kind kind;
+    int help, merge, threads, all, wanted[STRATEGIES]; /* all: every strategy that fits the scene */
+    int given[OPTIONS];                                /* which options were */
     int files;
     char **file; /* the map, or what to merge */
     float stops;
@@ -48,40 +58,43 @@ typedef struct {
 } options;
 
 static void usage(void) {
-    fputs("usage: render [options] [map.hdr]     (--option value or --option=value)\n"
-          "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
-          "  --scene NAME       spheres, in the open, or room: the same in a room with one window (spheres)\n"
-          "  --strategy LIST    uniform, cosine, brdf, env, mis, product, region, learned, several with commas, or all "
-          "(mis)\n"
-          "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384); 1 leaves the "
-          "error unknown\n"
-          "  --lights N         estimates of the light at each point that a sample sees (1)\n"
-          "  --seconds T        stop each strategy after T seconds of processor time: pictures of equal cost\n"
-          "  --error E          stop when the standard error of the mean of the picture is E times the mean\n"
-          "  --size WxH         size of the picture (960x320)\n"
-          "  --stops X          brighten the PNG by X stops from what suits the map (0)\n"
-          "  --out PREFIX       write PREFIX-STRATEGY.png and PREFIX-STRATEGY.hdr (render)\n"
-          "  --stack FILE       write all pictures into one PNG too, one below the other\n"
-          "  --beside FILE      the same, one beside the other\n"
-          "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on "
-          "it\n"
-          "  --seed N           another set of random numbers (1)\n"
-          "  --part K/N         render every Nth row from the Kth one on, and write what --merge needs into\n"
-          "                     PREFIX-STRATEGY-K-of-N.sums; not for region and learned, which learn from all rows\n"
-          "  --merge FILES      join all parts to the tables and pictures of a single run, bit for bit\n"
-          "  -h, --help         this text\n"
-          "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
-          "The camera has the main light of the map behind it at the left.\n"
-          "examples/product.png: render --strategy mis,product --lights 16 --seconds 2 --size 480x160 --threads 1\n"
-          "    --out build/product --stack examples/product.png\n"
-          "examples/room.png: render --scene room --strategy mis,region --seconds 2 --size 432x120 --threads 1\n"
-          "    --out build/room --beside examples/room.png\n"
-          "Parts, by eight processes here, by Open MPI or by Slurm, and what joins them:\n"
-          "    seq 8 | xargs -P 8 -I{} render --threads 1 --out s --part {}/8\n"
-          "    mpirun -n 8 sh -c 'render --threads 1 --out s --part $((OMPI_COMM_WORLD_RANK + 1))/8'\n"
-          "    srun -n 8 sh -c 'render --threads 1 --out s --part $((SLURM_PROCID + 1))/8'\n"
-          "    render --merge s-*-of-8.sums --out s\n",
-          stdout);
+    fputs(
+        "usage: render [options] [map.hdr]     (--option value or --option=value)\n"
+        "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
+        "  --scene NAME       spheres, in the open, or room: the same in a room with one window, or lamps: at night "
+        "by\n"
+        "                     a rectangle and a ball, two of the spheres being of glass (spheres)\n"
+        "  --strategy LIST    uniform, cosine, brdf, env, mis, product, region, learned, several with commas, or all\n"
+        "                     (mis); with lamps uniform, cosine, brdf, mis, angle or area: lamps evenly in either\n"
+        "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384); 1 leaves the "
+        "error unknown\n"
+        "  --lights N         estimates of the light at each point that a sample sees (1)\n"
+        "  --seconds T        stop each strategy after T seconds of processor time: pictures of equal cost\n"
+        "  --error E          stop when the standard error of the mean of the picture is E times the mean\n"
+        "  --size WxH         size of the picture (960x320)\n"
+        "  --stops X          brighten the PNG by X stops from what suits the map (0)\n"
+        "  --out PREFIX       write PREFIX-STRATEGY.png and PREFIX-STRATEGY.hdr (render)\n"
+        "  --stack FILE       write all pictures into one PNG too, one below the other\n"
+        "  --beside FILE      the same, one beside the other\n"
+        "  --threads N        threads (all processors; one if built without OpenMP); the picture does not depend on "
+        "it\n"
+        "  --seed N           another set of random numbers (1)\n"
+        "  --part K/N         render every Nth row from the Kth one on, and write what --merge needs into\n"
+        "                     PREFIX-STRATEGY-K-of-N.sums; not for region and learned, which learn from all rows\n"
+        "  --merge FILES      join all parts to the tables and pictures of a single run, bit for bit\n"
+        "  -h, --help         this text\n"
+        "The exit status is 0, 2 for a wrong argument, 1 if anything else fails or the error is not reached.\n"
+        "The camera has the main light of the map behind it at the left.\n"
+        "examples/product.png: render --strategy mis,product --lights 16 --seconds 2 --size 480x160 --threads 1\n"
+        "    --out build/product --stack examples/product.png\n"
+        "examples/room.png: render --scene room --strategy mis,region --seconds 2 --size 432x120 --threads 1\n"
+        "    --out build/room --beside examples/room.png\n"
+        "Parts, by eight processes here, by Open MPI or by Slurm, and what joins them:\n"
+        "    seq 8 | xargs -P 8 -I{} render --threads 1 --out s --part {}/8\n"
+        "    mpirun -n 8 sh -c 'render --threads 1 --out s --part $((OMPI_COMM_WORLD_RANK + 1))/8'\n"
+        "    srun -n 8 sh -c 'render --threads 1 --out s --part $((SLURM_PROCID + 1))/8'\n"
+        "    render --merge s-*-of-8.sums --out s\n",
+        stdout);
 }
 
 /* The shortest decimal text of a number without an exponent. */
@@ -100,9 +113,9 @@ static int parse_name(const char *name, const char *text, const char **value) {
 
 static int parse_size(const char *text, options *o) {
     char more;
-    if (sscanf(text, "%6ux%6u%c", &o->w, &o->h, &more) != 2)
+    if (sscanf(text, "%6ux%6u%c", &o->width, &o->height, &more) != 2)
         return complain("--size", "'%s' is not WIDTHxHEIGHT", text);
-    if (o->w - 1 < 16384 && o->h - 1 < 16384 && o->w * o->h <= 1u << 25) return 1;
+    if (o->width - 1 < 16384 && o->height - 1 < 16384 && o->width * o->height <= 1u << 25) return 1;
     return complain("--size", "each side is from 1 to 16384, with at most %u pixels in all", 1u << 25);
 }
 
@@ -112,25 +125,32 @@ static int parse_part(const char *text, options *o) {
     return complain("--part", "'%s' is not K/N, part K of N", text);
 }
 
+static int parse_scene_kind(const char *text, scene_kind *kind) {
+    int i = 0;
+    while (i < SCENES && strcmp(text, scene_name[i])) i++;
+    *kind = (scene_kind)i;
+    return i < SCENES;
+}
+
 static int parse_scene(const char *text, options *o) {
-    o->in_room = !strcmp(text, "room");
-    if (o->in_room || !strcmp(text, "spheres")) return 1;
-    return complain("--scene", "'%s' is none of spheres, room", text);
+    if (parse_scene_kind(text, &o->kind)) return 1;
+    return complain("--scene", "'%s' is none of spheres, room, lamps", text);
 }
 
 static int parse_strategies(const char *list, options *o) {
     memset(o->wanted, 0, sizeof o->wanted);
+    o->all = 0;
     for (;;) {
         const size_t n = strcspn(list, ",");
-        int known = 0;
+        int known = n == 3 && !strncmp(list, "all", 3);
+        if (known) o->all = 1;
         for (int i = 0; i < STRATEGIES; i++)
-            if ((n == 3 && !strncmp(list, "all", 3)) ||
-                (n == strlen(strategy_name[i]) && !strncmp(list, strategy_name[i], n)))
-                known = o->wanted[i] = 1;
+            if (n == strlen(strategy_name[i]) && !strncmp(list, strategy_name[i], n)) known = o->wanted[i] = 1;
         if (!known)
-            return complain("--strategy",
-                            "'%.*s' is none of uniform, cosine, brdf, env, mis, product, region, learned, all", (int)n,
-                            list);
+            return complain(
+                "--strategy",
+                "'%.*s' is none of uniform, cosine, brdf, env, mis, product, region, learned, angle, area, all", (int)n,
+                list);
         if (!list[n]) return 1;
         list += n + 1;
     }
@@ -185,6 +205,12 @@ static int parse_value(option which, const char *text, options *o) {
     return 1;
 }
 
+static unsigned count_strategies(const options *o) {
+    unsigned count = 0;
+    for (int i = 0; i < STRATEGIES; i++) count += o->wanted[i] != 0;
+    return count;
+}
+
 /* The option that an argument names, alone or with =value. OPTIONS: none. */
 static option find_option(const char *argument) {
     const size_t n = strcspn(argument, "=");
@@ -194,6 +220,16 @@ static option find_option(const char *argument) {
 }
 
 /* Whether options go together. Returns 0 after a complaint. */
+static int check_scene(options *o) {
+    if (o->kind == LAMPS && o->files > 0) return complain(o->file[0], "--scene lamps takes no map");
+    for (int i = 0; i < STRATEGIES; i++) {
+        if (o->all && strategy_fits((strategy)i, o->kind)) o->wanted[i] = 1;
+        if (o->wanted[i] && !strategy_fits((strategy)i, o->kind))
+            return complain("--strategy", "'%s' is not for --scene %s", strategy_name[i], scene_name[o->kind]);
+    }
+    return 1;
+}
+
 static int check_part(const options *o) {
     if (o->wanted[REGION] || o->wanted[LEARNED])
         return complain("--part", "region and learned learn from the whole picture");
@@ -201,7 +237,7 @@ static int check_part(const options *o) {
         return complain("--part", "--spp alone says when a part ends, neither --seconds nor --error");
     if (o->given[O_STOPS] || o->stack || o->beside)
         return complain("--part", "--stops, --stack and --beside are for --merge, which writes the pictures");
-    if (o->parts > o->h) return complain("--part", "%u rows are no %u parts", o->h, o->parts);
+    if (o->parts > o->height) return complain("--part", "%u rows are no %u parts", o->height, o->parts);
     return 1;
 }
 
@@ -217,8 +253,7 @@ static int check_options(options *o) {
     if (o->merge) return check_merge(o);
     if (o->files > 1) return complain(o->file[1], "only one map can be given");
     if (o->files == 1) o->map = o->file[0];
-    if (o->given[O_PART]) return check_part(o);
-    return 1;
+    return check_scene(o) && (!o->given[O_PART] || check_part(o));
 }
 
 /* Returns 0 for a wrong argument. Moves the names of files to the front of argv. */
@@ -226,8 +261,8 @@ static int parse_arguments(int argc, char **argv, options *o) {
     memset(o, 0, sizeof *o);
     o->part = o->parts = 1;
     o->file = argv;
-    o->w = 960;
-    o->h = 320;
+    o->width = 960;
+    o->height = 320;
     o->seed = 1;
     o->lights = 1;
     o->wanted[MIS] = 1;

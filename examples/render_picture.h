@@ -7,6 +7,7 @@
 #include "render_light.h"
 #include "render_options.h"
 #include "render_png.h"
+#include "render_scene.h"
 
 typedef struct {
     mcs_pcg32 rng;
@@ -14,9 +15,16 @@ typedef struct {
     mcs_stat luminance; /* of this pixel's samples */
     uint32_t drawn;     /* light samples */
     int object;         /* that all samples hit, or NO_OBJECT */
-} pixel;
+} pixel_sums;
 
-static vec3 pixel_color(const pixel *p) { return scale(1 / (float)p->luminance.n, p->sum); }
+static vec3 pixel_color(const pixel_sums *pixel) { return scale(1 / (float)pixel->luminance.n, pixel->sum); }
+
+/* One sample, whose camera ray hit that object. */
+static void pixel_add(pixel_sums *pixel, int object, vec3 color) {
+    pixel->object = pixel->luminance.n > 0 && object != pixel->object ? NO_OBJECT : object;
+    pixel->sum = add(pixel->sum, color);
+    mcs_stat_add(&pixel->luminance, luminance(color));
+}
 
 static int file_close(FILE *f, const char *name) {
     const int bad = ferror(f);
@@ -24,13 +32,13 @@ static int file_close(FILE *f, const char *name) {
     return 1;
 }
 
-static int hdr_write(const char *name, const pixel *image, unsigned w, unsigned h) {
+static int hdr_write(const char *name, const pixel_sums *image, unsigned width, unsigned height) {
     FILE *f = fopen(name, "wb");
     if (!f) return complain(name, "%s", strerror(errno));
-    hdr_write_header(f, w, h);
-    for (size_t i = 0; i < (size_t)w * h; i++) {
-        const hdr_pixel p = encode(pixel_color(&image[i]));
-        fwrite(p.c, 1, 4, f);
+    hdr_write_header(f, width, height);
+    for (size_t i = 0; i < (size_t)width * height; i++) {
+        const hdr_pixel coded = encode(pixel_color(&image[i]));
+        fwrite(coded.c, 1, 4, f);
     }
     return file_close(f, name);
 }
@@ -43,29 +51,29 @@ static unsigned char display(float linear, float exposure) {
     return (unsigned char)(255 * (y <= 0.0031308f ? 12.92f * y : 1.055f * powf(y, 1 / 2.4f) - 0.055f) + 0.5f);
 }
 
-/* Pictures of equal size, w x h, that one file shows side by side or one below the other. */
+/* Pictures of equal size that one file shows side by side or one below the other. */
 typedef struct {
-    const pixel *image; /* of one, then of the next */
-    unsigned w, h, across, down;
+    const pixel_sums *image; /* of one, then of the next */
+    unsigned width, height, across, down;
 } sheet;
 
-static const pixel *sheet_pixel(const sheet *s, size_t x, size_t y) {
-    const size_t which = x / s->w + y / s->h; /* across or down is 1 */
-    return s->image + (which * s->h + y % s->h) * s->w + x % s->w;
+static const pixel_sums *sheet_pixel(const sheet *all, size_t col, size_t row) {
+    const size_t which = col / all->width + row / all->height; /* across or down is 1 */
+    return all->image + (which * all->height + row % all->height) * all->width + col % all->width;
 }
 
-static int png_write(const char *name, const sheet *s, float exposure) {
-    const unsigned w = s->w * s->across;
-    const unsigned h = s->h * s->down;
-    unsigned char *rgb = malloc((size_t)w * h * 3);
+static int png_write(const char *name, const sheet *all, float exposure) {
+    const unsigned width = all->width * all->across;
+    const unsigned height = all->height * all->down;
+    unsigned char *rgb = malloc((size_t)width * height * 3);
     size_t size = 0;
-    for (size_t i = 0; rgb && i < (size_t)w * h; i++) {
-        const vec3 c = pixel_color(sheet_pixel(s, i % w, i / w));
-        rgb[3 * i] = display(c.x, exposure);
-        rgb[3 * i + 1] = display(c.y, exposure);
-        rgb[3 * i + 2] = display(c.z, exposure);
+    for (size_t i = 0; rgb && i < (size_t)width * height; i++) {
+        const vec3 color = pixel_color(sheet_pixel(all, i % width, i / width));
+        rgb[3 * i] = display(color.x, exposure);
+        rgb[3 * i + 1] = display(color.y, exposure);
+        rgb[3 * i + 2] = display(color.z, exposure);
     }
-    unsigned char *png = rgb ? png_make(rgb, NULL, w, h, &size) : NULL;
+    unsigned char *png = rgb ? png_make(rgb, NULL, width, height, &size) : NULL;
     FILE *f = png ? fopen(name, "wb") : NULL;
     int ok = f ? 1 : complain(name, "%s", strerror(errno));
     if (ok) {
@@ -80,7 +88,7 @@ static int png_write(const char *name, const sheet *s, float exposure) {
 /* In the room, little light is left: three stops. */
 static float exposure_for(const options *o, const environment *e) {
     const float plain = e->irradiance > 0 ? 0.9f * PI / e->irradiance : 1;
-    return plain * exp2f(o->stops + (o->in_room ? 3 : 0));
+    return plain * exp2f(o->stops + (o->kind == ROOM ? 3 : 0));
 }
 
 /* The caller frees the name. Returns NULL after a complaint. */
@@ -92,20 +100,20 @@ static char *picture_name(const options *o, strategy how, const char *extension)
     return name;
 }
 
-static int write_pictures(const options *o, strategy how, const environment *e, const pixel *image) {
+static int write_pictures(const options *o, strategy how, const environment *e, const pixel_sums *image) {
     char *png = picture_name(o, how, ".png");
     char *hdr = picture_name(o, how, ".hdr");
-    const sheet one = {image, o->w, o->h, 1, 1};
-    const int ok = png && hdr && png_write(png, &one, exposure_for(o, e)) && hdr_write(hdr, image, o->w, o->h);
+    const sheet one = {image, o->width, o->height, 1, 1};
+    const int ok = png && hdr && png_write(png, &one, exposure_for(o, e)) && hdr_write(hdr, image, o->width, o->height);
     free(png);
     free(hdr);
     return ok;
 }
 
 /* All of `count` pictures in one file. */
-static int write_sheets(const options *o, const environment *e, const pixel *image, unsigned count) {
-    const sheet stack = {image, o->w, o->h, 1, count};
-    const sheet beside = {image, o->w, o->h, count, 1};
+static int write_sheets(const options *o, const environment *e, const pixel_sums *image, unsigned count) {
+    const sheet stack = {image, o->width, o->height, 1, count};
+    const sheet beside = {image, o->width, o->height, count, 1};
     if (o->stack && !png_write(o->stack, &stack, exposure_for(o, e))) return 0;
     return !o->beside || png_write(o->beside, &beside, exposure_for(o, e));
 }

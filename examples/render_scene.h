@@ -1,11 +1,15 @@
 /* render_scene.h - the scene of render.c and its camera: where rays go and what they meet. */
 #ifndef RENDER_SCENE_H
 #define RENDER_SCENE_H
+#include "render_lamps.h"
+#include "render_light.h"
 #include "render_material.h"
+#include "render_options.h"
 
 #define SPHERES 8
 #define NO_OBJECT (-1)
-enum { GROUND = SPHERES, WALLS, OBJECTS }; /* numbers of objects behind those of the spheres */
+enum { GROUND = SPHERES, WALLS, OBJECTS };      /* numbers of objects behind those of the spheres */
+enum { SMOOTH_SPHERE = 2, FROSTED_SPHERE = 6 }; /* those of glass, by lamps */
 
 /* A plane: all that is in a room lies on one side of it. */
 typedef struct {
@@ -14,23 +18,32 @@ typedef struct {
 } wall;
 enum { LEFT, RIGHT, FRONT, BACK, CEILING, WALL_COUNT };
 
-/* Spheres on the ground z = 0, in the open or in a room. The room has a window in its front wall, at the camera's back.
- */
+/* Spheres on the ground z = 0, in the open, in a room or by lamps. The room has a window in its front wall, at the
+ * camera's back. */
 typedef struct {
     vec3 center[SPHERES]; /* radius 1, resting on the ground */
     material of[SPHERES], tile[2], plaster;
     vec3 side, ahead; /* level axes of the camera, of the row and of the tiles */
-    int in_room;
-    wall walls[WALL_COUNT];
+    int in_room, by_lamps;
+    wall walls[WALL_COUNT];       /* of the room */
+    lamp_pair lamps;              /* in place of the environment */
     vec3 eye, forward, right, up; /* right and up reach from the middle to the edges of the picture at distance 1 */
 } scene;
 
 typedef struct {
+    int object; /* NO_OBJECT: the ray leaves the scene, or meets a lamp, and the rest is unknown */
     const material *m;
-    vec3 p, wo; /* world position; local direction to the eye */
+    vec3 p, wo; /* world position; local direction to where the ray came from */
     mcs_frame frame;
-    int object;
 } surface;
+
+static const char *object_name(scene_kind kind, int object) {
+    static const char *const name[OBJECTS] = {"matte",  "Phong",  "Ward.18", "Ward ani", "GGX.06",
+                                              "GGX.12", "GGX.40", "A.-S.",   "ground",   "walls"};
+    if (kind == LAMPS && object == SMOOTH_SPHERE) return "glass";
+    if (kind == LAMPS && object == FROSTED_SPHERE) return "frosted";
+    return name[object];
+}
 
 /* ---- building it ---- */
 
@@ -54,16 +67,29 @@ static void scene_materials(scene *s) {
     s->plaster = material_make(MATTE, 0, vec(0.62f, 0.60f, 0.56f), none, 0, 0);
 }
 
+/* The bulb hangs in front of the spheres, the panel above the upper edge of the picture. */
+static void scene_lamps(scene *s) {
+    s->of[SMOOTH_SPHERE] = glass_make(1.5f, 0);
+    s->of[FROSTED_SPHERE] = glass_make(1.5f, 0.15f);
+    s->lamps.corner = add(scale(-6, s->side), add(scale(-3, s->ahead), vec(0, 0, 5)));
+    s->lamps.edge_x = scale(8, s->side);
+    s->lamps.edge_y = add(scale(2, s->ahead), vec(0, 0, 1));
+    s->lamps.panel_radiance = vec(6, 7, 8.5f);
+    s->lamps.center = add(scale(0.2f, s->side), add(scale(-2.6f, s->ahead), vec(0, 0, 0.6f)));
+    s->lamps.radius = 0.3f;
+    s->lamps.bulb_radiance = vec(30, 18, 8);
+}
+
 static wall wall_make(vec3 outwards, float distance) {
-    wall a;
-    a.outwards = outwards;
-    a.distance = distance;
-    return a;
+    wall flat;
+    flat.outwards = outwards;
+    flat.distance = distance;
+    return flat;
 }
 
 /* Seen with the main light of the map behind the camera at the left, where it models the spheres, or falls through the
  * window, and stays out of the picture. */
-static scene scene_make(int in_room, unsigned w, unsigned h, float main_light) {
+static scene scene_make(scene_kind kind, float height_per_width, float main_light) {
     const float half_width = 7.75f;
     const float distance = 26;
     const float elevation = 27 * PI / 180;
@@ -75,7 +101,9 @@ static scene scene_make(int in_room, unsigned w, unsigned h, float main_light) {
         s.center[i] =
             add(vec(0, 0, 1), add(scale(1.82f * (float)i - 6.24f, s.side), scale(i % 2 ? 0.75f : -0.75f, s.ahead)));
     scene_materials(&s);
-    s.in_room = in_room;
+    s.in_room = kind == ROOM;
+    s.by_lamps = kind == LAMPS;
+    if (s.by_lamps) scene_lamps(&s);
     s.walls[LEFT] = wall_make(scale(-1, s.side), 9);
     s.walls[RIGHT] = wall_make(s.side, 9);
     s.walls[FRONT] = wall_make(scale(-1, s.ahead), 6);
@@ -84,7 +112,7 @@ static scene scene_make(int in_room, unsigned w, unsigned h, float main_light) {
     s.forward = add(scale(cosf(elevation), s.ahead), vec(0, 0, -sinf(elevation)));
     s.eye = sub(vec(0, 0, 0.66f), scale(distance, s.forward));
     s.right = scale(half_width / distance, s.side);
-    s.up = scale((float)h / (float)w, cross(s.right, s.forward));
+    s.up = scale(height_per_width, cross(s.right, s.forward));
     return s;
 }
 
@@ -95,21 +123,25 @@ static vec3 in_scene_axes(const scene *s, vec3 v) { return vec(dot(v, s->side), 
 
 /* Distance along a unit direction to the front of sphere i, or 0. */
 static float hit_sphere(const scene *s, int i, vec3 p, vec3 w) {
-    const vec3 d = sub(s->center[i], p);
-    const float b = dot(d, w);
-    const float disc = b * b - dot(d, d) + 1;
-    return b > 0 && disc > 0 ? b - sqrtf(disc) : 0;
+    const vec3 to_center = sub(s->center[i], p);
+    const float middle = dot(to_center, w);
+    const float half_chord2 = middle * middle - dot(to_center, to_center) + 1;
+    return middle > 0 && half_chord2 > 0 ? middle - sqrtf(half_chord2) : 0;
 }
+
+/* Distance along a direction that goes into sphere i, from a point of its surface to the other side; at most 0 along
+ * one that goes out of it. */
+static float cross_sphere(const scene *s, int i, vec3 p, vec3 w) { return 2 * dot(sub(s->center[i], p), w); }
 
 /* Distance along w to where a ray from within the room meets a wall; *which it is. */
 static float hit_walls(const scene *s, vec3 p, vec3 w, int *which) {
     float nearest = INFINITY;
     for (int i = 0; i < WALL_COUNT; i++) {
-        const wall *a = &s->walls[i];
-        const float speed = dot(w, a->outwards);
-        const float t = speed > 0 ? (a->distance - dot(p, a->outwards)) / speed : INFINITY;
-        if (t < nearest) {
-            nearest = t;
+        const wall *flat = &s->walls[i];
+        const float speed = dot(w, flat->outwards);
+        const float distance = speed > 0 ? (flat->distance - dot(p, flat->outwards)) / speed : INFINITY;
+        if (distance < nearest) {
+            nearest = distance;
             *which = i;
         }
     }
@@ -124,8 +156,8 @@ static int in_window(const scene *s, int which, vec3 p) {
 
 static int leaves_room(const scene *s, vec3 p, vec3 w) {
     int which = LEFT;
-    const float t = hit_walls(s, p, w, &which);
-    return in_window(s, which, add(p, scale(t, w)));
+    const float distance = hit_walls(s, p, w, &which);
+    return in_window(s, which, add(p, scale(distance, w)));
 }
 
 static int inside_room(const scene *s, vec3 p) {
@@ -134,83 +166,94 @@ static int inside_room(const scene *s, vec3 p) {
     return 1;
 }
 
-/* Whether light comes from a direction w above the surface of an object to a point of it. All objects are convex, so
- * none shadows itself, and everything stands above the ground, so the ground stops exactly the directions that point
- * down. */
+/* Whether light comes from a direction w above the surface of an object to a point of it: that of a lamp, if there are
+ * lamps. All objects are convex, so none shadows itself. Everything stands above the ground. Glass has a shadow, too:
+ * the light that it gathers is left out. */
 static int visible(const scene *s, vec3 p, vec3 w, int object) {
-    if (w.z <= 0) return 0;
+    const float distance = s->by_lamps ? lamps_distance(&s->lamps, p, w) : INFINITY;
+    if (!(p.z + distance * w.z > 0)) return 0; /* the ground */
     if (s->in_room && !leaves_room(s, p, w)) return 0;
-    for (int i = 0; i < SPHERES; i++)
-        if (i != object && hit_sphere(s, i, p, w) > 0) return 0;
+    for (int i = 0; i < SPHERES; i++) {
+        const float in_between = i != object ? hit_sphere(s, i, p, w) : 0;
+        if (in_between > 0 && in_between < distance) return 0;
+    }
     return 1;
 }
 
 /* Spheres get tangents along their circles of latitude, as if turned on a lathe: the anisotropic ones need a direction.
  */
-static mcs_frame sphere_frame(vec3 n) {
-    if (n.x * n.x + n.y * n.y < 1e-8f) return mcs_frame_make(n);
-    mcs_frame f;
-    f.n = n;
-    f.s = unit(vec(-n.y, n.x, 0));
-    f.t = cross(n, f.s);
-    return f;
+static mcs_frame sphere_frame(vec3 normal) {
+    if (normal.x * normal.x + normal.y * normal.y < 1e-8f) return mcs_frame_make(normal);
+    mcs_frame frame;
+    frame.n = normal;
+    frame.s = unit(vec(-normal.y, normal.x, 0));
+    frame.t = cross(normal, frame.s);
+    return frame;
 }
 
-/* Of the point x->p of x->object, which is wall `which` if it is a wall. */
-static void surface_finish(const scene *s, surface *x, int which) {
-    if (x->object == GROUND) {
-        x->p.z = 0;
-        x->frame = mcs_frame_make(vec(0, 0, 1));
-        x->m = &s->tile[fmodf(floorf(0.5f * dot(x->p, s->side)) + floorf(0.5f * dot(x->p, s->ahead)), 2) != 0];
-    } else if (x->object == WALLS) {
-        x->frame = mcs_frame_make(scale(-1, s->walls[which].outwards));
-        x->m = &s->plaster;
+/* Of the point hit->p of hit->object, which is wall `which` if it is a wall. */
+static void surface_finish(const scene *s, surface *hit, int which) {
+    if (hit->object == GROUND) {
+        hit->p.z = 0;
+        hit->frame = mcs_frame_make(vec(0, 0, 1));
+        hit->m = &s->tile[fmodf(floorf(0.5f * dot(hit->p, s->side)) + floorf(0.5f * dot(hit->p, s->ahead)), 2) != 0];
+    } else if (hit->object == WALLS) {
+        hit->frame = mcs_frame_make(scale(-1, s->walls[which].outwards));
+        hit->m = &s->plaster;
     } else {
-        x->frame = sphere_frame(unit(sub(x->p, s->center[x->object])));
-        x->m = &s->of[x->object];
+        hit->frame = sphere_frame(unit(sub(hit->p, s->center[hit->object])));
+        hit->m = &s->of[hit->object];
     }
 }
 
-/* What the camera sees along w. It looks through the walls that are between it and the room. */
-static int intersect(const scene *s, vec3 p, vec3 w, surface *x) {
+/* What a ray along w meets first. It comes from the camera, which looks through the walls that are between it and the
+ * room, or from a point of the object `from`. Returns 0 where that is light. */
+static int intersect(const scene *s, vec3 p, vec3 w, int from, surface *hit) {
     float nearest = INFINITY;
     int which = LEFT;
-    x->object = NO_OBJECT;
+    hit->object = NO_OBJECT;
     if (w.z < 0) {
         nearest = -p.z / w.z;
-        x->object = GROUND;
+        hit->object = GROUND;
     }
     if (s->in_room) {
-        const float t = hit_walls(s, p, w, &which);
-        if (t < nearest) {
-            nearest = t;
-            x->object = in_window(s, which, add(p, scale(t, w))) ? NO_OBJECT : WALLS;
+        const float distance = hit_walls(s, p, w, &which);
+        if (distance < nearest) {
+            nearest = distance;
+            hit->object = in_window(s, which, add(p, scale(distance, w))) ? NO_OBJECT : WALLS;
         }
     }
     for (int i = 0; i < SPHERES; i++) {
-        const float t = hit_sphere(s, i, p, w);
-        if (t > 0 && t < nearest) {
-            nearest = t;
-            x->object = i;
+        const float distance = i == from ? cross_sphere(s, i, p, w) : hit_sphere(s, i, p, w);
+        if (distance > 0 && distance < nearest) {
+            nearest = distance;
+            hit->object = i;
         }
     }
-    x->p = add(p, scale(nearest, w));
-    if (s->in_room && !inside_room(s, x->p)) x->object = NO_OBJECT;
-    if (x->object == NO_OBJECT) return 0;
-    surface_finish(s, x, which);
-    x->wo = mcs_to_local(&x->frame, scale(-1, w));
+    if (s->by_lamps && lamps_distance(&s->lamps, p, w) < nearest) hit->object = NO_OBJECT;
+    hit->p = add(p, scale(nearest, w));
+    if (s->in_room && !inside_room(s, hit->p)) hit->object = NO_OBJECT;
+    if (hit->object == NO_OBJECT) return 0;
+    surface_finish(s, hit, which);
+    hit->wo = mcs_to_local(&hit->frame, scale(-1, w));
     return 1;
 }
 
+/* Of the light that a ray meets which meets nothing else. */
+static vec3 light_in_sight(const scene *s, const environment *e, vec3 p, vec3 w) {
+    return s->by_lamps ? lamps_radiance(&s->lamps, p, w) : radiance(e, w);
+}
+
 /* What product sampling is told of a surface; Fresnel's factor as the mirror direction has it. */
-static mcs_reflection reflection_of(const surface *x) {
-    const material *m = x->m;
+static mcs_reflection reflection_of(const surface *hit) {
+    const material *m = hit->m;
     const float base = m->p_lobe < 1 ? luminance(m->base) : 0;
     float lobe = 0;
-    if (m->p_lobe > 0) lobe = m->kind == PHONG ? luminance(m->specular) : mcs_schlick(luminance(m->specular), x->wo.z);
+    if (m->p_lobe > 0)
+        lobe = m->kind == PHONG ? luminance(m->specular) : mcs_schlick(luminance(m->specular), hit->wo.z);
     mcs_reflection r;
-    r.frame = x->frame;
-    r.wo = x->wo;
+    r.frame = hit->frame;
+    r.wo = hit->wo;
     r.alpha_x = m->alpha_x;
     r.alpha_y = m->alpha_y;
     r.matte = base / (base + lobe);
@@ -221,8 +264,8 @@ static mcs_reflection reflection_of(const surface *x) {
 /* ---- the camera ---- */
 
 /* Through a point of the picture, (0, 0) its upper left corner and (1, 1) the lower right one. */
-static vec3 camera_ray(const scene *s, float x, float y) {
-    return unit(add(s->forward, add(scale(2 * x - 1, s->right), scale(1 - 2 * y, s->up))));
+static vec3 camera_ray(const scene *s, float across, float down) {
+    return unit(add(s->forward, add(scale(2 * across - 1, s->right), scale(1 - 2 * down, s->up))));
 }
 
 #endif

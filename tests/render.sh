@@ -12,7 +12,7 @@ mkdir -p "$dir" && rm -rf "${dir:?}"/*
 # samples the few that hit the mirrored sun leave the error of `uniform` anywhere from 0.008 to 0.036; with 256 it is known.
 same_means() { # file, strategies: what was printed there is of so many, and no mean is off
     awk -v wanted="$2" '/^mean squared/ { exit }
-        /^(uniform|cosine|brdf|env|mis|product|region|learned) / && NF == 3 { n++; if ($3 > 4 || $3 < -4) print }
+        /^(uniform|cosine|brdf|env|mis|product|region|learned|angle|area) / && NF == 3 { n++; if ($3 > 4 || $3 < -4) print }
         END { if (n != wanted) print n + 0, "strategies" }' "$1" >"$dir/off.txt"
     [ ! -s "$dir/off.txt" ]
     check $? "render: means differ in $1: $(cat "$dir/off.txt")"
@@ -20,6 +20,9 @@ same_means() { # file, strategies: what was printed there is of so many, and no 
 "$render" --strategy all --size 240x80 --spp 256 --out "$dir/all" >"$dir/all.txt"
 check $? "render: every strategy"
 same_means "$dir/all.txt" 8
+"$render" --scene lamps --strategy all --size 240x80 --spp 256 --out "$dir/lamps" >"$dir/lamps.txt"
+check $? "render: every strategy that fits lamps"
+same_means "$dir/lamps.txt" 6
 [ "$(grep -c '^strategy' "$dir/all.txt")" = 3 ]
 check $? "render: three tables"
 "$render" --scene room --strategy mis,region,learned --size 240x80 --spp 64 --out "$dir/room" >"$dir/room.txt"
@@ -44,8 +47,9 @@ done
 
 # --- parts by several processes: joined they are a single run, to the bit; 21 rows are not as many in each of 4 parts
 
-many='uniform,cosine,brdf,env,mis,product'
-for scene in spheres room; do
+for scene in spheres room lamps; do
+    many=uniform,cosine,brdf,env,mis,product
+    [ $scene != lamps ] || many=uniform,cosine,brdf,mis,angle,area
     set -- --scene $scene --strategy $many --size 60x21 --spp 5 --lights 2
     "$render" "$@" --stops 1 --out "$dir/whole" --stack "$dir/whole.png" >"$dir/whole.txt"
     check $? "render: a whole picture of $scene"
@@ -59,7 +63,7 @@ for scene in spheres room; do
         check $? "render: parts of $scene are not a single run: $(cat "$dir/out.txt")"
     done
     for run in whole joined; do # all columns but times and what comes of them
-        awk '/^(uniform|cosine|brdf|env|mis|product) / && NF == 8 { print $1, $2, $3, $6, $7 }' "$dir/$run.txt" >"$dir/$run.rows"
+        awk '/^(uniform|cosine|brdf|env|mis|product|angle|area) / && NF == 8 { print $1, $2, $3, $6, $7 }' "$dir/$run.txt" >"$dir/$run.rows"
     done
     [ "$(wc -l <"$dir/whole.rows")" = 6 ] && cmp -s "$dir/whole.rows" "$dir/joined.rows" && [ "$(grep -c '^strategy' "$dir/joined.txt")" = 3 ]
     check $? "render: parts of $scene print other figures: $(cat "$dir/joined.txt")"
@@ -110,7 +114,10 @@ wrong 'from 1 to 1024' --threads=
 wrong 'from 0 to 9000000000000000' --seed -1
 wrong 'at most 33554432' --size 16384x16384
 wrong 'WIDTHxHEIGHT' --size=60
-wrong 'none of spheres, room' --scene hall
+wrong 'none of spheres, room, lamps' --scene hall
+wrong 'takes no map' --scene lamps a.hdr
+wrong "'env' is not for --scene lamps" --strategy env --scene lamps
+wrong "'area' is not for --scene room" --scene room --strategy mis,area
 wrong 'is none of' --strategy mis,
 wrong 'name is empty' --out ''
 wrong 'name is empty' --out=
