@@ -1,12 +1,13 @@
 # mcsample.h is one header: nothing here has to be built to use it. This file builds what proves it and what shows it.
 #
-# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), DESTDIR, SOURCE_DATE_EPOCH; MAPS (.hdr files for the
+# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), PYTHON (python3), DESTDIR, SOURCE_DATE_EPOCH; MAPS (.hdr files for the
 # benchmark, none); for tests also FILTER=text, SEED=number, WITHOUT=files and
 # MCS_TEST_SCALE=0.05 (scales the sample counts of the statistical tests; 1 is the count that the tolerances are meant for).
 
 CFLAGS ?= -O2
 BUILD ?= build
 PREFIX ?= /usr/local
+PYTHON ?= python3
 # -Wno-psabi: gcc's note that 8 and 16 wide vectors cross functions differently with AVX; in the header every such function is inlined.
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-psabi
 FLAGS = $(CFLAGS) -std=c99 $(WARNINGS) -I. -Itests
@@ -340,6 +341,12 @@ bench-quick: ## the same with less repetition and smaller tables; 45 s; build/be
 	@$(BENCH)/spectrum --quick --out $(BENCH)
 	@$(TOOK) "CSV files and plots in $(BENCH)"
 
+bench-peers: ## samplers of Mitsuba beside ours, error and run time; 10 s; prints a table; wants pip install mitsuba numpy
+	$(SAY)
+	+@$(SUBMAKE) $(LIB)/libmcsample.so
+	@$(PYTHON) tests/bench/peers.py $(LIB)/libmcsample.so
+	@$(TOOK) "the table above"
+
 $(BENCH)/wide8.o: tests/bench/wide.c $(BENCH_HEADERS)
 	@mkdir -p $(@D)
 	$(CC) $(BENCH_FLAGS) -DBENCH_W=8 $(BENCH_SLEEF) $(call BENCH_TAKES,-mavx2 -mfma) -c $< -o $@
@@ -356,4 +363,4 @@ $(BENCH)/%: tests/bench/%.c $(BENCH_HEADERS)
 	$(CC) $(BENCH_FLAGS) $< -o $@ $(LIBS)
 
 FORCE:
-.PHONY: test cuda cuda-binaries stress stress-today stress-whole cross analyze mutants examples demo gallery hygiene selftest install uninstall dist lib packages help clean test-binaries example-binaries FORCE bench bench-quick
+.PHONY: test cuda cuda-binaries stress stress-today stress-whole cross analyze mutants examples demo gallery hygiene selftest install uninstall dist lib packages help clean test-binaries example-binaries FORCE bench bench-quick bench-peers
