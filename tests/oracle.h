@@ -633,14 +633,23 @@ typedef struct {
 
 typedef struct {
     o_vec3 a, b, c;
+    ld all; /* its solid angle */
 } o_triangle;
 static inline ld o_triangle_up_to(const void *of, ld t) {
     const o_triangle *l = (const o_triangle *)of;
     return o_solid_angle(t * o_volume(l->a, l->b, l->c), l->a, l->b, o_between(l->a, l->c, t));
 }
+static inline o_triangle o_triangle_make(o_vec3 a, o_vec3 b, o_vec3 c) {
+    o_triangle l;
+    l.a = a;
+    l.b = b;
+    l.c = c;
+    l.all = o_triangle_up_to(&l, 1.0L);
+    return l;
+}
 /* Arvo 1995: C' on the side from A to C so that A, B, C' has the share u1, then z = 1 - u2 (1 - C'.B) about B */
 static inline o_light o_triangle_light(o_triangle l, ld u1, ld u2) {
-    const ld t = o_reach(o_triangle_up_to, &l, u1 * o_triangle_up_to(&l, 1.0L));
+    const ld t = o_reach(o_triangle_up_to, &l, u1 * l.all);
     const o_vec3 end = o_between(l.a, l.c, t);
     const o_vec3 b = o_unit(l.b);
     const o_vec3 e = o_unit(end);
@@ -659,7 +668,7 @@ static inline o_vec3 o_spherical_triangle_map(o_triangle l, ld u1, ld u2) { retu
 static inline ld o_spherical_triangle_pdf_u(o_triangle l, ld u1, ld u2) {
     (void)u1;
     (void)u2;
-    return 1.0L / o_triangle_up_to(&l, 1.0L);
+    return 1.0L / l.all;
 }
 static inline ld o_spherical_triangle_pdf(o_triangle l, o_vec3 w) {
     const ld all = o_dot(l.a, o_cross(l.b, l.c)) < 0.0L ? -1.0L : 1.0L;
@@ -676,15 +685,25 @@ static inline o_vec2 o_spherical_triangle_invert(o_triangle l, o_vec3 w) {
     const ld t = part_c / (part_a + part_c);
     const o_vec3 b = o_scale(-1.0L, o_unit(l.b));
     const ld along = o_len(o_add(o_unit(w), b)) / o_len(o_add(o_unit(o_between(l.a, l.c, t)), b));
-    return o_v2(o_triangle_up_to(&l, t) / o_triangle_up_to(&l, 1.0L), along * along);
+    return o_v2(o_triangle_up_to(&l, t) / l.all, along * along);
 }
 
 /* Of the axes x and y and the distance z, for x from x0 to x0 + width and y from y0 to y0 + height. */
 typedef struct {
     o_vec3 axis_x, axis_y, normal;
     ld x0, y0, z, width, height;
-    ld x; /* of a line along y */
+    ld x;   /* of a line along y */
+    ld all; /* its solid angle */
 } o_rectangle;
+static inline ld o_rectangle_up_to(const void *of, ld t) {
+    const o_rectangle *l = (const o_rectangle *)of;
+    const o_vec3 a = o_vec(l->x0, l->y0, l->z);
+    const o_vec3 b = o_vec(l->x0 + t * l->width, l->y0, l->z);
+    const o_vec3 c = o_vec(l->x0 + t * l->width, l->y0 + l->height, l->z);
+    const o_vec3 d = o_vec(l->x0, l->y0 + l->height, l->z);
+    const ld volume = l->z * t * l->width * l->height;
+    return o_solid_angle(volume, a, b, c) + o_solid_angle(volume, a, c, d);
+}
 static inline o_rectangle o_rectangle_make(o_vec3 corner, o_vec3 edge_x, o_vec3 edge_y) {
     o_rectangle l;
     l.width = o_len(edge_x);
@@ -699,31 +718,24 @@ static inline o_rectangle o_rectangle_make(o_vec3 corner, o_vec3 edge_x, o_vec3 
     l.x0 = o_dot(corner, l.axis_x);
     l.y0 = o_dot(corner, l.axis_y);
     l.x = l.x0;
+    l.all = o_rectangle_up_to(&l, 1.0L);
     return l;
 }
-static inline ld o_rectangle_up_to(const void *of, ld t) {
-    const o_rectangle *l = (const o_rectangle *)of;
-    const o_vec3 a = o_vec(l->x0, l->y0, l->z);
-    const o_vec3 b = o_vec(l->x0 + t * l->width, l->y0, l->z);
-    const o_vec3 c = o_vec(l->x0 + t * l->width, l->y0 + l->height, l->z);
-    const o_vec3 d = o_vec(l->x0, l->y0 + l->height, l->z);
-    const ld volume = l->z * t * l->width * l->height;
-    return o_solid_angle(volume, a, b, c) + o_solid_angle(volume, a, c, d);
-}
-/* sin(e) - sin(e0) of the elevations of y and y0 over the plane y = 0, as 2 cos((e + e0)/2) sin((e - e0)/2). The mean
- * is known by what it lacks of a quarter turn. */
+/* sin(e) - sin(e0) = y/r - y0/r0 of the elevations of y and y0 over the plane y = 0. Where they are on one side of it,
+ * the difference of the squares, d^2 (y^2 - y0^2) / (r r0)^2, over the sum. */
 static inline ld o_rectangle_rise(const void *of, ld t) {
     const o_rectangle *l = (const o_rectangle *)of;
     const ld d = hypotl(l->x, l->z);
     const ld y = l->y0 + t * l->height;
-    const int mirrored = y + l->y0 < 0.0L;
-    const ld mean = atan2l(d, mirrored ? -y : y) + atan2l(d, mirrored ? -l->y0 : l->y0);
-    return 2.0L * sinl(0.5L * mean) * sinl(0.5L * atan2l(d * t * l->height, d * d + y * l->y0));
+    const ld r = hypotl(d, y);
+    const ld r0 = hypotl(d, l->y0);
+    if (y * l->y0 <= 0.0L) return y / r - l->y0 / r0;
+    return d / r * (d / r0) * (t * l->height) * (y + l->y0) / (y * r0 + l->y0 * r);
 }
 /* Urena, Fajardo, King 2013: the share u1 is before x, and y is uniform in the sine of its elevation */
 static inline o_light o_rectangle_light(o_rectangle l, ld u1, ld u2) {
     o_light s;
-    s.x = o_reach(o_rectangle_up_to, &l, u1 * o_rectangle_up_to(&l, 1.0L));
+    s.x = o_reach(o_rectangle_up_to, &l, u1 * l.all);
     l.x = l.x0 + s.x * l.width;
     s.y = o_reach(o_rectangle_rise, &l, u2 * o_rectangle_rise(&l, 1.0L));
     const o_vec3 in_plane = o_add(o_scale(l.x, l.axis_x), o_scale(l.y0 + s.y * l.height, l.axis_y));
@@ -734,7 +746,7 @@ static inline o_vec3 o_spherical_rectangle_map(o_rectangle l, ld u1, ld u2) { re
 static inline ld o_spherical_rectangle_pdf_u(o_rectangle l, ld u1, ld u2) {
     (void)u1;
     (void)u2;
-    return 1.0L / o_rectangle_up_to(&l, 1.0L);
+    return 1.0L / l.all;
 }
 /* The place on the light that w meets, or one far outside. */
 static inline o_vec2 o_rectangle_place(o_rectangle l, o_vec3 w) {
@@ -752,24 +764,33 @@ static inline o_vec2 o_spherical_rectangle_invert(o_rectangle l, o_vec3 w) {
     const ld x = fminl(fmaxl(place.x, 0.0L), 1.0L);
     const ld y = fminl(fmaxl(place.y, 0.0L), 1.0L);
     l.x = l.x0 + x * l.width;
-    return o_v2(o_rectangle_up_to(&l, x) / o_rectangle_up_to(&l, 1.0L),
-                o_rectangle_rise(&l, y) / o_rectangle_rise(&l, 1.0L));
+    return o_v2(o_rectangle_up_to(&l, x) / l.all, o_rectangle_rise(&l, y) / o_rectangle_rise(&l, 1.0L));
 }
 
-/* Those of the rows, about +z. */
+/* Those of the rows, about +z. The last one is kept, as a row is asked about many directions. */
 static inline o_triangle o_row_triangle(float a, float b) {
+    static o_triangle l;
+    static float size[2];
+    if (l.all > 0.0L && size[0] == a && size[1] == b) return l;
     const float height = a * b;
-    o_triangle l;
-    l.a = o_v3(-a, -height, 1.25f - 0.25f * height);
-    l.b = o_v3(0.9f * a, -0.5f * height, 1.25f - 0.125f * height);
-    l.c = o_v3(0.25f * a, height, 1.25f + 0.25f * height);
+    l = o_triangle_make(o_v3(-a, -height, 1.25f - 0.25f * height),
+                        o_v3(0.9f * a, -0.5f * height, 1.25f - 0.125f * height),
+                        o_v3(0.25f * a, height, 1.25f + 0.25f * height));
+    size[0] = a;
+    size[1] = b;
     return l;
 }
 static inline o_rectangle o_row_rectangle(float a, float b) {
+    static o_rectangle l;
+    static float size[2];
+    if (l.all > 0.0L && size[0] == a && size[1] == b) return l;
     const float height = a * b;
     const float z = 1.0f - 0.0625f * a;
-    return o_rectangle_make(o_v3(-0.25f * a, -0.5f * height, z - 0.0625f * height), o_v3(a, 0.0f, 0.25f * a),
-                            o_v3(0.0f, height, 0.125f * height));
+    l = o_rectangle_make(o_v3(-0.25f * a, -0.5f * height, z - 0.0625f * height), o_v3(a, 0.0f, 0.25f * a),
+                         o_v3(0.0f, height, 0.125f * height));
+    size[0] = a;
+    size[1] = b;
+    return l;
 }
 
 /* ---- directions where light is scattered ---- */

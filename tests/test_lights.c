@@ -118,7 +118,7 @@ static void rectangles(mcs_pcg32 *r, const kind *k) {
 static void triangles(mcs_pcg32 *r, const kind *k) {
     for (int i = 0; i < LIGHTS; i++) {
         const shape s = any_shape(r, k, 0);
-        const o_triangle o = {seen(&s, s.a), seen(&s, s.b), seen(&s, s.c)};
+        const o_triangle o = o_triangle_make(seen(&s, s.a), seen(&s, s.b), seen(&s, s.c));
         const mcs_spherical_triangle l = mcs_spherical_triangle_make(s.p, s.a, s.b, s.c);
         const ld pdf = o_spherical_triangle_pdf_u(o, 0, 0);
         if (!(pdf < 1e12L)) continue;
@@ -223,7 +223,7 @@ static void half_of_all(void) {
                          0.3f, 0.6f);
         const mcs_spherical_triangle t = mcs_spherical_triangle_make(p, a, b, c);
         const mcs_light_point d = mcs_spherical_triangle_sample(&t, 0.3f, 0.6f);
-        const o_triangle ot = {o_vec(-1, -1, h), o_vec(2, -1, h), o_vec(-1, 2, h)};
+        const o_triangle ot = o_triangle_make(o_vec(-1, -1, h), o_vec(2, -1, h), o_vec(-1, 2, h));
         if (h >= 1e-6L)
             check_sample("triangle", d, o_triangle_light(ot, (ld)0.3f, (ld)0.6f), o_spherical_triangle_pdf_u(ot, 0, 0),
                          0.3f, 0.6f);
