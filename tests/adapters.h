@@ -184,20 +184,30 @@ MCST_ROWS(MCST_ADAPT)
     }
 #define MCST_N_LOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
 #define MCST_N_VLOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
-#define MCST_N_BRDF(row, fn, mat, base)                                                                              \
-    MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
-        MAKE_##mat;                                                                                                  \
-        mcs_##fn##_sample_n(&m, WO, n, u1, u2, out[0], out[1], out[2], out[3], out[4]);                              \
-    }                                                                                                                \
-    MCST_HOST_FN void mcstn_##row##_pdf(const float *p, size_t n, const float *x, const float *y, const float *z,    \
-                                        float *out) {                                                                \
-        MAKE_##mat;                                                                                                  \
-        mcs_##fn##_pdf_n(&m, WO, n, x, y, z, out);                                                                   \
-    }                                                                                                                \
-    MCST_HOST_FN void mcstn_##row##_eval(const float *p, size_t n, const float *x, const float *y, const float *z,   \
-                                         float *out) {                                                               \
-        MAKE_##mat;                                                                                                  \
-        mcs_##base##_eval_n(&m, WO, n, x, y, z, out);                                                                \
+#define MCST_N_BRDF(row, fn, mat, base)                                                                                \
+    MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) {   \
+        MAKE_##mat;                                                                                                    \
+        mcs_##fn##_sample_n(&m, WO, n, u1, u2, out[0], out[1], out[2], out[3], out[4]);                                \
+    }                                                                                                                  \
+    MCST_HOST_FN void mcstn_##row##_pdf(const float *p, size_t n, const float *x, const float *y, const float *z,      \
+                                        float *out) {                                                                  \
+        MAKE_##mat;                                                                                                    \
+        mcs_##fn##_pdf_n(&m, WO, n, x, y, z, out);                                                                     \
+    }                                                                                                                  \
+    MCST_HOST_FN void mcstn_##row##_eval(const float *p, size_t n, const float *x, const float *y, const float *z,     \
+                                         float *out) {                                                                 \
+        MAKE_##mat;                                                                                                    \
+        mcs_##base##_eval_n(&m, WO, n, x, y, z, out);                                                                  \
+    }                                                                                                                  \
+    MCST_HOST_FN void mcstn_##row##_sample_hits(const float *p, const mcs_hits *hits, size_t n,                        \
+                                                const float *const in[3], float *const out[5]) {                       \
+        MAKE_##mat;                                                                                                    \
+        mcs_##fn##_sample_hits_n(&m, hits, n, in[0], in[1], out[0], out[1], out[2], out[3], out[4]);                   \
+    }                                                                                                                  \
+    MCST_HOST_FN void mcstn_##row##_pdf_hits(const float *p, const mcs_hits *hits, size_t n, const float *const in[3], \
+                                             float *const out[5]) {                                                    \
+        MAKE_##mat;                                                                                                    \
+        mcs_##fn##_pdf_hits_n(&m, hits, n, in[0], in[1], in[2], out[0], out[1]);                                       \
     }
 #define MCST_ADAPT_N(shape, row, fn, arg, base, coord, grid) MCST_N_##shape(row, fn, arg, base)
 MCST_ROWS(MCST_ADAPT_N)

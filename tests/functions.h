@@ -127,8 +127,9 @@ static int bits_valid; /* tables and maps have no bad entries */
 #endif
 
 /* A function of the header: a row and which of its functions, or one of bits.h. */
-enum { SAMPLE, PDF, INVERT, EVAL, WEIGHT, SAMPLE_N, PDF_N, EVAL_N, FORMS, OTHER = FORMS };
-static const char *const suffix[FORMS] = {"sample", "pdf", "invert", "eval", "weight", "sample_n", "pdf_n", "eval_n"};
+enum { SAMPLE, PDF, INVERT, EVAL, WEIGHT, SAMPLE_N, PDF_N, EVAL_N, SAMPLE_HITS_N, PDF_HITS_N, FORMS, OTHER = FORMS };
+static const char *const suffix[FORMS] = {"sample",   "pdf",   "invert", "eval",          "weight",
+                                          "sample_n", "pdf_n", "eval_n", "sample_hits_n", "pdf_hits_n"};
 static const struct {
     const char *name;
     bits_fn *fn[4];
@@ -177,6 +178,17 @@ static inline target find_target(const char *name) {
             return t;
         }
     return t;
+}
+
+/* n hits by an array form, where entry k of hit i is in[k][i], as an adapter of bits.h has them. The parameters and wo of
+ * each are in[P], in[P + 1] and from in[WO] on. */
+static inline void call_hits(target t, size_t n, float *const in[WORDS], float *const out[5]) {
+    const mcst_row *row = &mcst_rows[t.at];
+    const float *const with[3] = {in[t.form == PDF_HITS_N ? X : U], in[t.form == PDF_HITS_N ? X + 1 : U + 1],
+                                  in[X + 2]};
+    const mcs_hits hits = {in[WO], in[WO + 1], in[WO + 2], in[P], row->params > 1 ? in[P + 1] : NULL};
+    const float p[MCST_P] = {0};
+    (t.form == PDF_HITS_N ? row->pdf_hits_n : row->sample_hits_n)(p, &hits, n, with, out);
 }
 
 /* The next row of the same function: Ward's three models. */

@@ -111,6 +111,10 @@ typedef void mcst_sample_fn(const float *p, const float *u1, const float *u2, fl
 typedef void mcst_value_fn(const float *p, const float *x, float *out);
 typedef void mcst_sample_n_fn(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]);
 typedef void mcst_value_n_fn(const float *p, size_t n, const float *x, const float *y, const float *z, float *out);
+/* Of as many wo and parameters; in[0..1] are the random numbers, or in[0..2] the points. Of the latter out[0..1] are
+ * density and value. */
+typedef void mcst_hits_fn(const float *p, const mcs_hits *hits, size_t n, const float *const in[3],
+                          float *const out[5]);
 /* In truth.h: the truth for the same float inputs. */
 typedef void mcst_map_fn(const float *p, ld u1, ld u2, ld *x);
 typedef ld mcst_exact_fn(const float *p, const float *x);
@@ -185,6 +189,7 @@ typedef struct {
     mcst_fns fn[4]; /* widths 1, 4, 8, 16; the wide ones only under MCST_WIDE */
     mcst_sample_n_fn *sample_n;
     mcst_value_n_fn *pdf_n, *eval_n;
+    mcst_hits_fn *sample_hits_n, *pdf_hits_n;
     mcst_truth truth;
     const mcst_claim *claims; /* narrower ranges first */
     size_t claims_size;
@@ -436,6 +441,7 @@ static const mcst_claim mcst_claims_ashikhmin[] = {
     mcst_value_fn mcst1_##row##_eval, mcst4_##row##_eval, mcst8_##row##_eval, mcst16_##row##_eval;         \
     mcst_value_fn mcst1_##row##_weight, mcst4_##row##_weight, mcst8_##row##_weight, mcst16_##row##_weight; \
     mcst_value_n_fn mcstn_##row##_pdf, mcstn_##row##_eval;                                                 \
+    mcst_hits_fn mcstn_##row##_sample_hits, mcstn_##row##_pdf_hits;                                        \
     mcst_exact_fn mcsto_##row##_eval, mcsto_##row##_weight;
 #define MCST_DECLARE(shape, row, fn, arg, base, coord, grid)                                                \
     mcst_sample_fn mcst1_##row##_sample, mcst4_##row##_sample, mcst8_##row##_sample, mcst16_##row##_sample; \
@@ -473,10 +479,11 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_FNS_UV(w, row) {w##row##_sample, w##row##_pdf, w##row##_invert, NULL, NULL}
 #define MCST_FNS_BRDF(w, row) {w##row##_sample, w##row##_pdf, NULL, w##row##_eval, w##row##_weight}
 #define MCST_TAIL_UV(row) \
-    MCST_FOR_WIDTHS(MCST_FNS_UV, row), mcstn_##row, NULL, NULL, \
+    MCST_FOR_WIDTHS(MCST_FNS_UV, row), mcstn_##row, NULL, NULL, NULL, NULL, \
         {mcsto_##row##_map, mcsto_##row##_pdf, mcsto_##row##_pdf_u, mcsto_##row##_invert, NULL, NULL}
 #define MCST_TAIL_BRDF(row) \
     MCST_FOR_WIDTHS(MCST_FNS_BRDF, row), mcstn_##row, mcstn_##row##_pdf, mcstn_##row##_eval, \
+        mcstn_##row##_sample_hits, mcstn_##row##_pdf_hits, \
         {mcsto_##row##_map, mcsto_##row##_pdf, mcsto_##row##_pdf_u, NULL, mcsto_##row##_eval, mcsto_##row##_weight}
 #define MCST_COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define MCST_COUNT_0 0

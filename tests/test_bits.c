@@ -120,6 +120,22 @@ static void evaluate_blocks(target t) {
     }
 }
 
+/* By an array form of hits: all cases in one call, where neighbours have the cases of different parameter sets. */
+static void evaluate_hits(target t) {
+    static float in[WORDS][CASES], out[5][CASES];
+    float *const to[5] = {out[0], out[1], out[2], out[3], out[4]};
+    float *from[WORDS];
+    int i, k;
+    for (k = 0; k < WORDS; k++) {
+        from[k] = in[k];
+        for (i = 0; i < CASES; i++) in[k][i] = given[i * 1009 % CASES][k];
+    }
+    memset(out, 0, sizeof out);
+    call_hits(t, CASES, from, to);
+    for (i = 0; i < CASES; i++)
+        for (k = 0; k < 5; k++) result[i * 1009 % CASES][k] = out[k][i];
+}
+
 /* By an array form of maps or products: all cases of one of them in one call. */
 static void evaluate_kinds(target t) {
     static float in[5][CASES], out[6][CASES];
@@ -141,6 +157,7 @@ static void evaluate_kinds(target t) {
 static void evaluate_arrays(target t) {
     memset(result, 0, sizeof result);
     if (t.form == OTHER) evaluate_kinds(t);
+    else if (t.form >= SAMPLE_HITS_N) evaluate_hits(t);
     else evaluate_blocks(t);
 }
 

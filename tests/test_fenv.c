@@ -175,10 +175,28 @@ static void raise_by_arrays(target t) {
         }
 }
 
+/* The same of hits, whose neighbours have different parameters and wo. */
+static void raise_by_hits(target t) {
+    static float in[WORDS][NS], out[5][NS];
+    float *const to[5] = {out[0], out[1], out[2], out[3], out[4]};
+    for (int b = 0; b + NS < CASES; b += 97)
+        for (size_t n = 0; n < NS; n += 1 + (size_t)b % 5) {
+            float *from[WORDS];
+            for (int k = 0; k < WORDS; k++) {
+                from[k] = in[k];
+                for (int i = 0; i < NS; i++) in[k][i] = given[(b + i) * 1009 % CASES][k];
+            }
+            feclearexcept(FE_ALL_EXCEPT);
+            call_hits(t, n, from, to);
+            judge("hits", given[b * 1009 % CASES], n);
+        }
+}
+
 static void raise_ways(target t) {
     for (int way = 0; way < WAYS; way++) {
         if (!has_way(t, way)) continue;
         if (way < ARRAYS) raise_by_lanes(t, way);
+        else if (t.form == SAMPLE_HITS_N || t.form == PDF_HITS_N) raise_by_hits(t);
         else if (way == ARRAYS) raise_by_arrays(t);
     }
 }

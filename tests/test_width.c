@@ -195,6 +195,104 @@ static void check_arrays(const mcst_row *row, const float *p, uint64_t *state) {
     if (row->pdf_n) check_values_n(row, p, want);
 }
 
+/* --- hits, each with a wo and parameters of its own ---------------------------------------------------------------- */
+
+/* N of them, some with bad parameters, a bad wo, or both: hit i is in p[0..5][i], u[0..1][i] and x[0..2][i]. */
+typedef struct {
+    int own_parameters; /* or all have those of the first */
+    int values;         /* densities and values of x are wanted, not samples */
+    float p[MCST_P][N], u[2][N], x[3][N];
+} hit_arrays;
+
+static void make_hits(const mcst_row *row, uint64_t *state, hit_arrays *h) {
+    float first[MCST_P];
+    any_p(row, state, first);
+    for (int i = 0; i < N; i++) {
+        const float v[2] = {any_u(state), any_u(state)};
+        float p[MCST_P];
+        float drawn[5] = {0};
+        any_p(row, state, p);
+        if (!h->own_parameters) memcpy(p, first, 3 * sizeof *p);
+        row->fn[0].sample(p, &v[0], &v[1], drawn);
+        for (int k = 0; k < MCST_P; k++) h->p[k][i] = p[k];
+        for (int k = 0; k < 2; k++) h->u[k][i] = any_u(state);
+        for (int k = 0; k < 3; k++) h->x[k][i] = mcst_mix(state) % 4 ? drawn[k] : any_u(state);
+    }
+}
+/* What scalar calls give: x, y, z, pdf, weight of samples, or pdf and f of the points. */
+static void scalar_hits(const mcst_row *row, const hit_arrays *h, float want[5][N]) {
+    for (int i = 0; i < N; i++) {
+        float p[MCST_P];
+        float out[5] = {0};
+        const float x[3] = {h->x[0][i], h->x[1][i], h->x[2][i]};
+        for (int k = 0; k < MCST_P; k++) p[k] = h->p[k][i];
+        if (h->values) {
+            row->fn[0].pdf(p, x, &out[0]);
+            row->fn[0].eval(p, x, &out[1]);
+        } else {
+            row->fn[0].sample(p, &h->u[0][i], &h->u[1][i], out);
+        }
+        for (int k = 0; k < 5; k++) want[k][i] = out[k];
+    }
+}
+/* A call for n hits from `first` on. */
+static void call_hits(const mcst_row *row, hit_arrays *h, size_t first, size_t n, float *const out[5]) {
+    const float p[MCST_P] = {h->p[0][0], h->p[1][0], h->p[2][0], 0, 0, 0};
+    const mcs_hits hits = {h->p[3] + first, h->p[4] + first, h->p[5] + first,
+                           h->own_parameters ? h->p[0] + first : NULL,
+                           h->own_parameters && row->params > 1 ? h->p[1] + first : NULL};
+    float(*const in)[N] = h->values ? h->x : h->u;
+    const float *const from[3] = {in[0] + first, in[1] + first, h->values ? in[2] + first : NULL};
+    (h->values ? row->pdf_hits_n : row->sample_hits_n)(p, &hits, n, from, out);
+}
+/* Of every n, now and then without some outputs, from places of every alignment. */
+static void check_every_n(const mcst_row *row, hit_arrays *h, uint64_t *state) {
+    float want[5][N];
+    scalar_hits(row, h, want);
+    for (size_t n = 0; n <= N; n++) {
+        const size_t first = n < N - 3 ? n % 4 : 0;
+        const unsigned missing = n % 6 ? 0 : 1 + (unsigned)(mcst_mix(state) % 31);
+        float buffer[5][ROOM];
+        float *out[5];
+        for (int k = 0; k < 5; k++) {
+            for (int i = 0; i < ROOM; i++) buffer[k][i] = guard;
+            out[k] = missing >> k & 1 ? NULL : buffer[k] + (n + (size_t)k) % 4;
+        }
+        call_hits(row, h, first, n, out);
+        for (int k = 0; k < 5; k++) {
+            const int written = out[k] && (!h->values || k < 2);
+            char what[32];
+            snprintf(what, sizeof what, "%s of hits, output %d", h->values ? "value" : "sample", k);
+            check_written(what, buffer[k], (n + (size_t)k) % 4, want[k] + first, written ? n : 0);
+        }
+    }
+}
+/* In place: the outputs are what hits have, or random numbers and points, in another order. */
+static void check_hits_in_place(const mcst_row *row, const hit_arrays *h, int of_hits) {
+    float want[5][N], rest[3][N];
+    hit_arrays a = *h;
+    float(*const in)[N] = h->values ? a.x : a.u;
+    float *const to_hits[5] = {a.p[4], a.p[5], a.p[3], a.p[1], a.p[0]};
+    float *const to_points[5] = {in[1], in[0], rest[0], rest[1], rest[2]};
+    float *const *const out = of_hits ? to_hits : to_points;
+    scalar_hits(row, h, want);
+    call_hits(row, &a, 0, N, out);
+    for (int k = 0; k < (h->values ? 2 : 5); k++)
+        for (int i = 0; i < N; i++)
+            CHECK(same(out[k][i], want[k][i], arrays_contract), "hits in place, output %d[%d]: %.9g, scalar %.9g", k, i,
+                  (double)out[k][i], (double)want[k][i]);
+}
+static void check_hits(const mcst_row *row, uint64_t *state) {
+    static hit_arrays h;
+    for (int round = 0; round < 16; round++) {
+        h.own_parameters = round & 1;
+        h.values = round >> 1 & 1;
+        make_hits(row, state, &h);
+        check_every_n(row, &h, state);
+        check_hits_in_place(row, &h, round >> 2 & 1);
+    }
+}
+
 /* --- is the registry complete? ------------------------------------------------------------------------------------ */
 
 static int is_known(const char *name) {
@@ -249,6 +347,7 @@ int main(int argc, char **argv) {
                           (double)p[5]))
                 check_arrays(row, p, &state);
         }
+        if (row->sample_hits_n && mcst_case("hits")) check_hits(row, &state);
     }
     return mcst_finish();
 }
