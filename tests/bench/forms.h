@@ -1,7 +1,8 @@
 /* One array loop per sampler of the registry over the functions of one width; material and parameters are prepared
  * outside of the loop. No include guard: included once per BENCH_W = 1, 4, 8 or 16, for bench1_<row> and so on, of the
  * type bench_form, and the array bench1_forms in the order of the registry. n is a multiple of BENCH_W; a weight is
- * left to the compiler to leave out. */
+ * left to the compiler to leave out. The array bench1_hits_forms has the same loops with a wo and a material per sample,
+ * which is made from its parameters, and with the weight. */
 #define FORM_CAT_(a, b, c) a##b##c
 #define FORM_CAT(a, b, c) FORM_CAT_(a, b, c)
 #if BENCH_W == 1
@@ -67,6 +68,43 @@
 MCST_ROWS(FORM_ROW)
 bench_form *const B_(forms)[] = {MCST_ROWS(FORM_NAME)};
 
+#define FORM_HITS_LINE(row, fn, arg)
+#define FORM_HITS_PLANE FORM_HITS_LINE
+#define FORM_HITS_DIR FORM_HITS_LINE
+#define FORM_HITS_LIGHT FORM_HITS_LINE
+#define FORM_HITS_POLYGON FORM_HITS_LINE
+#define FORM_HITS_LOBE FORM_HITS_LINE
+#define FORM_HITS_VLOBE FORM_HITS_LINE
+#define FORM_HITS_BRDF(row, fn, mat)                                                                            \
+    static void B_(row##_hits)(const bench_hits *hits, const float *u1, const float *u2,                        \
+                               float *const out[BENCH_OUT]) {                                                   \
+        for (size_t i = 0; i < BENCH_N; i += BENCH_W) {                                                         \
+            const F_ a = M_(load)(hits->a + i), b = M_(load)(hits->b + i);                                      \
+            const M_(vec3) wo = {M_(load)(hits->wo_x + i), M_(load)(hits->wo_y + i), M_(load)(hits->wo_z + i)}; \
+            FORM_MAKE_##mat;                                                                                    \
+            const M_(brdf) s = M_(fn##_sample)(&m, wo, FORM_U);                                                 \
+            (void)b;                                                                                            \
+            M_(store)(out[0] + i, s.wi.x);                                                                      \
+            M_(store)(out[1] + i, s.wi.y);                                                                      \
+            M_(store)(out[2] + i, s.wi.z);                                                                      \
+            M_(store)(out[3] + i, s.pdf);                                                                       \
+            M_(store)(out[4] + i, s.weight);                                                                    \
+        }                                                                                                       \
+    }
+#define FORM_HITS_NONE(row) NULL,
+#define FORM_HITS_NAME_LINE FORM_HITS_NONE
+#define FORM_HITS_NAME_PLANE FORM_HITS_NONE
+#define FORM_HITS_NAME_DIR FORM_HITS_NONE
+#define FORM_HITS_NAME_LIGHT FORM_HITS_NONE
+#define FORM_HITS_NAME_POLYGON FORM_HITS_NONE
+#define FORM_HITS_NAME_LOBE FORM_HITS_NONE
+#define FORM_HITS_NAME_VLOBE FORM_HITS_NONE
+#define FORM_HITS_NAME_BRDF(row) B_(row##_hits),
+#define FORM_HITS_ROW(shape, row, fn, arg, base, coord, grid) FORM_HITS_##shape(row, fn, arg)
+#define FORM_HITS_NAME(shape, row, fn, arg, base, coord, grid) FORM_HITS_NAME_##shape(row)
+MCST_ROWS(FORM_HITS_ROW)
+bench_hits_form *const B_(hits_forms)[] = {MCST_ROWS(FORM_HITS_NAME)};
+
 #undef FORM_CAT_
 #undef FORM_CAT
 #undef M_
@@ -102,4 +140,23 @@ bench_form *const B_(forms)[] = {MCST_ROWS(FORM_NAME)};
 #undef FORM_BRDF
 #undef FORM_ROW
 #undef FORM_NAME
+#undef FORM_HITS_LINE
+#undef FORM_HITS_PLANE
+#undef FORM_HITS_DIR
+#undef FORM_HITS_LIGHT
+#undef FORM_HITS_POLYGON
+#undef FORM_HITS_LOBE
+#undef FORM_HITS_VLOBE
+#undef FORM_HITS_BRDF
+#undef FORM_HITS_NONE
+#undef FORM_HITS_NAME_LINE
+#undef FORM_HITS_NAME_PLANE
+#undef FORM_HITS_NAME_DIR
+#undef FORM_HITS_NAME_LIGHT
+#undef FORM_HITS_NAME_POLYGON
+#undef FORM_HITS_NAME_LOBE
+#undef FORM_HITS_NAME_VLOBE
+#undef FORM_HITS_NAME_BRDF
+#undef FORM_HITS_ROW
+#undef FORM_HITS_NAME
 #undef BENCH_W

@@ -12,7 +12,9 @@
  * densities of reflected directions within 40 2^-24 of the horizon, where lost or not is a matter of rounding. Results
  * that are not finite are counted apart.
  *
- * Writes throughput.csv, and for eight samplers throughput.svg (place) and throughput_pdf.svg; prints the table, and
+ * Of a wo and parameters per sample: hits.h.
+ *
+ * Writes throughput.csv, hits.csv, and for eight samplers throughput.svg (place) and throughput_pdf.svg; prints the table, and
  * which targets are met. */
 #define MCS_PACKETS 4
 #include "bench.h"
@@ -747,6 +749,8 @@ static void print_tables(void) {
     if (!bench_kernels_sleef[0]) puts("SKIPPED: libsleef-dev not installed");
 }
 
+#include "hits.h"
+
 static int unmet;
 static void verdict(const char *what, const char *of, double measured, const char *relation, double wanted, int met) {
     printf("%-8s %-30s %-18s %9.3g %s %g\n", met ? "met" : "NOT MET", what, of, measured, relation, wanted);
@@ -808,12 +812,14 @@ int main(int argc, char **argv) {
     }
     measure_times(slice);
     measure_extras(slice);
+    measure_hits(slice);
     bench_progress("%s", "");
     write_csv();
     write_svg("throughput.svg", 0, "largest error of the sample, ulp", 0.3, 1e4);
     write_svg("throughput_pdf.svg", 1, "largest error of the pdf, 1e-6 (1 + |ln(pdf/peak)|)", 0.01, 1e6);
     print_tables();
+    report_hits();
     print_targets();
-    printf("wrote %s/throughput.csv, throughput.svg, throughput_pdf.svg\n", bench.out);
+    printf("wrote %s/throughput.csv, hits.csv, throughput.svg, throughput_pdf.svg\n", bench.out);
     return 0;
 }
