@@ -36,10 +36,9 @@ STRESS_PARTS = hostile images fuzz-product fuzz-^product $(filter climb,$(STRESS
 	$(addprefix floats-any+float.x+of+,$(STRESS_LINES)) $(STRESS_ROWS:%=deep-%.) \
 	$(if $(filter extremes,$(STRESS)),$(STRESS_ROWS:%=extremes-%.) extremes-mass extremes-oracle)
 STRESS_FILTER = $(if $(findstring -,$(1)),--filter '$(subst .,/,$(subst +, ,$(word 2,$(subst -, ,$(1)))))')
-# Two of them each day of the year.
+# One of them each day of the year.
 DAY ?= $(shell date +%j)
-STRESS_TODAY = $(foreach i,$(shell echo '$(DAY) $(words $(STRESS_PARTS))' | awk '{ print $$1 % $$2 + 1, ($$1 + int($$2 / 2)) % $$2 + 1 }'), \
-	$(word $(i),$(STRESS_PARTS)))
+STRESS_TODAY = $(word $(shell echo '$(DAY) $(words $(STRESS_PARTS))' | awk '{ print $$1 % $$2 + 1 }'),$(STRESS_PARTS))
 STRESS_SUM = awk '/: [0-9]+ passed, [0-9]+ failed, [0-9.]+ s$$/ { p += $$(NF - 5); f += $$(NF - 3) } \
 	END { print p + 0 " passed, " f + 0 " failed"; exit f != 0 || p == 0 }'
 STRESS_CUT = $(if $(filter-out $(TESTS) $(WITHOUT),$(wildcard tests/test_*.c)),,$(STRESS_BINS))
@@ -128,7 +127,7 @@ stress: ## every float, deep statistics, extremes, hostile input at full size; a
 	@$(TOOK) "what each part printed in $(BUILD)/stress"
 	@cat $(STRESS_PARTS:%=$(BUILD)/stress/%.txt) | $(STRESS_SUM)
 
-stress-today: ## two parts of make stress at full size, others each day; some minutes; build/stress; DAY=number picks
+stress-today: ## a part of make stress at full size, another each day; some minutes; build/stress; DAY=number picks
 	$(SAY)
 	@echo 'stress: day $(DAY): $(STRESS_TODAY)'
 	+@$(SUBMAKE) stress-whole
@@ -293,7 +292,8 @@ $(STRESS_PARTS:%=$(BUILD)/stress/%.ok): $(BUILD)/stress/%.ok: $(STRESS_BINS)
 	@echo 'stress: $* ...'
 	@$(BUILD)/tests/stress/$(firstword $(subst -, ,$*)) $(call STRESS_FILTER,$*) > $(@:.ok=.txt); status=$$?; cat $(@:.ok=.txt); test $$status = 0 && touch $@
 
-# ---- a graphics processor. The bits are those of the host where nothing is fused; samplers are measured as users compile them.
+# ---- a graphics processor. The bits are those of the host where nothing is fused; samplers are measured as users compile them. The
+# host's packets are of no use there.
 NVCC ?= nvcc
 CUDA = $(BUILD)/cuda
 CUDA_FLAGS = -x cu -arch=native -O2 -Wno-deprecated-gpu-targets -diag-suppress 20014 -I. -Itests
@@ -302,7 +302,7 @@ cuda-binaries: $(CUDA)/bits $(CUDA)/samplers
 
 $(CUDA)/bits: tests/test_bits.c mcsample.h $(wildcard tests/*.h)
 	@mkdir -p $(@D)
-	$(NVCC) $(CUDA_FLAGS) --fmad=false -Xcompiler $(EXACT) $< -o $@
+	$(NVCC) $(CUDA_FLAGS) -DMCST_ARRAYS --fmad=false -Xcompiler $(EXACT) $< -o $@
 
 $(CUDA)/samplers: tests/cuda.cu mcsample.h $(wildcard tests/*.h)
 	@mkdir -p $(@D)
