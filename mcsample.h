@@ -718,9 +718,13 @@ MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, f
 
 /* ==== [lights] directions towards a light =========================================================================
  * Maps from the unit square to the directions in which a light is seen. All is in one frame, that of the world or any
- * other. For balls and disks, the point that is lit is the origin.
+ * other. Balls and disks take their centre as seen from the point that is lit: centre - point. Rectangles and triangles
+ * take the point and the corners.
  *
- *   w         a direction, from the point to the light
+ *   w         a direction, from the point to the light. A density above 0 says that it meets the light, if nothing is
+ *             in its way.
+ *
+ * A shadow ray goes from the point to point + distance w, or to the place on the light that the sample has.
  *
  * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24 */
 #ifndef MCS_NO_LIGHTS
@@ -1573,6 +1577,7 @@ MCS_API void mcs_ggx_pdf_hits_n(const mcs_ggx *m, const mcs_hits *hits, size_t n
  *   f          weight pdf / |wi.z|
  *   (u1, u2)   draw h as mcs_ggx_vndf_h_sample does; u3 < F reflects
  *
+ * side        wi is refracted where wi.z and wo.z have different signs, reflected where they have the same.
  * light       f and weights are those of power: over all wi, f |wi.z| integrates to 1 less what masking takes, and
  *             f / n_i^2 is symmetric in wo and wi. Refraction changes radiance by the square of the index: on paths
  *             from the eye, multiply f and weights of refracted directions by (n_o / n_i)^2, which is 1/eta^2 for a wo
