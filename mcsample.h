@@ -157,8 +157,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#define MCS_VERSION 100 /* major * 10000 + minor * 100 + patch */
-#define MCS_VERSION_STRING "0.1.0"
+#define MCS_VERSION 200 /* major * 10000 + minor * 100 + patch */
+#define MCS_VERSION_STRING "0.2.0"
 
 /* ---- configuration: define these before the include ----
  *
