@@ -196,6 +196,15 @@ static void check_rim(const grid_point *g, float pdf) {
     CHECK(pdf >= 0 && (ld)pdf <= pdf_x * 1.001L, "u %a %a: pdf(x) %.9g on the rim, %.9Lg inside", (double)u[0],
           (double)u[1], (double)pdf, pdf_x);
 }
+/* Whether a float next to x misses what is drawn. */
+static int on_rim(const mcst_row *row, const float *p, const float *x) {
+    for (int i = 0; i < 6; i++) {
+        float next[3] = {x[0], x[1], x[2]};
+        next[i / 2] = nextafterf(x[i / 2], i % 2 ? 2.0f : -2.0f);
+        if (row->truth.pdf(p, next) == 0) return 1;
+    }
+    return 0;
+}
 static void check_values(const grid_point *g, float pdf, ld pdf_x) {
     const mcst_row *row = g->row;
     const float *u = g->u;
@@ -302,6 +311,8 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
         check_rim(&g, pdf);
         return;
     }
+    /* the side of a light that a direction is on exactly is a difference of 0, but for the rounding of one product */
+    if (pdf == 0 && row->shape == MCST_IS_DIR && mcst_arrays_contract() && on_rim(row, p, x)) return;
     tol = mcst_claim_of(row, CLAIM_PDF_W, p) * direction_tol(row, p, x, pdf_x, peak);
     CHECK(near(PDF_X, pdf, pdf_x, tol, peak), "u %a %a: pdf(x) %.9g, exact %.9Lg (%.3g, tolerance %.3g)", (double)u[0],
           (double)u[1], (double)pdf, pdf_x, (double)((ld)pdf / pdf_x - 1), tol);
