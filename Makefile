@@ -118,7 +118,7 @@ test: ## build and run every tests/test_*.c (the default); two minutes; build/te
 	@$(if $(STRESS_CUT),$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath'))
 	@BEGAN=$(NOW) BUILD='$(BUILD)' FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS) $(STRESS_CUT)
 
-stress: ## every float, deep statistics, extremes, hostile input at full size; an hour; build/stress; what passed is not run again
+stress: ## every float, deep statistics, extremes, hostile input at full size; hours; build/stress; what passed is not run again
 	$(SAY)
 	@$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath')
 	+@$(SUBMAKE) stress-whole
