@@ -1,7 +1,7 @@
 # mcsample.h is one header: nothing here has to be built to use it. This file builds what proves it and what shows it.
 #
-# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), PYTHON (python3), DESTDIR, SOURCE_DATE_EPOCH; MAPS (.hdr files for the
-# benchmark, none); for tests also FILTER=text, SEED=number, WITHOUT=files and
+# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), PYTHON (python3), DESTDIR, SOURCE_DATE_EPOCH; MAPS (.hdr files
+# for the benchmark, none); for tests also FILTER=text, SEED=number, WITHOUT=files and
 # MCS_TEST_SCALE=0.05 (scales the sample counts of the statistical tests; 1 is the count that the tolerances are meant for).
 
 CFLAGS ?= -O2
