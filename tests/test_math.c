@@ -181,6 +181,13 @@ int main(int argc, char **argv) {
             const float y = power_37(x);
             CHECK(y >= FLT_MIN || (y == 0 && x < 0.0985f), "%g^37.5 = %g is subnormal", (double)x, (double)y);
         }
+        for (float x = 0x1p-120f; x > 0; x *= 0.875f) { /* the first root of x is x, where that is subnormal, too */
+            float over;
+            const float y = mcsi_pow_unit(x, 0.0f, 1.0, 1, &over);
+            CHECK(fabsf(y - x) <= 0x1p-149f + 2 * FLT_EPSILON * x, "%a^1 = %a", (double)x, (double)y);
+            CHECK(fabsf(over - 1) <= 2 * FLT_EPSILON, "%a over its root is %a", (double)x, (double)over);
+            if (x < 0x1p-146f) break; /* 7/8 of it rounds to it */
+        }
         CHECK(mcsi_power(0.0f, 0.0, 0.0f) == 1 && mcsi_power(2.0f, 0.0, 0.0f) == 0, "powers of 0");
         CHECK(mcsi_power(1e9f, 0.0, 1.0f) == 1 && mcsi_power(1e9f, 0.0, 0.5f) == 0, "high powers");
         CHECK(mcsi_atan2_turns(0, 0) == 0 && mcsi_atan2_turns(-1e-30f, 1) < 1, "azimuth of 0, and just below a turn");
