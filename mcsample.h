@@ -2113,9 +2113,9 @@ typedef struct {
 
 /* What a part of a scene has learned: see [region]. */
 typedef struct {
-    uint32_t rows, cols; /* of tiles */
-    float points, rays;  /* how many were added */
-} mcs_region;            /* more lies behind it: see mcsi_region_lists */
+    uint32_t rows;               /* of tiles, twice as many in each */
+    float points, rays, through; /* how many were added; of the rays, how many came through */
+} mcs_region;                    /* more lies behind it: see mcsi_region_lists */
 
 /* A lobe to draw from. Private. */
 typedef struct {
@@ -2240,8 +2240,8 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  * very samples that are drawn from it. Add the rays of a pass to regions of their own, merge these behind it, rebuild
  * the tables, and empty them by mcs_region_decay(g, 0).
  *
- * Pair each sample with one of the BRDF by mcs_mis_balance (mcs_mis_power for lobes narrower than a tile), and add its
- * ray, too.
+ * Pair each sample with one of the BRDF by mcs_mis_balance, and add its ray, too. Narrow lobes gain by a table only
+ * where much is hidden: mcs_region_pays tells whether to take it, or the map with mcs_mis_power.
  *
  *   g          a region, in memory of yours like a product; it holds no pointers
  *   points     Reflections above the surface; others are not added. Without any, f is 1.
@@ -2266,6 +2266,9 @@ MCS_API void mcs_region_decay(mcs_region *g, float keep);
 MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger);
 /* V of tile k, 0 where k is no tile. */
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
+/* Whether r, seen from above, gains by the table of the region: 1 if it has a matte part or its lobe covers at least 8
+ * tiles. A lobe that covers 1 tile or more gains where fewer than half the rays came through, others do not: 0. */
+MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r);
 #endif
 
 /* ==== [reservoir] one or k of the candidates that come along ========================================================
@@ -10028,9 +10031,10 @@ typedef struct {
     float *through; /* those that came through */
     float *prior;   /* V of the region above */
 } mcsi_region_lists;
+MCSI_CORE size_t mcsi_region_tiles(const mcs_region *g) { return (size_t)g->rows * g->rows * 2; }
 MCSI_CORE mcsi_region_lists mcsi_region_lists_of(mcs_region *g) {
     mcsi_region_lists l;
-    l.n = (size_t)g->rows * g->cols;
+    l.n = mcsi_region_tiles(g);
     l.square = MCSI_WRITE(float, g, sizeof *g);
     l.rays = l.square + l.n;
     l.through = l.rays + l.n;
@@ -10079,7 +10083,6 @@ MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles
     if (bytes < least) return MCS_ERR_MEMORY;
     MCSI_FILL(g, 0, least);
     g->rows = t->rows;
-    g->cols = t->cols;
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     for (size_t k = 0; k < l.n; k++) l.prior[k] = 0.25f;
     return MCS_OK;
@@ -10104,7 +10107,9 @@ MCS_API void mcs_region_add_ray(mcs_region *g, uint32_t k, int through) {
     if (k >= l.n) return;
     g->rays += 1.0f;
     l.rays[k] += 1.0f;
-    if (through) l.through[k] += 1.0f;
+    if (!through) return;
+    g->through += 1.0f;
+    l.through[k] += 1.0f;
 }
 MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other) {
     MCS_ASSERT(g->rows == other->rows);
@@ -10112,6 +10117,7 @@ MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other) {
     const float *add = MCSI_READ(float, other, sizeof *other);
     g->points += other->points;
     g->rays += other->rays;
+    g->through += other->through;
     for (size_t k = 0; k < 3 * l.n; k++) l.square[k] += add[k];
 }
 MCS_API void mcs_region_decay(mcs_region *g, float keep) {
@@ -10119,11 +10125,19 @@ MCS_API void mcs_region_decay(mcs_region *g, float keep) {
     const float factor = mcsi_sane_parameter(keep >= 0.0f, keep, 0.0f, 1.0f);
     g->points *= factor;
     g->rays *= factor;
+    g->through *= factor;
     for (size_t k = 0; k < 3 * l.n; k++) l.square[k] *= factor;
 }
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k) {
-    const size_t n = (size_t)g->rows * g->cols;
+    const size_t n = mcsi_region_tiles(g);
     return k < n ? mcsi_visibility(MCSI_READ(float, g, sizeof *g) + n + k, n) : 0.0f;
+}
+MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r) {
+    const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-4f, 1e4f);
+    const float ay = mcsi_sane_parameter(r->alpha_y >= 0.0f, r->alpha_y, 1e-4f, 1e4f);
+    const float tiles = (float)mcsi_region_tiles(g) * ax * ay;
+    if (r->matte > 0.0f || tiles >= 8.0f) return 1;
+    return tiles >= 1.0f && 2.0f * g->through < g->rays;
 }
 
 /* ---- [product] building ---- */
@@ -10145,7 +10159,7 @@ MCSI_CORE float mcsi_sum_of_products(const float *a, const float *b, size_t n) {
 #define MCSI_REGION_POINTS_LEAST 1e-20f
 /* Values of the tiles: the reflections of the region. */
 MCS_FN void mcsi_product_reflect(mcs_product *p, const mcs_region *g) {
-    const size_t n = (size_t)g->rows * g->cols;
+    const size_t n = mcsi_region_tiles(g);
     const float *square = MCSI_READ(float, g, sizeof *g);
     const float *seen = MCSI_READ(float, p, p->at.light);
     float *value = MCSI_WRITE(float, p, p->at.value);

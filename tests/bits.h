@@ -37,7 +37,7 @@
     X(env_sample_bits) X(env_pdf) X(env_invert) X(env_texel) X(env_weight) X(env_window_bytes) X(env_window_build) \
     X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(tiles_of_texel) \
     X(tiles_of_direction) X(product_bytes) X(product_table_bytes) X(product_sample) X(product_pdf) X(product_texel) \
-    X(region_bytes) X(region_visibility)
+    X(region_bytes) X(region_visibility) X(region_pays)
 #define BITS_HOST(X) \
     X(product_build) X(product_build_region) X(product_build_weights) X(region_start) X(region_add_point) \
     X(region_add_ray) X(region_merge) X(region_inherit) X(region_decay)
@@ -595,7 +595,7 @@ MCST_HD static void bits_put_texel(float *out, int i, mcs_texel t) {
 
 /* Shadow rays to anywhere, one of a thousand beyond the last tile. */
 static void bits_rays(mcs_region *g, uint32_t seed, uint32_t n) {
-    const uint32_t tiles = g->rows * g->cols;
+    const uint32_t tiles = 2 * g->rows * g->rows;
     uint32_t i;
     for (i = 0; i < n; i++) {
         const uint32_t h = mcs_hash(seed, i);
@@ -934,6 +934,15 @@ FN(region_visibility) {
     MAP;
     PUT(0, mcs_region_visibility(m->region, WORD(11) % 600));
     PUT(1, mcs_region_visibility(m->region, WORD(12)));
+}
+FN(region_pays) {
+    MAP;
+    mcs_reflection r = bits_reflection(in);
+    PUT_WORD(0, (uint32_t)mcs_region_pays(m->region, &r));
+    r.matte = 0;
+    r.alpha_x = 0.1f;
+    r.alpha_y = 0.25f * IN(6); /* up to 12.8 tiles */
+    PUT_WORD(1, (uint32_t)mcs_region_pays(m->region, &r));
 }
 static uint64_t bits_region_room[2][1 + (16 + 16 * 2048) / 8];
 /* One of two regions of a case: of one point and some rays. */

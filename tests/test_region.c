@@ -28,7 +28,7 @@ static void add_point(learned *l, const scene *m, const surface *s) {
 static uint32_t count_of(const scene *m) { return 2 * m->rows * m->rows; }
 /* Rays to tiles by chance, two of three of them through to the first half of the tiles, one of ten to the others. */
 static void add_rays(learned *l, uint32_t rays, uint32_t stream) {
-    const uint32_t n = l->g->rows * l->g->cols;
+    const uint32_t n = 2 * l->g->rows * l->g->rows;
     for (uint32_t i = 0; i < rays; i++) {
         const uint32_t k = (uint32_t)((float)n * hash01(i, stream));
         mcs_region_add_ray(l->g, k, hash01(i, stream + 1) < (k < n / 2 ? 0.67f : 0.1f));
@@ -36,16 +36,16 @@ static void add_rays(learned *l, uint32_t rays, uint32_t stream) {
 }
 /* `rays` to every tile. */
 static void add_rays_to_all(learned *l, uint32_t rays, int through) {
-    for (uint32_t k = 0; k < rays * l->g->rows * l->g->cols; k++)
-        mcs_region_add_ray(l->g, k % (l->g->rows * l->g->cols), through);
+    for (uint32_t k = 0; k < rays * 2 * l->g->rows * l->g->rows; k++)
+        mcs_region_add_ray(l->g, k % (2 * l->g->rows * l->g->rows), through);
 }
 static const float *rays_of(const mcs_region *g, uint32_t k) {
-    return MCSI_READ(float, g, sizeof *g) + g->rows * g->cols + k;
+    return MCSI_READ(float, g, sizeof *g) + 2 * g->rows * g->rows + k;
 }
 /* V as part I has it, in double; up: where it was inherited from. */
 static double visibility_of(const mcs_region *g, const mcs_region *up, uint32_t k) {
     const double rays = (double)rays_of(g, k)[0];
-    const double through = (double)rays_of(g, k)[g->rows * g->cols];
+    const double through = (double)rays_of(g, k)[2 * g->rows * g->rows];
     return fmax(1e-4, (through + 2 * (up ? visibility_of(up, NULL, k) : 0.25)) / (rays + 2));
 }
 
@@ -183,11 +183,40 @@ static void check_decay(void) {
         mcs_region_decay(l.g, cases[i].keep);
         const float *a = MCSI_READ(float, l.g, sizeof *l.g);
         const float *b = MCSI_READ(float, kept.g, sizeof *l.g);
-        int bad = l.g->points != kept.g->points * cases[i].factor || l.g->rows != 16 || l.g->cols != 32;
+        int bad = l.g->points != kept.g->points * cases[i].factor || l.g->rows != 16;
+        bad += l.g->through != kept.g->through * cases[i].factor;
         for (uint32_t k = 0; k < 3 * count_of(&m); k++) bad += a[k] != b[k] * cases[i].factor;
         CHECK(bad == 0, "decay by %g: %d wrong", (double)cases[i].keep, bad);
         region_free(&l);
         region_free(&kept);
+    }
+    scene_free(&m);
+}
+
+/* Bounds as part I has them, in tiles of which there are 512, with and without half of the rays through. */
+static void check_pays(void) {
+    static const struct {
+        float alpha_x, alpha_y, matte;
+        int open, hidden; /* whether it pays there */
+    } cases[] = {
+        {1, 1, 1, 1, 1},         {1e-4f, 1e-4f, 0.01f, 1, 1}, {0.0441f, 0.0441f, 0, 0, 0}, {0.0443f, 0.0443f, 0, 0, 1},
+        {0.1f, 0.156f, 0, 0, 1}, {0.1f, 0.157f, 0, 1, 1},     {0.157f, 0.1f, 0, 1, 1},     {INFINITY, 1, 0, 1, 1},
+        {0, 1, 0, 0, 0},         {NAN, NAN, 0, 0, 0},         {-1, 0.5f, NAN, 0, 0}};
+    scene m = scene_make(ROOM, 64, 32, 16);
+    for (int i = 0; i < (int)(sizeof cases / sizeof *cases); i++) {
+        surface s = surface_make(normals[4], local_wo(0.5, 0.1), lobes[2]);
+        s.r.alpha_x = cases[i].alpha_x;
+        s.r.alpha_y = cases[i].alpha_y;
+        s.r.matte = cases[i].matte;
+        learned l = region_make(&m);
+        CHECK(mcs_region_pays(l.g, &s.r) == cases[i].open, "case %d, no rays", i);
+        add_rays_to_all(&l, 1, 1);
+        add_rays_to_all(&l, 1, 0);
+        CHECK(mcs_region_pays(l.g, &s.r) == cases[i].open, "case %d, half the rays through", i);
+        mcs_region_add_ray(l.g, 0, 0);
+        CHECK(l.g->through == 512 && l.g->rays == 1025, "%g of %g rays", (double)l.g->through, (double)l.g->rays);
+        CHECK(mcs_region_pays(l.g, &s.r) == cases[i].hidden, "case %d, fewer through", i);
+        region_free(&l);
     }
     scene_free(&m);
 }
@@ -656,6 +685,7 @@ int main(int argc, char **argv) {
     if (mcst_case("what is ignored")) check_ignored();
     if (mcst_case("merge")) check_merge();
     if (mcst_case("decay")) check_decay();
+    if (mcst_case("whether it pays")) check_pays();
     test_weights();
     mcst_group("region, one point");
     for (int i = 0; i < 8; i++) {

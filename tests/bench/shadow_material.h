@@ -122,4 +122,9 @@ static mcs_reflection coat_reflection(const coat *c, const mcs_frame *frame, mcs
     }
     return r;
 }
+static mcs_reflection coat_seen_from_above(const coat *c) {
+    const mcs_vec3 up = {0, 0, 1};
+    const mcs_frame frame = mcs_frame_make(up);
+    return coat_reflection(c, &frame, up);
+}
 #endif

@@ -31,11 +31,12 @@ typedef struct {
     coat coat;
     mcs_pcg32 rng;
     strategy strategy[STRATEGIES];
+    int pays[REGIONS][STAGES]; /* mcs_region_pays, once the table of a stage is built */
     knowledge region[REGIONS], early[REGIONS]; /* from all rays, from 256 */
     knowledge whole, spare;
     product product[REGIONS][TECHNIQUES];
     double variance[REGIONS][MEASURED], largest[REGIONS][MEASURED], mean[REGIONS];
-    double draw[MEASURED][REGIONS], seconds[WORKS][REGIONS];
+    double draw[PAYING][REGIONS], seconds[WORKS][REGIONS];
     uint32_t looks;
 } bench_case;
 
@@ -47,6 +48,11 @@ static const point *any_point(bench_case *c, int i) {
 static setting setting_of(bench_case *c, int i, const point *p) {
     const setting s = {c->map, &c->coat, p, c->product[i]};
     return s;
+}
+/* The number of the strategy that number k is in region i. */
+static int chosen(const bench_case *c, int i, int k) {
+    if (c->strategy[k].how != PAID) return k;
+    return c->pays[i][k - PAYING] ? c->strategy[k].technique : MIS_POWER;
 }
 
 /* ---- Training ---- */
@@ -75,6 +81,8 @@ static void build_table(bench_case *c, int i, int stage) {
     if (parts > 1) mcs_region_inherit(&c->region[i].g, &c->whole.g);
     mcs_product_build_region(&c->product[i][TABLE + stage].p, sizeof(product), c->map->tiles, c->map->table,
                              &c->region[i].g);
+    const mcs_reflection r = coat_seen_from_above(&c->coat);
+    c->pays[i][stage] = mcs_region_pays(&c->region[i].g, &r);
 }
 
 /* All regions learn side by side from the rays of their own samples, a table of the stage before paired with the BRDF;
@@ -115,8 +123,8 @@ static void build_product(const bench_case *c, const setting *s, int t, const mc
 static const int drawn_from[] = {BRDF, MAP, LEARNED, TABLE + STAGE_LAST};
 enum { DRAWN_FROM = sizeof drawn_from / sizeof *drawn_from };
 
-/* Adds a sample to the tallies of all strategies. */
-static void look_at(bench_case *c, const setting *s, const mcs_texel *x, int half, tally *sums) {
+/* Adds a sample at a point of region i to the tallies of all strategies. */
+static void look_at(bench_case *c, const setting *s, int i, const mcs_texel *x, int half, tally *sums) {
     look_up l;
     l.value = (double)setting_value(s, x);
     if (!(l.value > 0)) return;
@@ -127,7 +135,7 @@ static void look_at(bench_case *c, const setting *s, const mcs_texel *x, int hal
     l.weight = 1 / (all * 2 * SAMPLES);
     l.through = is_free(&c->view->scene, s->point->place, x->w);
     l.half = half;
-    for (int k = 0; k < MEASURED; k++) tally_add(&sums[k], &c->strategy[k], &l);
+    for (int k = 0; k < MEASURED; k++) tally_add(&sums[k], &c->strategy[chosen(c, i, k)], &l);
 }
 
 /* The variances at a point are added to those of its region. */
@@ -140,7 +148,7 @@ static void test_point(bench_case *c, const setting *s, int i, result *out) {
             for (uint32_t n = 0; n < SAMPLES; n++) {
                 const float u[2] = {mcs_sobol(n, 0, seed), mcs_sobol(n, 1, seed)};
                 const mcs_texel x = setting_sample(s, drawn_from[k], u);
-                if (x.pdf > 0) look_at(c, s, &x, half, sums);
+                if (x.pdf > 0) look_at(c, s, i, &x, half, sums);
             }
         }
     }
@@ -165,7 +173,8 @@ static void summarise(bench_case *c, result *out) {
             out->variance[k] += c->variance[i][k] / (answer * answer) / regions;
             out->largest[k] = fmax(out->largest[k], c->largest[i][k] / answer);
         }
-        out->draw[k] = bench_spread_of(c->draw[k], regions).median;
+        if (k < PAYING) out->draw[k] = bench_spread_of(c->draw[k], regions).median;
+        for (int i = 0; k >= PAYING && i < regions; i++) out->draw[k] += out->draw[chosen(c, i, k)] / regions;
     }
     for (int k = 0; k < WORKS; k++) out->seconds[k] = bench_spread_of(c->seconds[k], regions).median;
 }
@@ -209,8 +218,8 @@ static void time_region(bench_case *c, int i, const setting *s) {
     setting at[DRAWS];
     for (int n = 0; n < 4 * DRAWS; n++) u[n] = mcs_pcg32_float(&c->rng);
     for (int n = 0; n < DRAWS; n++) at[n] = setting_of(c, i, any_point(c, i));
-    for (int k = -MEASURED; k < MEASURED; k++) { /* the second round counts */
-        const strategy *how = &c->strategy[k < 0 ? k + MEASURED : k];
+    for (int k = -PAYING; k < PAYING; k++) { /* the second round counts */
+        const strategy *how = &c->strategy[k < 0 ? k + PAYING : k];
         float sum = 0;
         const double start = thread_seconds();
         for (int n = 0; n < DRAWS; n++) sum += estimate(how->draws ? s : &at[n], how, u + 4 * n);

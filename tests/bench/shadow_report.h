@@ -105,8 +105,11 @@ static void print_strategies(const report *p) {
                 {MIS_ONE, ""},
                 {PRODUCT_ALONE, ""},
                 {PAIR + STAGE_256, ""},
-                {PAIR + STAGE_LAST, "1.9 / 1"},
-                {PAIR_ONLINE, "1.7 / 1"},
+                {PAIR + STAGE_LAST, ""},
+                {PAIR_ONLINE, ""},
+                {PAYING + STAGE_256, ""},
+                {PAYING + STAGE_LAST, "1.9 / 1"},
+                {PAYING_ONLINE, "1.7 / 1"},
                 {MIXED + STAGE_256, ""},
                 {MIXED + STAGE_LAST, ""},
                 {MIXED_ONLINE, ""},
@@ -114,12 +117,12 @@ static void print_strategies(const report *p) {
                 {LEARNED_ALONE_256, ""},
                 {LEARNED_ALONE, "2.2 / 1"}};
     printf("\nGain over MIS in equal time, %.0f ns a ray: geometric mean / 5 %% quantile\n", 1e9 * RAY);
-    printf("%-22s %6s %15s %9s %15s %10s %9s\n", "", "draws", "all maps", "aim", "from files", "ns a draw", "largest");
+    printf("%-24s %6s %15s %9s %15s %10s %9s\n", "", "draws", "all maps", "aim", "from files", "ns a draw", "largest");
     for (size_t j = 0; j < sizeof rows / sizeof *rows; j++) {
         const int k = rows[j].strategy;
         const gains all = gains_of(p, k, BY_SOURCE, NULL);
         const gains files = gains_of(p, k, BY_SOURCE, "files");
-        printf("%-22s %6.0d %6.2f / %-6.2f %9s", p->list[k].name, p->list[k].draws, all.mean, all.low, rows[j].aim);
+        printf("%-24s %6.0d %6.2f / %-6.2f %9s", p->list[k].name, p->list[k].draws, all.mean, all.low, rows[j].aim);
         if (files.n) printf(" %6.2f / %-6.2f", files.mean, files.low);
         else printf(" %15s", "");
         double largest = 0;
@@ -132,9 +135,10 @@ static void print_strategies(const report *p) {
 
 /* Geometric means over the configurations of one scene, map or material. */
 static void print_groups(const report *p) {
-    static const int columns[] = {PAIR + STAGE_LAST, PAIR_ONLINE, MIXED + STAGE_LAST, PRODUCT_ALONE_16, LEARNED_ALONE};
-    printf("\n%-16s %14s %14s %14s %14s %14s\n", "geometric means", "region + BRDF", "online", "region or BRDF",
-           "product x 16", "learned x 16");
+    static const int columns[] = {PAIR + STAGE_LAST, PAYING + STAGE_LAST, PAYING_ONLINE, MIXED + STAGE_LAST,
+                                  PRODUCT_ALONE_16,  LEARNED_ALONE};
+    printf("\n%-16s %14s %14s %14s %14s %14s %14s\n", "geometric means", "region + BRDF", "if it pays", "online",
+           "region or BRDF", "product x 16", "learned x 16");
     for (kind by = BY_SCENE; by < BY_SOURCE; by++) {
         for (int i = 0; i < p->count; i++) {
             const char *name = name_of(&p->result[i], by);

@@ -25,6 +25,7 @@ typedef enum {
     ONE,          /* one sample: from the BRDF with probability `share` */
     PAIR_POWER,   /* one of each, power heuristic */
     PAIR_BALANCE, /* one of each, balance heuristic */
+    PAID,         /* that of number `technique` where a region pays, else of MIS_POWER */
     ONLINE        /* a region that learns while it draws: the strategies of all stages, from number `technique` on */
 } way;
 
@@ -36,7 +37,7 @@ typedef struct {
     float share;
 } strategy;
 
-/* PAIR and MIXED are the first of STAGES each. */
+/* PAIR, MIXED and PAYING are the first of STAGES each. */
 enum {
     MAP_ALONE,
     BRDF_ALONE,
@@ -48,15 +49,17 @@ enum {
     LEARNED_ALONE,
     PAIR,
     MIXED = PAIR + STAGES,
-    MEASURED = MIXED + STAGES,
+    PAYING = MIXED + STAGES,
+    MEASURED = PAYING + STAGES,
     PAIR_ONLINE = MEASURED,
     MIXED_ONLINE,
+    PAYING_ONLINE,
     STRATEGIES
 };
 
 /* Lists all strategies. How samples of a table are joined with those of the BRDF depends on the lobe: in pairs, by the
  * power heuristic where the lobe is smaller than a tile; in mixtures, with a share that is the larger, the narrower the
- * lobe. */
+ * lobe; and where a region pays, that is the question of mcs_region_pays. */
 static void list_strategies(const coat *c, strategy *list) {
     static const strategy plain[] = {{"map", ONE, MAP, 0, 0},
                                      {"BRDF", ONE, BRDF, 0, 0},
@@ -67,17 +70,19 @@ static void list_strategies(const coat *c, strategy *list) {
                                      {"product learned 256", ONE, LEARNED_256, 16, 0},
                                      {"product learned 8192", ONE, LEARNED, 16, 0}};
     static const strategy online[] = {{"region + BRDF online", ONLINE, PAIR, 0, 0},
-                                      {"region or BRDF online", ONLINE, MIXED, 0, 0}};
+                                      {"region or BRDF online", ONLINE, MIXED, 0, 0},
+                                      {"region if it pays online", ONLINE, PAYING, 0, 0}};
     memcpy(list, plain, sizeof plain);
     memcpy(list + PAIR_ONLINE, online, sizeof online);
-    const mcs_frame frame = mcs_frame_make(vector(0, 0, 1));
-    const mcs_reflection r = coat_reflection(c, &frame, vector(0, 0, 1));
+    const mcs_reflection r = coat_seen_from_above(c);
     const float tiles = 2 * TILES * TILES * r.alpha_x * r.alpha_y; /* that the lobe covers, seen from above */
     for (int k = 0; k < STAGES; k++) {
         strategy *pair = &list[PAIR + k];
         strategy *mixed = &list[MIXED + k];
         snprintf(pair->name, sizeof pair->name, "region + BRDF %d", STAGE_FIRST << k);
         snprintf(mixed->name, sizeof mixed->name, "region or BRDF %d", STAGE_FIRST << k);
+        list[PAYING + k] = (strategy){"", PAID, PAIR + k, 0, 0};
+        snprintf(list[PAYING + k].name, sizeof mixed->name, "region if it pays %d", STAGE_FIRST << k);
         pair->technique = mixed->technique = TABLE + k;
         pair->how = tiles < 1 && r.matte == 0 ? PAIR_POWER : PAIR_BALANCE;
         mixed->how = ONE;

@@ -430,6 +430,7 @@ static void fuzz_region(mcs_region *g, const mcs_tiles *t, const mcs_env *e, con
         default: mcs_region_add_ray(g, k % 512, (int)(k >> 27 & 1));
         }
         const float v = mcs_region_visibility(g, k % 600);
+        MUST((mcs_region_pays(g, r) & ~1) == 0);
         MUST(v >= 0 && v <= 1 && mcs_tiles_of_direction(t, e, take_direction(b, k & 1)) <= 512 &&
              mcs_tiles_of_texel(t, e, k % 80, k >> 16) <= 512);
     }

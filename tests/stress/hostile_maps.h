@@ -363,6 +363,7 @@ static void teach_region(const part_of *q, const mcs_tiles *tiles, mcs_region *g
         if (z % 8 == 0) {
             const mcs_reflection r = make_reflection(state, &sane);
             mcs_region_add_point(g, tiles, q->e, &r);
+            CHECK((mcs_region_pays(g, &r) & ~1) == 0, "pays %d", mcs_region_pays(g, &r));
         } else if (z % 64 == 1) {
             mcs_region_decay(g, st_hostile(mcst_mix(state)));
         } else if (z % 64 == 2) {
