@@ -68,12 +68,13 @@
  *
  * Mistakes      Define MCS_ASSERT, as assert for example, to be told of them. Scalar functions tell parameters out of
  *               range, u outside [0,1), and directions whose squared length is not within 0.001 of 1. Array functions
- *               of one wo tell such a wo.
+ *               of one wo tell such a wo; a call of one point tells what X tells.
  *
  * Arrays        X_n does for n points what X does for one. It takes plain arrays, one per component, of any alignment,
  *               and reads and writes n numbers of each. A result may be NULL and is then left out. A result may be the
  *               array of an input. BRDFs take one material and one wo for all n; X_hits_n takes a wo, and parameters
  *               of the material, for each. The widest unit of the processor is found at run time; mcs_lanes tells it.
+ *               Calls of few points take a narrower one: none costs more than as many calls of X.
  *
  * Lanes         mcs4_X, mcs8_X and mcs16_X do for 4, 8 and 16 points what mcs_X does for one. MCS_PACKETS asks for
  *               them: 8 gives those of 4 and of 8 lanes. They exist for mcs_u01, mcs_u01_open, mcs_sobol,
@@ -2406,6 +2407,14 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 #if __has_builtin(__builtin_reduce_or)
 #define MCSI_REDUCE_OR
 #endif
+#if __has_builtin(__builtin_masked_load)
+#define MCSI_MASKED
+#ifdef __cplusplus
+typedef bool mcsi_bool;
+#else
+typedef _Bool mcsi_bool;
+#endif
+#endif
 #endif
 
 #if defined(__SSE2__) && defined(MCSI_GNU) && !defined(MCSI_DEVICE)
@@ -2516,16 +2525,21 @@ MCS_FN double mcsi_sqrt_d(double x) {
 #define MCSI_CPU_HAS_AVX512 \
     (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw"))
 
-#ifdef MCSI_BATCH
-MCS_API int mcs_lanes(void) {
+#if MCSI_BASE_W > 0
+/* Lanes of the pass for a call of n points: the narrowest that takes them at once, or the widest there is. */
+MCS_FN int mcsi_lanes_for(size_t n) {
 #if defined(MCSI_PICK_AVX512)
-    if (MCSI_CPU_HAS_AVX512) return 16;
+    if (n > 8 && MCSI_CPU_HAS_AVX512) return 16;
 #endif
 #if defined(MCSI_PICK_AVX2)
-    if (MCSI_CPU_HAS_AVX2) return 8;
+    if (n > 4 && MCSI_CPU_HAS_AVX2) return 8;
 #endif
+    (void)n;
     return MCSI_BASE_W;
 }
+#endif
+#ifdef MCSI_BATCH
+MCS_API int mcs_lanes(void) { return mcsi_lanes_for(16); }
 #endif
 
 #ifndef MCS_NO_WIDE
@@ -2555,21 +2569,14 @@ typedef double mcsi_d;
 /* ---- batches: the arrays of one call ----------------------------------------------------------------------------- */
 
 #if MCSI_BASE_W > 0
-enum { MCSI_IN_MAX = 8, MCSI_OUT_MAX = 6, MCSI_LANES_MAX = 16 };
+enum { MCSI_IN_MAX = 8, MCSI_OUT_MAX = 6 };
 enum { MCSI_IN_WO = 3, MCSI_IN_X = 6, MCSI_IN_Y = 7 }; /* where the arrays of mcs_hits are among those of `in` */
-/* A loop takes whole vectors as long as there are some. Then it takes one more over a copy of what remains, so that it
- * touches nothing beyond n. */
 typedef struct {
-    const float *in[MCSI_IN_MAX];  /* NULL where the caller has none */
-    int ins;                       /* how many of them may be there */
-    float *out[MCSI_OUT_MAX];      /* NULL where the caller does not want them */
-    float *rest_out[MCSI_OUT_MAX]; /* where the results of the copy belong */
-    size_t n;                      /* how many points `in` and `out` have: those of the call, then those of the copy */
-    size_t i;                      /* the point that the loop is at */
-    size_t rest;                   /* how many points of the copy count; 0 before there is one */
-    int more;                      /* whether there is another turn, see MCSI_EACH */
-    float in_copy[MCSI_IN_MAX][MCSI_LANES_MAX];
-    float out_copy[MCSI_OUT_MAX][MCSI_LANES_MAX];
+    const float *in[MCSI_IN_MAX]; /* NULL where the caller has none */
+    float *out[MCSI_OUT_MAX];     /* NULL where the caller does not want them */
+    size_t n;                     /* how many points there are */
+    size_t i;                     /* the point that the loop is at */
+    size_t count;                 /* how many a turn takes: as many as there are lanes, then what remains */
 } mcsi_batch;
 
 MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const float *in1, const float *in2) {
@@ -2577,10 +2584,8 @@ MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const fl
     b->in[0] = in0;
     b->in[1] = in1;
     b->in[2] = in2;
-    b->ins = 3;
     b->n = n;
     b->i = 0;
-    b->rest = 0;
 }
 
 MCS_FN void mcsi_batch_dir(mcsi_batch *b, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
@@ -2598,40 +2603,15 @@ MCS_FN void mcsi_batch_hits(mcsi_batch *b, const mcs_hits *hits) {
     b->in[MCSI_IN_WO + 2] = hits->wo_z;
     b->in[MCSI_IN_X] = hits->parameter_x;
     b->in[MCSI_IN_Y] = hits->parameter_y;
-    b->ins = MCSI_IN_MAX;
 }
 #endif
 
-/* Called when no whole vector remains: the first time it moves the batch to the copy of what remains, the second time
- * it hands out the results of that. Returns whether the loop has to go on. It is not marked cold: gcc 12 leaves
- * vzeroupper out of cold exits, and SSE code is ten times slower from there on. */
-MCSI_QUIET
-MCSI_APART int mcsi_batch_rest(mcsi_batch *b, size_t lanes) {
-    const size_t rest = b->n - b->i;
-    if (b->rest) {
-        for (int k = 0; k < MCSI_OUT_MAX; k++)
-            if (b->out[k]) MCSI_COPY(b->rest_out[k], b->out_copy[k], b->rest * sizeof(float));
-        return 0;
-    }
-    if (!rest) return 0;
-    for (int k = 0; k < b->ins; k++) {
-        if (!b->in[k]) continue;
-        MCSI_FILL(b->in_copy[k], 0x3f, sizeof b->in_copy[k]); /* 0.75 or so, which is good as any input */
-        MCSI_COPY(b->in_copy[k], b->in[k] + b->i, rest * sizeof(float));
-        b->in[k] = b->in_copy[k];
-    }
-    for (int k = 0; k < MCSI_OUT_MAX; k++) {
-        if (!b->out[k]) continue;
-        b->rest_out[k] = b->out[k] + b->i;
-        b->out[k] = b->out_copy[k];
-    }
-    b->rest = rest;
-    b->i = 0;
-    b->n = lanes;
-    return 1;
+/* Called at first and when no whole vector remains. Returns 0 behind the last point. */
+MCS_FN size_t mcsi_batch_next(mcsi_batch *b, size_t lanes) {
+    const size_t left = b->n - b->i;
+    b->count = left < lanes ? left : lanes;
+    return b->count;
 }
-MCSI_LOUD
-
 #endif /* MCSI_BASE_W > 0 */
 
 /* Types of the scalar pass, for passes in which mcs_vec3 and the like are packets. */
@@ -2671,21 +2651,25 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
  * MCSI_CORE stands before private functions. They must be inlined, because compilers would return their structs through
  * memory. MCSI_SAMPLE stands before public functions that draw and must be inlined for the same reason, MCSI_FN before
  * the other public functions. A pass without MCSI_PUBLIC makes nothing but loops: its functions are private, and those
- * that no loop calls are left out. MCSI_LOOPS says that a pass makes loops; MCSI_LOOP stands before them.
+ * that no loop calls are left out. MCSI_LOOPS says that a pass makes loops; MCSI_LOOP stands before them. MCSI_BATCHES
+ * says that it makes those of array functions: so does the scalar pass, for calls of one point.
  *
  * To add a sampler X:
  *
  *   part I     its paragraph and prototypes, X_sample_n within #ifndef MCS_NO_BATCH; the map of the file and the head
  *              of its block name it.
  *   part III   MCSI_SAMPLE before X_sample. MCSI_FN before X_pdf and X_invert, within #ifdef MCSI_PUBLIC. MCSI_LOOP
- *              before its loop, within #ifdef MCSI_LOOPS. MCSI_CORE before what is private. MCSI_REQUIRE tells bad
- *              parameters; [sane] makes bad input harmless.
+ *              before its loop, within #ifdef MCSI_BATCHES. MCSI_CORE before what is private. MCSI_REQUIRE tells
+ *              bad parameters; [sane] makes bad input harmless.
  *   part V     a #define and an #undef in [names] for each of its names, private ones too; X_sample_n in [arrays].
  *   tests      a row in registry.h, its truth in oracle.h, its hashes in bits.txt: what is missing fails by name.
  *              Nothing asks for a sentence in claims.h, radii in stress/floats.c, a text in bench/throughput.c, slips
  *              in mutants.txt, and its line in README.md; stress/exact.h says SKIPPED. */
 #if MCSI_W == MCSI_BASE_W && !defined(MCSI_LOOPS)
 #define MCSI_LOOPS
+#endif
+#if defined(MCSI_LOOPS) || (MCSI_W == 1 && MCSI_BASE_W > 0)
+#define MCSI_BATCHES
 #endif
 #define MCSI_CORE MCSI_INLINE
 #if !defined(MCSI_PUBLIC)
@@ -3287,21 +3271,77 @@ MCSI_CORE mcs_vec3 mcsi_spread_direction(mcsi_scalar_vec3 w) {
     return mcsi_spread(w);
 }
 
-#ifdef MCSI_LOOPS
-/* Runs the statement behind it for all vectors of the batch b, and once more for a copy of what does not fill one. It
- * is two loops, so that the inner one has a plain head: gcc then takes divisions and roots that are constant out of
- * it. */
-#define MCSI_EACH(b)                                                       \
-    for ((b).more = 1; (b).more; (b).more = mcsi_batch_rest(&(b), MCSI_W)) \
-        for (; (b).i + MCSI_W <= (b).n; (b).i += MCSI_W)
-
-/* The lanes of input array k, and lanes to output array k, which may be NULL. */
-MCSI_CORE mcs_f mcsi_in(const mcsi_batch *b, int k) { return mcs_load(b->in[k] + b->i); }
-MCSI_CORE mcs_vec3 mcsi_in3(const mcsi_batch *b, int k) {
-    return mcsi_vec3(mcsi_in(b, k), mcsi_in(b, k + 1), mcsi_in(b, k + 2));
+#ifdef MCSI_BATCHES
+/* MCSI_EACH runs the statement behind it for all vectors of the batch b, and once more for what does not fill one. Its
+ * inner loop has a plain head: gcc then takes divisions and roots that are constant out of it. mcsi_in gives the lanes
+ * of input array k. mcsi_out stores those of output array k, which may be NULL. Both touch count numbers alone. */
+#define MCSI_EACH(b)                      \
+    while (mcsi_batch_next(&(b), MCSI_W)) \
+        for (; (b).i + (b).count <= (b).n; (b).i += (b).count)
+/* The first lanes of a vector, from and to memory; the other lanes repeat the first. AVX and AVX-512 have instructions
+ * for that. Their mask is a vector or a number. */
+#if MCSI_W > 4 && defined(MCSI_MASKED)
+typedef float mcsi_masked_f __attribute__((ext_vector_type(MCSI_W)));
+typedef mcsi_bool mcsi_mask __attribute__((ext_vector_type(MCSI_W)));
+MCSI_CORE mcsi_mask mcsi_mask_of(size_t count) {
+    const uint32_t bits = (1u << count) - 1;
+    mcsi_mask mask;
+    MCSI_COPY(&mask, &bits, sizeof mask);
+    return mask;
+}
+MCSI_CORE mcs_f mcsi_load_first(const float *p, size_t count) {
+    return (mcs_f)__builtin_masked_load(mcsi_mask_of(count), p, (mcsi_masked_f)mcs_set(p[0]));
+}
+MCSI_CORE void mcsi_store_first(float *p, mcs_f v, size_t count) {
+    __builtin_masked_store(mcsi_mask_of(count), (mcsi_masked_f)v, p);
+}
+#elif defined(MCSI_AVX512)
+MCSI_CORE uint16_t mcsi_mask_of(size_t count) { return (uint16_t)((1u << count) - 1); }
+MCSI_CORE mcs_f mcsi_load_first(const float *p, size_t count) {
+    return __builtin_ia32_loadups512_mask(p, mcs_set(p[0]), mcsi_mask_of(count));
+}
+MCSI_CORE void mcsi_store_first(float *p, mcs_f v, size_t count) {
+    __builtin_ia32_storeups512_mask(p, v, mcsi_mask_of(count));
+}
+#elif defined(MCSI_AVX)
+typedef float mcsi_masked_f __attribute__((vector_size(32))); /* what clang takes for the pointer of these two */
+MCSI_CORE mcs_i mcsi_mask_of(size_t count) {
+    const mcs_i lane = {0, 1, 2, 3, 4, 5, 6, 7};
+    return lane < (int32_t)count;
+}
+MCSI_CORE mcs_f mcsi_load_first(const float *p, size_t count) {
+    const mcs_i mask = mcsi_mask_of(count);
+    return mcsi_sel(mask, __builtin_ia32_maskloadps256((const mcsi_masked_f *)(const void *)p, mask), mcs_set(p[0]));
+}
+MCSI_CORE void mcsi_store_first(float *p, mcs_f v, size_t count) {
+    __builtin_ia32_maskstoreps256((mcsi_masked_f *)(void *)p, mcsi_mask_of(count), v);
+}
+#else
+MCSI_CORE mcs_f mcsi_load_first(const float *p, size_t count) {
+    mcs_f v = mcs_set(p[0]);
+    MCSI_UNROLL
+    for (size_t lane = 1; lane < MCSI_W; lane++) MCSI_LANE(v, lane) = p[lane < count ? lane : 0];
+    return v;
+}
+MCSI_CORE void mcsi_store_first(float *p, mcs_f v, size_t count) {
+    MCSI_UNROLL
+    for (size_t lane = 0; lane < MCSI_W; lane++) {
+        if (lane < count) p[lane] = MCSI_LANE(v, lane);
+    }
+}
+#endif
+MCSI_CORE mcs_f mcsi_in(const mcsi_batch *b, int k) {
+    const float *p = b->in[k] + b->i;
+    return b->count == MCSI_W ? mcs_load(p) : mcsi_load_first(p, b->count);
 }
 MCSI_CORE void mcsi_out(const mcsi_batch *b, int k, mcs_f v) {
-    if (b->out[k]) mcs_store(b->out[k] + b->i, v);
+    if (!b->out[k]) return;
+    float *p = b->out[k] + b->i;
+    if (b->count == MCSI_W) mcs_store(p, v);
+    else mcsi_store_first(p, v, b->count);
+}
+MCSI_CORE mcs_vec3 mcsi_in3(const mcsi_batch *b, int k) {
+    return mcsi_vec3(mcsi_in(b, k), mcsi_in(b, k + 1), mcsi_in(b, k + 2));
 }
 /* The members of a sample to output arrays, in their order. */
 MCSI_CORE void mcsi_out_sample1(const mcsi_batch *b, mcs_sample1 s) {
@@ -4003,7 +4043,7 @@ MCSI_FN mcs_f mcs_smoothstep_invert(mcs_f a, mcs_f b, mcs_f x) {
 }
 #endif
 
-#ifdef MCSI_LOOPS
+#ifdef MCSI_BATCHES
 /* The loops of the densities with one parameter and of those with two. */
 #define MCSI_LOOP_LINE(NAME)                                                                     \
     MCSI_LOOP void mcsi_##NAME##_loop(float a, size_t n, const float *u, float *x, float *pdf) { \
@@ -4109,7 +4149,7 @@ MCSI_FN mcs_vec2 mcs_bilinear_invert(mcs_f w00, mcs_f w10, mcs_f w01, mcs_f w11,
 }
 #endif
 
-#ifdef MCSI_LOOPS
+#ifdef MCSI_BATCHES
 MCSI_LOOP void mcsi_bilinear_loop(float w00, float w10, float w01, float w11, size_t n, const float *u1,
                                   const float *u2, float *x, float *y, float *pdf) {
     mcsi_batch b;
@@ -4237,7 +4277,7 @@ MCSI_FN mcs_vec2 mcs_triangle_invert(mcs_f b0, mcs_f b1) {
 }
 #endif
 
-#ifdef MCSI_LOOPS
+#ifdef MCSI_BATCHES
 MCSI_LOOP void mcsi_triangle_loop(size_t n, const float *u1, const float *u2, float *b0, float *b1, float *pdf) {
     mcsi_batch b;
     mcsi_batch_start(&b, n, u1, u2, NULL);
@@ -5112,7 +5152,7 @@ MCSI_FN mcs_f mcs_pdf_to_area(mcs_f pdf, mcs_f distance, mcs_f cosine) {
 }
 #endif
 
-#ifdef MCSI_LOOPS
+#ifdef MCSI_BATCHES
 MCSI_CORE void mcsi_out_light(const mcsi_batch *b, mcs_light s) {
     mcsi_out_towards(b, s.w, s.pdf);
     mcsi_out(b, 4, s.distance);
@@ -5260,8 +5300,8 @@ MCSI_FN mcs_vec2 mcs_cone_invert(mcs_f k, mcs_vec3 w) {
 }
 #endif
 
-#ifdef MCSI_LOOPS
-/* The loops of disks and of directions without a parameter. */
+#ifdef MCSI_BATCHES
+/* The loops of disks and of directions without a parameter and with one. */
 #define MCSI_LOOP_DISK(NAME)                                                                                         \
     MCSI_LOOP void mcsi_##NAME##_loop(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,  \
                                       float *pdf) {                                                                  \
@@ -5279,19 +5319,20 @@ MCSI_FN mcs_vec2 mcs_cone_invert(mcs_f k, mcs_vec3 w) {
         mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                            \
         MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcsi_in(&b, 0), mcsi_in(&b, 1))); }                 \
     }
+#define MCSI_LOOP_ABOUT_Z(NAME)                                                                                \
+    MCSI_LOOP void mcsi_##NAME##_loop(float a, size_t n, const float *u1, const float *u2, float *x, float *y, \
+                                      float *z, float *pdf) {                                                  \
+        mcsi_batch b;                                                                                          \
+        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                           \
+        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcs_set(a), mcsi_in(&b, 0), mcsi_in(&b, 1))); }    \
+    }
 MCSI_LOOP_DISK(disk)
 MCSI_LOOP_DISK(concentric)
 MCSI_LOOP_SPHERE(sphere)
 MCSI_LOOP_SPHERE(hemisphere)
 MCSI_LOOP_SPHERE(cosine)
+MCSI_LOOP_ABOUT_Z(cone)
 #undef MCSI_LOOP_DISK
-#undef MCSI_LOOP_SPHERE
-MCSI_LOOP void mcsi_cone_loop(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                              float *pdf) {
-    mcsi_batch b;
-    mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);
-    MCSI_EACH(b) { mcsi_out_dir(&b, mcs_cone_sample(mcs_set(k), mcsi_in(&b, 0), mcsi_in(&b, 1))); }
-}
 #endif
 
 #ifndef MCS_NO_MEDIA
@@ -5505,24 +5546,10 @@ MCSI_FN mcs_vec2 mcs_von_mises_fisher_invert(mcs_f kappa, mcs_vec3 w) {
 }
 #endif
 
-#ifdef MCSI_LOOPS
-/* The loops of those with one parameter. */
-#define MCSI_LOOP_ABOUT_Z(NAME)                                                                                \
-    MCSI_LOOP void mcsi_##NAME##_loop(float a, size_t n, const float *u1, const float *u2, float *x, float *y, \
-                                      float *z, float *pdf) {                                                  \
-        mcsi_batch b;                                                                                          \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                           \
-        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcs_set(a), mcsi_in(&b, 0), mcsi_in(&b, 1))); }    \
-    }
+#ifdef MCSI_BATCHES
 MCSI_LOOP_ABOUT_Z(henyey_greenstein)
 MCSI_LOOP_ABOUT_Z(von_mises_fisher)
-#undef MCSI_LOOP_ABOUT_Z
-MCSI_LOOP void mcsi_rayleigh_loop(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                  float *pdf) {
-    mcsi_batch b;
-    mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);
-    MCSI_EACH(b) { mcsi_out_dir(&b, mcs_rayleigh_sample(mcsi_in(&b, 0), mcsi_in(&b, 1))); }
-}
+MCSI_LOOP_SPHERE(rayleigh)
 #endif
 #endif /* MCS_NO_MEDIA */
 
@@ -5670,7 +5697,7 @@ MCSI_CORE mcs_brdf mcsi_brdf(mcs_i ok, mcs_vec3 wi, mcs_f pdf, mcs_f weight) {
  * out. No wo.z above 1/4 gets here. */
 MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d > wo_z * p2) & (64.0f * d * d < p2); }
 
-#ifdef MCSI_LOOPS
+#ifdef MCSI_BATCHES
 /* The loops behind the array functions of the BRDFs. A call has one material and one wo; each loop spreads them over
  * its lanes first.
  *
@@ -5683,11 +5710,16 @@ MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d
  *
  *   MCSI_LOOP_SAMPLE_HITS    draws wi, each for its hit
  *   MCSI_LOOP_PDF_HITS       density and BRDF of given wi, each for its hit; BASE is what the eval belongs to */
+#if MCSI_W == 1
+#define MCSI_SPREAD(MATERIAL, m) (*(m))
+#else
+#define MCSI_SPREAD(MATERIAL, m) mcsi_##MATERIAL##_spread(m)
+#endif
 #define MCSI_LOOP_SAMPLE(NAME, MATERIAL)                                                                         \
     MCSI_LOOP void mcsi_##NAME##_sample_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n,     \
                                              const float *u1, const float *u2, float *x, float *y, float *z,     \
                                              float *pdf, float *weight) {                                        \
-        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                             \
+        const mcs_##MATERIAL material = MCSI_SPREAD(MATERIAL, m);                                                \
         const mcs_vec3 eye = mcsi_spread_direction(wo);                                                          \
         mcsi_batch b;                                                                                            \
         mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                             \
@@ -5697,7 +5729,7 @@ MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d
 #define MCSI_LOOP_VALUE(FORM, MATERIAL)                                                                               \
     MCSI_LOOP void mcsi_##FORM##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *x, \
                                       const float *y, const float *z, float *value) {                                 \
-        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                  \
+        const mcs_##MATERIAL material = MCSI_SPREAD(MATERIAL, m);                                                     \
         const mcs_vec3 eye = mcsi_spread_direction(wo);                                                               \
         mcsi_batch b;                                                                                                 \
         mcsi_batch_start(&b, n, x, y, z);                                                                             \
@@ -5707,7 +5739,7 @@ MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d
 #define MCSI_LOOP_LOBE(NAME, MATERIAL)                                                                             \
     MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, size_t n, const float *u1, const float *u2, \
                                       float *x, float *y, float *z, float *pdf) {                                  \
-        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                               \
+        const mcs_##MATERIAL material = MCSI_SPREAD(MATERIAL, m);                                                  \
         mcsi_batch b;                                                                                              \
         mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                               \
         MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(&material, mcsi_in(&b, 0), mcsi_in(&b, 1))); }         \
@@ -5715,7 +5747,7 @@ MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d
 #define MCSI_LOOP_VISIBLE(NAME, MATERIAL)                                                                              \
     MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *u1, \
                                       const float *u2, float *x, float *y, float *z, float *pdf) {                     \
-        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                   \
+        const mcs_##MATERIAL material = MCSI_SPREAD(MATERIAL, m);                                                      \
         const mcs_vec3 eye = mcsi_spread_direction(wo);                                                                \
         mcsi_batch b;                                                                                                  \
         mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                   \
@@ -5971,7 +6003,7 @@ MCSI_FN mcs_f mcs_phong_weight(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_sane_result(ok & in_lobe, m->weight_norm * wi.z);
 }
 #endif
-#ifdef MCSI_LOOPS
+#if defined(MCSI_LOOPS) && MCSI_W > 1
 MCSI_CORE mcs_phong mcsi_phong_spread(const mcsi_scalar_phong *m) {
     mcs_phong all;
     all.n = mcs_set(m->n);
@@ -5981,8 +6013,10 @@ MCSI_CORE mcs_phong mcsi_phong_spread(const mcsi_scalar_phong *m) {
     all.weight_norm = mcs_set(m->weight_norm);
     return all;
 }
+#endif
+#ifdef MCSI_BATCHES
 MCSI_CORE mcs_phong mcsi_phong_of_hits(const mcsi_scalar_phong *m, const mcsi_batch *b) {
-    return b->in[MCSI_IN_X] ? mcs_phong_make(mcsi_in(b, MCSI_IN_X)) : mcsi_phong_spread(m);
+    return b->in[MCSI_IN_X] ? mcs_phong_make(mcsi_in(b, MCSI_IN_X)) : MCSI_SPREAD(phong, m);
 }
 MCSI_LOOP_LOBE(phong_lobe, phong)
 MCSI_LOOP_SAMPLE(phong, phong)
@@ -6021,7 +6055,7 @@ MCSI_CORE mcsi_slopes mcsi_slopes_make(mcs_f alpha_x, mcs_f alpha_y) {
     m.norm = mcsi_sel(ok, MCSI_1_PI * m.inv_alpha_x * m.inv_alpha_y, mcs_set(0.0f));
     return m;
 }
-#ifdef MCSI_LOOPS
+#if defined(MCSI_LOOPS) && MCSI_W > 1
 MCSI_CORE mcsi_slopes mcsi_slopes_spread(const mcsi_scalar_slopes *m) {
     mcsi_slopes all;
     all.alpha_x = mcs_set(m->alpha_x);
@@ -6247,16 +6281,18 @@ MCSI_FN mcs_f mcs_ward_weight(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_sane_result(ok, mcsi_ward_weight(m->model, wo, wi));
 }
 #endif
-#ifdef MCSI_LOOPS
+#if defined(MCSI_LOOPS) && MCSI_W > 1
 MCSI_CORE mcs_ward mcsi_ward_spread(const mcsi_scalar_ward *m) {
     mcs_ward all;
     all.s = mcsi_slopes_spread(&m->s);
     all.model = m->model;
     return all;
 }
+#endif
+#ifdef MCSI_BATCHES
 MCSI_CORE mcs_ward mcsi_ward_of_hits(const mcsi_scalar_ward *m, const mcsi_batch *b) {
     return b->in[MCSI_IN_X] ? mcs_ward_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y), m->model)
-                            : mcsi_ward_spread(m);
+                            : MCSI_SPREAD(ward, m);
 }
 MCSI_LOOP_LOBE(ward_h, ward)
 MCSI_LOOP_SAMPLE(ward, ward)
@@ -6344,14 +6380,17 @@ MCSI_FN mcs_f mcs_beckmann_weight(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 w
     return mcsi_sane_result(ok, wi.z * (mcsi_dot(h, h) / h.z) / divisor);
 }
 #endif
-#ifdef MCSI_LOOPS
+#if defined(MCSI_LOOPS) && MCSI_W > 1
 MCSI_CORE mcs_beckmann mcsi_beckmann_spread(const mcsi_scalar_beckmann *m) {
     mcs_beckmann all;
     all.s = mcsi_slopes_spread(&m->s);
     return all;
 }
+#endif
+#ifdef MCSI_BATCHES
 MCSI_CORE mcs_beckmann mcsi_beckmann_of_hits(const mcsi_scalar_beckmann *m, const mcsi_batch *b) {
-    return b->in[MCSI_IN_X] ? mcs_beckmann_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y)) : mcsi_beckmann_spread(m);
+    return b->in[MCSI_IN_X] ? mcs_beckmann_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y))
+                            : MCSI_SPREAD(beckmann, m);
 }
 MCSI_LOOP_LOBE(beckmann_h, beckmann)
 MCSI_LOOP_SAMPLE(beckmann, beckmann)
@@ -6846,15 +6885,17 @@ MCSI_FN mcs_vec2 mcs_ggx_vndf_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h
     return mcsi_ggx_cap_h_invert(m, wo, h, MCSI_GGX_VISIBLE);
 }
 #endif
-#ifdef MCSI_LOOPS
+#if defined(MCSI_LOOPS) && MCSI_W > 1
 MCSI_CORE mcs_ggx mcsi_ggx_spread(const mcsi_scalar_ggx *m) {
     mcs_ggx all;
     all.s = mcsi_slopes_spread(&m->s);
     all.detour_below = mcs_set(m->detour_below);
     return all;
 }
+#endif
+#ifdef MCSI_BATCHES
 MCSI_CORE mcs_ggx mcsi_ggx_of_hits(const mcsi_scalar_ggx *m, const mcsi_batch *b) {
-    return b->in[MCSI_IN_X] ? mcs_ggx_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y)) : mcsi_ggx_spread(m);
+    return b->in[MCSI_IN_X] ? mcs_ggx_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y)) : MCSI_SPREAD(ggx, m);
 }
 MCSI_LOOP_LOBE(ggx_h, ggx)
 MCSI_LOOP_SAMPLE(ggx, ggx)
@@ -6880,17 +6921,17 @@ MCSI_CORE void mcsi_ggx_cap_sample_hits(const mcsi_scalar_ggx *m, mcsi_batch *b,
     mcsi_ggx_view view[AHEAD];
     MCSI_EACH(*b) {
         int count = 0;
-        for (; count < AHEAD && b->i + MCSI_W <= b->n; b->i += MCSI_W) {
+        for (; count < AHEAD && b->i + b->count <= b->n; b->i += b->count) {
             material[count] = mcsi_ggx_of_hits(m, b);
             view[count] = mcsi_ggx_view_make(&material[count], mcsi_in3(b, MCSI_IN_WO), bounded);
             count++;
         }
-        b->i -= (size_t)count * MCSI_W;
+        b->i -= (size_t)count * b->count;
         for (int k = 0; k < count; k++) {
             mcsi_out_brdf(b, mcsi_ggx_view_sample(&material[k], &view[k], mcsi_in(b, 0), mcsi_in(b, 1), bounded));
-            b->i += MCSI_W;
+            b->i += b->count;
         }
-        b->i -= MCSI_W; /* MCSI_EACH adds it */
+        b->i -= b->count; /* MCSI_EACH adds it */
     }
 }
 MCSI_LOOP void mcsi_ggx_vndf_sample_hits_loop(const mcsi_scalar_ggx *m, mcsi_batch *b) {
@@ -7177,7 +7218,7 @@ MCSI_FN mcs_f mcs_ashikhmin_weight(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3
     return mcsi_sane_result(ok, wi.z / mcsi_max(wo.z, wi.z));
 }
 #endif
-#ifdef MCSI_LOOPS
+#if defined(MCSI_LOOPS) && MCSI_W > 1
 MCSI_CORE mcs_ashikhmin mcsi_ashikhmin_spread(const mcsi_scalar_ashikhmin *m) {
     mcs_ashikhmin all;
     all.nu = mcs_set(m->nu);
@@ -7188,9 +7229,11 @@ MCSI_CORE mcs_ashikhmin mcsi_ashikhmin_spread(const mcsi_scalar_ashikhmin *m) {
     all.norm = mcs_set(m->norm);
     return all;
 }
+#endif
+#ifdef MCSI_BATCHES
 MCSI_CORE mcs_ashikhmin mcsi_ashikhmin_of_hits(const mcsi_scalar_ashikhmin *m, const mcsi_batch *b) {
     return b->in[MCSI_IN_X] ? mcs_ashikhmin_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y))
-                            : mcsi_ashikhmin_spread(m);
+                            : MCSI_SPREAD(ashikhmin, m);
 }
 MCSI_LOOP_LOBE(ashikhmin_h, ashikhmin)
 MCSI_LOOP_SAMPLE(ashikhmin, ashikhmin)
@@ -10776,14 +10819,18 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_REQUIRE
 #undef MCSI_LOOP
 #undef MCSI_EACH
+#undef MCSI_LOOP_SPHERE
+#undef MCSI_LOOP_ABOUT_Z
 #undef MCSI_LOOP_SAMPLE
 #undef MCSI_LOOP_VALUE
 #undef MCSI_LOOP_LOBE
 #undef MCSI_LOOP_VISIBLE
 #undef MCSI_LOOP_SAMPLE_HITS
 #undef MCSI_LOOP_PDF_HITS
+#undef MCSI_SPREAD
 #undef MCSI_W
 #undef MCSI_LOOPS
+#undef MCSI_BATCHES
 #undef MCS_
 #undef MCSI_
 #undef MCSI_AVX
@@ -11151,12 +11198,16 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_linear MCSI_(linear)
 #define mcsi_linear_loop MCSI_(linear_loop)
 #define mcsi_linear_make MCSI_(linear_make)
+#define mcsi_load_first MCSI_(load_first)
 #define mcsi_log MCSI_(log)
 #define mcsi_log1m MCSI_(log1m)
 #define mcsi_log1p MCSI_(log1p)
 #define mcsi_log_of_sum MCSI_(log_of_sum)
 #define mcsi_log_series MCSI_(log_series)
 #define mcsi_logistic_loop MCSI_(logistic_loop)
+#define mcsi_mask MCSI_(mask)
+#define mcsi_mask_of MCSI_(mask_of)
+#define mcsi_masked_f MCSI_(masked_f)
 #define mcsi_max MCSI_(max)
 #define mcsi_min MCSI_(min)
 #define mcsi_mirror MCSI_(mirror)
@@ -11252,6 +11303,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_spread_direction MCSI_(spread_direction)
 #define mcsi_spread_frame MCSI_(spread_frame)
 #define mcsi_sqrt MCSI_(sqrt)
+#define mcsi_store_first MCSI_(store_first)
 #define mcsi_store_int MCSI_(store_int)
 #define mcsi_stored MCSI_(stored)
 #define mcsi_sum MCSI_(sum)
@@ -11780,12 +11832,16 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_linear
 #undef mcsi_linear_loop
 #undef mcsi_linear_make
+#undef mcsi_load_first
 #undef mcsi_log
 #undef mcsi_log1m
 #undef mcsi_log1p
 #undef mcsi_log_of_sum
 #undef mcsi_log_series
 #undef mcsi_logistic_loop
+#undef mcsi_mask
+#undef mcsi_mask_of
+#undef mcsi_masked_f
 #undef mcsi_max
 #undef mcsi_min
 #undef mcsi_mirror
@@ -11881,6 +11937,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_spread_direction
 #undef mcsi_spread_frame
 #undef mcsi_sqrt
+#undef mcsi_store_first
 #undef mcsi_store_int
 #undef mcsi_stored
 #undef mcsi_sum
@@ -11944,51 +12001,57 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #endif
 
 /* ==== [arrays] array functions ====================================================================================
- * Each calls the loop of the widest pass that this processor runs. */
+ * Each calls a loop of the narrowest pass that takes all n points at once, or of the widest that this processor runs.
+ * The loops over batches are in the scalar pass, too. */
 #ifndef MCSI_DECLARED
 #if defined(MCSI_PICK_AVX512)
-#define MCSI_TRY_AVX512(loop, args)                   \
-    if (MCSI_CPU_HAS_AVX512) mcsi_avx512_##loop args; \
+#define MCSI_TRY_AVX512(n, loop, args)                    \
+    if (mcsi_lanes_for(n) == 16) mcsi_avx512_##loop args; \
     else
 #else
-#define MCSI_TRY_AVX512(loop, args)
+#define MCSI_TRY_AVX512(n, loop, args)
 #endif
 #if defined(MCSI_PICK_AVX2)
-#define MCSI_TRY_AVX2(loop, args)                 \
-    if (MCSI_CPU_HAS_AVX2) mcsi_avx2_##loop args; \
+#define MCSI_TRY_AVX2(n, loop, args)                   \
+    if (mcsi_lanes_for(n) == 8) mcsi_avx2_##loop args; \
     else
 #else
-#define MCSI_TRY_AVX2(loop, args)
+#define MCSI_TRY_AVX2(n, loop, args)
 #endif
-#define MCSI_WIDEST(loop, args) MCSI_TRY_AVX512(loop, args) MCSI_TRY_AVX2(loop, args) MCSI_BASE(loop) args
+#define MCSI_WIDE(n, loop, args) MCSI_TRY_AVX512(n, loop, args) MCSI_TRY_AVX2(n, loop, args) MCSI_BASE(loop) args
+/* So few points are taken one by one, which costs less than a vector. */
+#define MCSI_FEW (MCSI_BASE_W < 16 ? 1 : 2)
+#define MCSI_BATCH_LOOP(loop, args)      \
+    if (n <= MCSI_FEW) mcsi_##loop args; \
+    else MCSI_WIDE(n, loop, args)
 
 #ifdef MCSI_TABLES
 MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner) {
-    MCSI_WIDEST(env_directions_loop, (f, n, b, turn, inner));
+    MCSI_WIDE(n, env_directions_loop, (f, n, b, turn, inner));
 }
 MCS_FN void mcsi_env_angles_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z,
                               mcsi_angles_block *angles) {
-    MCSI_WIDEST(env_angles_loop, (f, n, x, y, z, angles));
+    MCSI_WIDE(n, env_angles_loop, (f, n, x, y, z, angles));
 }
 #ifdef MCSI_PRODUCTS
 MCS_FN void mcsi_tile_values_n(const mcsi_surface *s, size_t n, const float *tile, float *value) {
-    MCSI_WIDEST(tile_values_loop, (s, n, tile, value));
+    MCSI_WIDE(n, tile_values_loop, (s, n, tile, value));
 }
 MCS_FN void mcsi_corner_values_n(const mcsi_surface *s, size_t n, const float *corner, float *value) {
-    MCSI_WIDEST(corner_values_loop, (s, n, corner, value));
+    MCSI_WIDE(n, corner_values_loop, (s, n, corner, value));
 }
-MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b) { MCSI_WIDEST(warps_loop, (n, b)); }
-MCS_FN void mcsi_warp_densities_n(size_t n, mcsi_warp_block *b) { MCSI_WIDEST(warp_densities_loop, (n, b)); }
-MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l) { MCSI_WIDEST(tile_shares_loop, (l)); }
-MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l) { MCSI_WIDEST(tile_bounds_loop, (l)); }
+MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b) { MCSI_WIDE(n, warps_loop, (n, b)); }
+MCS_FN void mcsi_warp_densities_n(size_t n, mcsi_warp_block *b) { MCSI_WIDE(n, warp_densities_loop, (n, b)); }
+MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l) { MCSI_WIDE(l->rows * l->cols, tile_shares_loop, (l)); }
+MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l) { MCSI_WIDE(l->rows * l->cols, tile_bounds_loop, (l)); }
 MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square) {
-    MCSI_WIDEST(region_points_loop, (s, n, tile, square));
+    MCSI_WIDE(n, region_points_loop, (s, n, tile, square));
 }
 MCS_FN void mcsi_seen_light_n(size_t n, const float *rays, const float *light, float *seen) {
-    MCSI_WIDEST(seen_light_loop, (n, rays, light, seen));
+    MCSI_WIDE(n, seen_light_loop, (n, rays, light, seen));
 }
 MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value) {
-    MCSI_WIDEST(region_values_loop, (points, n, square, value));
+    MCSI_WIDE(n, region_values_loop, (points, n, square, value));
 }
 #endif
 #endif
@@ -12000,207 +12063,207 @@ MCS_API void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
 }
 #ifdef MCSI_BATCH
 MCS_API void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *out) {
-    MCSI_WIDEST(philox_fill_loop, (key, counter, n, out));
+    MCSI_WIDE(n / 4, philox_fill_loop, (key, counter, n, out));
 }
 MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
-    MCSI_WIDEST(sobol_loop, (first, dim, seed, n, out));
+    MCSI_WIDE(n, sobol_loop, (first, dim, seed, n, out));
 }
 #ifndef MCS_NO_1D
 MCS_API void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_WIDEST(linear_loop, (a, b, n, u, x, pdf));
+    MCSI_BATCH_LOOP(linear_loop, (a, b, n, u, x, pdf));
 }
 MCS_API void mcs_tent_sample_n(float r, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_WIDEST(tent_loop, (r, n, u, x, pdf));
+    MCSI_BATCH_LOOP(tent_loop, (r, n, u, x, pdf));
 }
 MCS_API void mcs_exponential_sample_n(float rate, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_WIDEST(exponential_loop, (rate, n, u, x, pdf));
+    MCSI_BATCH_LOOP(exponential_loop, (rate, n, u, x, pdf));
 }
 MCS_API void mcs_truncexp_sample_n(float rate, float m, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_WIDEST(truncexp_loop, (rate, m, n, u, x, pdf));
+    MCSI_BATCH_LOOP(truncexp_loop, (rate, m, n, u, x, pdf));
 }
 MCS_API void mcs_normal_sample_n(float mean, float sd, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_WIDEST(normal_loop, (mean, sd, n, u, x, pdf));
+    MCSI_BATCH_LOOP(normal_loop, (mean, sd, n, u, x, pdf));
 }
 MCS_API void mcs_logistic_sample_n(float mean, float scale, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_WIDEST(logistic_loop, (mean, scale, n, u, x, pdf));
+    MCSI_BATCH_LOOP(logistic_loop, (mean, scale, n, u, x, pdf));
 }
 MCS_API void mcs_power_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_WIDEST(power_loop, (e, n, u, x, pdf));
+    MCSI_BATCH_LOOP(power_loop, (e, n, u, x, pdf));
 }
 MCS_API void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_WIDEST(evenpower_loop, (e, n, u, x, pdf));
+    MCSI_BATCH_LOOP(evenpower_loop, (e, n, u, x, pdf));
 }
 MCS_API void mcs_smoothstep_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_WIDEST(smoothstep_loop, (a, b, n, u, x, pdf));
+    MCSI_BATCH_LOOP(smoothstep_loop, (a, b, n, u, x, pdf));
 }
 MCS_API void mcs_bilinear_sample_n(float w00, float w10, float w01, float w11, size_t n, const float *u1,
                                    const float *u2, float *x, float *y, float *pdf) {
-    MCSI_WIDEST(bilinear_loop, (w00, w10, w01, w11, n, u1, u2, x, y, pdf));
+    MCSI_BATCH_LOOP(bilinear_loop, (w00, w10, w01, w11, n, u1, u2, x, y, pdf));
 }
 #endif
 MCS_API void mcs_disk_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,
                                float *pdf) {
-    MCSI_WIDEST(disk_loop, (radius, n, u1, u2, x, y, pdf));
+    MCSI_BATCH_LOOP(disk_loop, (radius, n, u1, u2, x, y, pdf));
 }
 MCS_API void mcs_concentric_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,
                                      float *pdf) {
-    MCSI_WIDEST(concentric_loop, (radius, n, u1, u2, x, y, pdf));
+    MCSI_BATCH_LOOP(concentric_loop, (radius, n, u1, u2, x, y, pdf));
 }
 MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, float *b0, float *b1, float *pdf) {
-    MCSI_WIDEST(triangle_loop, (n, u1, u2, b0, b1, pdf));
+    MCSI_BATCH_LOOP(triangle_loop, (n, u1, u2, b0, b1, pdf));
 }
 #ifndef MCS_NO_LIGHTS
 MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2, float *x,
                                float *y, float *z, float *pdf, float *distance) {
-    MCSI_WIDEST(ball_loop, (centre, radius, n, u1, u2, x, y, z, pdf, distance));
+    MCSI_BATCH_LOOP(ball_loop, (centre, radius, n, u1, u2, x, y, z, pdf, distance));
 }
 MCS_API void mcs_disk_light_sample_n(mcs_vec3 centre, mcs_vec3 normal, float radius, size_t n, const float *u1,
                                      const float *u2, float *x, float *y, float *z, float *pdf, float *distance) {
-    MCSI_WIDEST(disk_light_loop, (centre, normal, radius, n, u1, u2, x, y, z, pdf, distance));
+    MCSI_BATCH_LOOP(disk_light_loop, (centre, normal, radius, n, u1, u2, x, y, z, pdf, distance));
 }
 MCS_API void mcs_spherical_rectangle_sample_n(const mcs_spherical_rectangle *l, size_t n, const float *u1,
                                               const float *u2, float *x, float *y, float *z, float *pdf, float *light_x,
                                               float *light_y) {
-    MCSI_WIDEST(spherical_rectangle_loop, (l, n, u1, u2, x, y, z, pdf, light_x, light_y));
+    MCSI_BATCH_LOOP(spherical_rectangle_loop, (l, n, u1, u2, x, y, z, pdf, light_x, light_y));
 }
 MCS_API void mcs_spherical_triangle_sample_n(const mcs_spherical_triangle *l, size_t n, const float *u1,
                                              const float *u2, float *x, float *y, float *z, float *pdf, float *weight_a,
                                              float *weight_b) {
-    MCSI_WIDEST(spherical_triangle_loop, (l, n, u1, u2, x, y, z, pdf, weight_a, weight_b));
+    MCSI_BATCH_LOOP(spherical_triangle_loop, (l, n, u1, u2, x, y, z, pdf, weight_a, weight_b));
 }
 #endif
 MCS_API void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
-    MCSI_WIDEST(sphere_loop, (n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(sphere_loop, (n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
                                      float *pdf) {
-    MCSI_WIDEST(hemisphere_loop, (n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(hemisphere_loop, (n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
-    MCSI_WIDEST(cosine_loop, (n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(cosine_loop, (n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
                                float *pdf) {
-    MCSI_WIDEST(cone_loop, (k, n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(cone_loop, (k, n, u1, u2, x, y, z, pdf));
 }
 #ifndef MCS_NO_MEDIA
 MCS_API void mcs_henyey_greenstein_sample_n(float g, size_t n, const float *u1, const float *u2, float *x, float *y,
                                             float *z, float *pdf) {
-    MCSI_WIDEST(henyey_greenstein_loop, (g, n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(henyey_greenstein_loop, (g, n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_rayleigh_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
                                    float *pdf) {
-    MCSI_WIDEST(rayleigh_loop, (n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(rayleigh_loop, (n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_von_mises_fisher_sample_n(float kappa, size_t n, const float *u1, const float *u2, float *x, float *y,
                                            float *z, float *pdf) {
-    MCSI_WIDEST(von_mises_fisher_loop, (kappa, n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(von_mises_fisher_loop, (kappa, n, u1, u2, x, y, z, pdf));
 }
 #endif
 #ifndef MCS_NO_LOBES
 MCS_API void mcs_phong_lobe_sample_n(const mcs_phong *m, size_t n, const float *u1, const float *u2, float *x, float *y,
                                      float *z, float *pdf) {
-    MCSI_WIDEST(phong_lobe_loop, (m, n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(phong_lobe_loop, (m, n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_phong_sample_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
                                 float *y, float *z, float *pdf, float *weight) {
-    MCSI_WIDEST(phong_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+    MCSI_BATCH_LOOP(phong_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
 MCS_API void mcs_phong_pdf_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
                              float *pdf) {
-    MCSI_WIDEST(phong_pdf_loop, (m, wo, n, x, y, z, pdf));
+    MCSI_BATCH_LOOP(phong_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
 MCS_API void mcs_phong_eval_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
                               float *value) {
-    MCSI_WIDEST(phong_eval_loop, (m, wo, n, x, y, z, value));
+    MCSI_BATCH_LOOP(phong_eval_loop, (m, wo, n, x, y, z, value));
 }
 MCS_API void mcs_ward_h_sample_n(const mcs_ward *m, size_t n, const float *u1, const float *u2, float *x, float *y,
                                  float *z, float *pdf) {
-    MCSI_WIDEST(ward_h_loop, (m, n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(ward_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_ward_sample_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
                                float *y, float *z, float *pdf, float *weight) {
-    MCSI_WIDEST(ward_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+    MCSI_BATCH_LOOP(ward_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
 MCS_API void mcs_ward_pdf_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
                             float *pdf) {
-    MCSI_WIDEST(ward_pdf_loop, (m, wo, n, x, y, z, pdf));
+    MCSI_BATCH_LOOP(ward_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
 MCS_API void mcs_ward_eval_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
                              float *value) {
-    MCSI_WIDEST(ward_eval_loop, (m, wo, n, x, y, z, value));
+    MCSI_BATCH_LOOP(ward_eval_loop, (m, wo, n, x, y, z, value));
 }
 MCS_API void mcs_beckmann_h_sample_n(const mcs_beckmann *m, size_t n, const float *u1, const float *u2, float *x,
                                      float *y, float *z, float *pdf) {
-    MCSI_WIDEST(beckmann_h_loop, (m, n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(beckmann_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_beckmann_sample_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
                                    float *x, float *y, float *z, float *pdf, float *weight) {
-    MCSI_WIDEST(beckmann_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+    MCSI_BATCH_LOOP(beckmann_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
 MCS_API void mcs_beckmann_pdf_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
                                 const float *z, float *pdf) {
-    MCSI_WIDEST(beckmann_pdf_loop, (m, wo, n, x, y, z, pdf));
+    MCSI_BATCH_LOOP(beckmann_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
 MCS_API void mcs_beckmann_eval_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
                                  const float *z, float *value) {
-    MCSI_WIDEST(beckmann_eval_loop, (m, wo, n, x, y, z, value));
+    MCSI_BATCH_LOOP(beckmann_eval_loop, (m, wo, n, x, y, z, value));
 }
 MCS_API void mcs_ggx_h_sample_n(const mcs_ggx *m, size_t n, const float *u1, const float *u2, float *x, float *y,
                                 float *z, float *pdf) {
-    MCSI_WIDEST(ggx_h_loop, (m, n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(ggx_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_ggx_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
                               float *y, float *z, float *pdf, float *weight) {
-    MCSI_WIDEST(ggx_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+    MCSI_BATCH_LOOP(ggx_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
 MCS_API void mcs_ggx_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
                            float *pdf) {
-    MCSI_WIDEST(ggx_pdf_loop, (m, wo, n, x, y, z, pdf));
+    MCSI_BATCH_LOOP(ggx_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
 MCS_API void mcs_ggx_eval_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
                             float *value) {
-    MCSI_WIDEST(ggx_eval_loop, (m, wo, n, x, y, z, value));
+    MCSI_BATCH_LOOP(ggx_eval_loop, (m, wo, n, x, y, z, value));
 }
 MCS_API void mcs_ggx_vndf_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
                                      float *x, float *y, float *z, float *pdf) {
-    MCSI_WIDEST(ggx_vndf_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(ggx_vndf_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_ggx_vndf_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
                                    float *y, float *z, float *pdf, float *weight) {
-    MCSI_WIDEST(ggx_vndf_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+    MCSI_BATCH_LOOP(ggx_vndf_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
 MCS_API void mcs_ggx_vndf_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
                                 float *pdf) {
-    MCSI_WIDEST(ggx_vndf_pdf_loop, (m, wo, n, x, y, z, pdf));
+    MCSI_BATCH_LOOP(ggx_vndf_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
 MCS_API void mcs_ggx_bounded_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
                                         float *x, float *y, float *z, float *pdf) {
-    MCSI_WIDEST(ggx_bounded_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(ggx_bounded_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_ggx_bounded_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
                                       float *x, float *y, float *z, float *pdf, float *weight) {
-    MCSI_WIDEST(ggx_bounded_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+    MCSI_BATCH_LOOP(ggx_bounded_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
 MCS_API void mcs_ggx_bounded_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
                                    const float *z, float *pdf) {
-    MCSI_WIDEST(ggx_bounded_pdf_loop, (m, wo, n, x, y, z, pdf));
+    MCSI_BATCH_LOOP(ggx_bounded_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
 MCS_API void mcs_ashikhmin_h_sample_n(const mcs_ashikhmin *m, size_t n, const float *u1, const float *u2, float *x,
                                       float *y, float *z, float *pdf) {
-    MCSI_WIDEST(ashikhmin_h_loop, (m, n, u1, u2, x, y, z, pdf));
+    MCSI_BATCH_LOOP(ashikhmin_h_loop, (m, n, u1, u2, x, y, z, pdf));
 }
 MCS_API void mcs_ashikhmin_sample_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
                                     float *x, float *y, float *z, float *pdf, float *weight) {
-    MCSI_WIDEST(ashikhmin_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
+    MCSI_BATCH_LOOP(ashikhmin_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
 }
 MCS_API void mcs_ashikhmin_pdf_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
                                  const float *z, float *pdf) {
-    MCSI_WIDEST(ashikhmin_pdf_loop, (m, wo, n, x, y, z, pdf));
+    MCSI_BATCH_LOOP(ashikhmin_pdf_loop, (m, wo, n, x, y, z, pdf));
 }
 MCS_API void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
                                   const float *z, float *value) {
-    MCSI_WIDEST(ashikhmin_eval_loop, (m, wo, n, x, y, z, value));
+    MCSI_BATCH_LOOP(ashikhmin_eval_loop, (m, wo, n, x, y, z, value));
 }
 /* The two functions of a BRDF for hits. */
 #define MCSI_HITS_N(NAME, MATERIAL)                                                                                   \
@@ -12211,7 +12274,7 @@ MCS_API void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n,
         mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                  \
         b.out[4] = weight;                                                                                            \
         mcsi_batch_hits(&b, hits);                                                                                    \
-        MCSI_WIDEST(NAME##_sample_hits_loop, (m, &b));                                                                \
+        MCSI_BATCH_LOOP(NAME##_sample_hits_loop, (m, &b));                                                            \
     }                                                                                                                 \
     MCS_API void mcs_##NAME##_pdf_hits_n(const mcs_##MATERIAL *m, const mcs_hits *hits, size_t n, const float *x,     \
                                          const float *y, const float *z, float *pdf, float *value) {                  \
@@ -12220,7 +12283,7 @@ MCS_API void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n,
         b.out[0] = pdf;                                                                                               \
         b.out[1] = value;                                                                                             \
         mcsi_batch_hits(&b, hits);                                                                                    \
-        MCSI_WIDEST(NAME##_pdf_hits_loop, (m, &b));                                                                   \
+        MCSI_BATCH_LOOP(NAME##_pdf_hits_loop, (m, &b));                                                               \
     }
 MCSI_HITS_N(phong, phong)
 MCSI_HITS_N(ward, ward)
