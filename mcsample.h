@@ -3400,22 +3400,27 @@ MCS_FN mcs_pcg32 mcs_pcg32_make(uint64_t seed, uint64_t stream) {
     return r;
 }
 MCS_FN float mcs_pcg32_float(mcs_pcg32 *r) { return mcs_u01(mcs_pcg32_next(r)); }
-/* A step is s -> mul s + add, and so is any number of steps. Two of them are s -> mul^2 s + (mul + 1) add. The steps of
- * the powers of two in delta are joined (Brown 1994, "Random number generation with arbitrary strides"). */
-MCS_FN void mcs_pcg32_advance(mcs_pcg32 *r, uint64_t delta) {
-    uint64_t mul = MCSI_PCG32_MULTIPLIER;
-    uint64_t add = r->inc;
-    uint64_t all_mul = 1;
-    uint64_t all_add = 0;
+/* A step is s -> mul s + add, and so is a leap, any number of steps. Two steps are s -> mul^2 s + (mul + 1) add. Those
+ * of the powers of two in delta are joined (Brown 1994, "Random number generation with arbitrary strides"). */
+typedef struct {
+    uint64_t mul, add;
+} mcsi_pcg32_leap;
+MCS_FN mcsi_pcg32_leap mcsi_pcg32_leap_make(uint64_t inc, uint64_t delta) {
+    mcsi_pcg32_leap step = {MCSI_PCG32_MULTIPLIER, inc};
+    mcsi_pcg32_leap all = {1, 0};
     for (; delta; delta >>= 1) {
         if (delta & 1u) {
-            all_mul *= mul;
-            all_add = all_add * mul + add;
+            all.mul *= step.mul;
+            all.add = all.add * step.mul + step.add;
         }
-        add = (mul + 1u) * add;
-        mul *= mul;
+        step.add *= step.mul + 1u;
+        step.mul *= step.mul;
     }
-    r->state = all_mul * r->state + all_add;
+    return all;
+}
+MCS_FN void mcs_pcg32_advance(mcs_pcg32 *r, uint64_t delta) {
+    const mcsi_pcg32_leap leap = mcsi_pcg32_leap_make(r->inc, delta);
+    r->state = leap.mul * r->state + leap.add;
 }
 #undef MCSI_PCG32_MULTIPLIER
 #endif
@@ -3489,41 +3494,112 @@ MCS_FN mcs_pcg32 mcs_pcg32_for(uint64_t seed, uint64_t pixel, uint64_t sample) {
     r.inc = ((uint64_t)words.v[2] << 32 | words.v[3]) | 1u;
     return r;
 }
+MCS_FN void mcsi_philox_fill_loop(uint64_t key, uint64_t counter, size_t n, float *out) {
+    mcs_philox4 block = {{0}};
+    for (size_t i = 0; i < n; i++) {
+        if (i % 4 == 0) block = mcs_philox(key, counter + i / 4, 0);
+        out[i] = mcs_u01(block.v[i % 4]);
+    }
+}
 #endif
 
 #ifdef MCSI_LOOPS
-/* A lane is a block. The 4 W numbers come as lanes of words and are written as blocks of words. */
-MCSI_CORE void mcsi_philox_blocks(uint64_t key, uint64_t counter, float *out) {
-    mcs_u v[4];
-    for (int lane = 0; lane < MCSI_W; lane++) {
-        MCSI_LANE(v[0], lane) = (uint32_t)(counter + (unsigned)lane);
-        MCSI_LANE(v[1], lane) = (uint32_t)((counter + (unsigned)lane) >> 32);
-    }
-    v[2] = v[0] & 0u;
-    v[3] = v[2];
-    mcsi_philox_rounds(key, v);
-    float words[4][MCSI_W];
-    for (int k = 0; k < 4; k++) mcs_store(words[k], mcs_u01(v[k]));
-    for (int lane = 0; lane < MCSI_W; lane++, out += 4) {
-        out[0] = words[0][lane];
-        out[1] = words[1][lane];
-        out[2] = words[2][lane];
-        out[3] = words[3][lane];
-    }
+#if MCSI_W > 1
+/* The words in the lower halves of a and in the upper halves of b, in turns. */
+MCSI_CORE mcs_u mcsi_in_turns(mcsi_q a, mcsi_q b) { return (mcs_u)((a & 0xffffffffu) | (b & 0xffffffff00000000u)); }
+/* The outputs of two vectors of states, in turns. gcc does not know vectors of rotations. */
+MCSI_CORE mcs_u mcsi_pcg32_words(mcsi_q even, mcsi_q odd) {
+    const mcs_u x = mcsi_in_turns((even ^ (even >> 18)) >> 27, (odd ^ (odd >> 18)) << 5);
+    const mcs_u turn = mcsi_in_turns(even >> 59, odd >> 27);
+#if defined(MCSI_AVX512) && !defined(__clang__)
+    return (mcs_u)__builtin_ia32_prorvd512_mask((mcs_i)x, (mcs_i)turn, (mcs_i)x, 0xffff);
+#else
+    return (x >> turn) | (x << ((32u - turn) & 31u));
+#endif
 }
+#endif
+/* Each lane leaps over the numbers of the others. There are two vectors of numbers, as a leap waits for the one before
+ * it. Four lanes would not be faster than one. */
+MCSI_LOOP void mcsi_pcg32_fill_loop(mcs_pcg32 *r, size_t n, float *out) {
+#if MCSI_W > 4
+    if (n >= 3 * MCSI_W) {
+        const mcsi_pcg32_leap leap = mcsi_pcg32_leap_make(r->inc, 2 * MCSI_W);
+        uint64_t first[2][2][MCSI_W / 2]; /* even and odd lanes of two vectors */
+        for (int i = 0; i < 2 * MCSI_W; i++) {
+            first[i / MCSI_W][i % 2][i % MCSI_W / 2] = r->state;
+            mcs_pcg32_next(r);
+        }
+        mcsi_q state[2][2];
+        MCSI_COPY(state, first, sizeof state);
+        for (; n >= 2 * MCSI_W; n -= 2 * MCSI_W) {
+            MCSI_UNROLL
+            for (int k = 0; k < 2; k++) {
+                mcs_store(out, mcs_u01(mcsi_pcg32_words(state[k][0], state[k][1])));
+                out += MCSI_W;
+                state[k][0] = state[k][0] * leap.mul + leap.add;
+                state[k][1] = state[k][1] * leap.mul + leap.add;
+            }
+        }
+        r->state = state[0][0][0];
+    }
+#endif
+    for (size_t i = 0; i < n; i++) out[i] = mcs_pcg32_float(r);
+}
+
+#if MCSI_W > 1
+/* MCSI_PAIRS: those of each two pairs of a and of b that come first (k = 0) or second (1), in turns. */
+#if MCSI_W == 4
+#define MCSI_PAIRS(a, b, k) MCSI_SHUFFLE(a, b, k, 2 + k)
+#elif MCSI_W == 8
+#define MCSI_PAIRS(a, b, k) MCSI_SHUFFLE(a, b, k, 4 + k, 2 + k, 6 + k)
+#else
+#define MCSI_PAIRS(a, b, k) MCSI_SHUFFLE(a, b, k, 8 + k, 2 + k, 10 + k, 4 + k, 12 + k, 6 + k, 14 + k)
+#endif
+#if defined(__clang__)
+#define MCSI_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define MCSI_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, __extension__(mcsi_q){__VA_ARGS__})
+#endif
+/* The numbers of MCSI_W blocks, those of even and of odd lanes. A lane is a block, and its four words are joined to
+ * pairs and then to fours. */
+MCSI_CORE void mcsi_philox_blocks(uint64_t key, mcsi_q even, mcsi_q odd, float *out) {
+    const mcs_u zero = {0};
+    mcs_u v[4] = {mcsi_in_turns(even, odd << 32), mcsi_in_turns(even >> 32, odd), zero, zero};
+    mcsi_philox_rounds(key, v);
+    mcsi_q pair[2][2]; /* of even and odd lanes; words 0 and 1, words 2 and 3 */
+    for (int k = 0; k < 2; k++) {
+        const mcsi_q a = (mcsi_q)mcs_u01(v[2 * k]);
+        const mcsi_q b = (mcsi_q)mcs_u01(v[2 * k + 1]);
+        pair[0][k] = (mcsi_q)mcsi_in_turns(a, b << 32);
+        pair[1][k] = (mcsi_q)mcsi_in_turns(a >> 32, b);
+    }
+    mcs_store(out, (mcs_f)MCSI_PAIRS(pair[0][0], pair[0][1], 0));
+    mcs_store(out + MCSI_W, (mcs_f)MCSI_PAIRS(pair[1][0], pair[1][1], 0));
+    mcs_store(out + 2 * MCSI_W, (mcs_f)MCSI_PAIRS(pair[0][0], pair[0][1], 1));
+    mcs_store(out + 3 * MCSI_W, (mcs_f)MCSI_PAIRS(pair[1][0], pair[1][1], 1));
+}
+#undef MCSI_PAIRS
+#undef MCSI_SHUFFLE
+/* Lane 4 j + i is block i W/4 + j: so those whose fours are neighbours in a vector are so in memory. */
 MCSI_LOOP void mcsi_philox_fill_loop(uint64_t key, uint64_t counter, size_t n, float *out) {
-    if (!out) return;
+    mcsi_q even = {0};
+    MCSI_UNROLL
+    for (unsigned k = 0; k < MCSI_W / 2; k++) even[k] = k % 2 * (MCSI_W / 2) + k / 2;
+    even += counter;
+    mcsi_q odd = even + MCSI_W / 4;
     for (; n >= 4 * MCSI_W; n -= 4 * MCSI_W) {
-        mcsi_philox_blocks(key, counter, out);
+        mcsi_philox_blocks(key, even, odd, out);
         out += 4 * MCSI_W;
-        counter += MCSI_W;
+        even += MCSI_W;
+        odd += MCSI_W;
     }
     if (n) {
         float last[4 * MCSI_W];
-        mcsi_philox_blocks(key, counter, last);
+        mcsi_philox_blocks(key, even, odd, last);
         MCSI_COPY(out, last, n * sizeof(float));
     }
 }
+#endif
 #endif
 
 /* ==== [points] bodies ============================================================================================= */
@@ -3607,7 +3683,7 @@ MCSI_FN mcs_u mcs_sobol_bits(mcs_u index, uint32_t dim, uint32_t seed) {
 }
 MCSI_FN mcs_f mcs_sobol(mcs_u index, uint32_t dim, uint32_t seed) { return mcs_u01(mcs_sobol_bits(index, dim, seed)); }
 
-#ifdef MCSI_LOOPS
+#ifdef MCSI_BATCHES
 MCSI_LOOP void mcsi_sobol_loop(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
     mcs_u index;
     for (int k = 0; k < MCSI_W; k++) MCSI_LANE(index, k) = first + (uint32_t)k;
@@ -11191,6 +11267,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_in MCSI_(in)
 #define mcsi_in3 MCSI_(in3)
 #define mcsi_in_radii MCSI_(in_radii)
+#define mcsi_in_turns MCSI_(in_turns)
 #define mcsi_inverse_root MCSI_(inverse_root)
 #define mcsi_inverted MCSI_(inverted)
 #define mcsi_largest MCSI_(largest)
@@ -11229,6 +11306,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_out_sample1 MCSI_(out_sample1)
 #define mcsi_out_sample2 MCSI_(out_sample2)
 #define mcsi_out_towards MCSI_(out_towards)
+#define mcsi_pcg32_fill_loop MCSI_(pcg32_fill_loop)
+#define mcsi_pcg32_words MCSI_(pcg32_words)
 #define mcsi_philox_blocks MCSI_(philox_blocks)
 #define mcsi_philox_fill_loop MCSI_(philox_fill_loop)
 #define mcsi_philox_rounds MCSI_(philox_rounds)
@@ -11825,6 +11904,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_in
 #undef mcsi_in3
 #undef mcsi_in_radii
+#undef mcsi_in_turns
 #undef mcsi_inverse_root
 #undef mcsi_inverted
 #undef mcsi_largest
@@ -11863,6 +11943,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_out_sample1
 #undef mcsi_out_sample2
 #undef mcsi_out_towards
+#undef mcsi_pcg32_fill_loop
+#undef mcsi_pcg32_words
 #undef mcsi_philox_blocks
 #undef mcsi_philox_fill_loop
 #undef mcsi_philox_rounds
@@ -12056,17 +12138,17 @@ MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, fl
 #endif
 #endif
 MCS_API void mcs_pcg32_fill_n(mcs_pcg32 *r, size_t n, float *out) {
-    for (size_t i = 0; i < n; i++) {
-        const float u = mcs_pcg32_float(r);
-        if (out) out[i] = u;
-    }
+    if (!out) mcs_pcg32_advance(r, n);
+    else MCSI_WIDE(n, pcg32_fill_loop, (r, n, out));
 }
 #ifdef MCSI_BATCH
 MCS_API void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *out) {
-    MCSI_WIDE(n / 4, philox_fill_loop, (key, counter, n, out));
+    if (!out) return;
+    if (n <= 8) mcsi_philox_fill_loop(key, counter, n, out);
+    else MCSI_WIDE(n / 4, philox_fill_loop, (key, counter, n, out));
 }
 MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
-    MCSI_WIDE(n, sobol_loop, (first, dim, seed, n, out));
+    MCSI_BATCH_LOOP(sobol_loop, (first, dim, seed, n, out));
 }
 #ifndef MCS_NO_1D
 MCS_API void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf) {
