@@ -1852,9 +1852,13 @@ MCS_API mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t
 /* Probability of entry i; 0 from n on. */
 MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i);
 #ifndef MCS_NO_BATCH
-/* mcs_pwc_sample_n, mcs_pwl_sample_n: n draws; x and pdf may be NULL, and either may be u. */
+/* mcs_pwc_sample_n, mcs_pwl_sample_n: n draws, which fetch memory ahead; x and pdf may be NULL, and either may be u. */
 MCS_API void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float *x, float *pdf);
+/* mcs_discrete_sample_n, mcs_alias_sample_n: the same for entries. rest is the member u of a pick. */
+MCS_API void mcs_discrete_sample_n(const mcs_discrete *t, size_t n, const float *u, uint32_t *i, float *pmf,
+                                   float *rest);
+MCS_API void mcs_alias_sample_n(const mcs_alias *t, size_t n, const float *u, uint32_t *i, float *pmf, float *rest);
 #endif
 #endif
 
@@ -7571,7 +7575,7 @@ MCSI_LOUD
 
 /* ---- entries of a pwc table: of a random number, of random bits, of x ---- */
 
-enum { MCSI_CELLS_MAX = 1 << 28 };
+enum { MCSI_CELLS_MAX = 1 << 28, MCSI_FETCH_CELLS = 1 << 17, MCSI_FETCH_BLOCK = 8 };
 /* Offsets in a table of n cells, in bytes. The guide is that of mcsi_guide_shift(n, 1). Only pwl has vertices. */
 typedef struct {
     size_t sums, guide, vertices, pwc_bytes, pwl_bytes;
@@ -7714,11 +7718,34 @@ MCS_API float mcs_pwc_invert(const mcs_pwc *t, float x) {
     return mcsi_below_one((mcsi_pwc_cdf(t).sums[p.i] + p.within * p.mass) / MCSI_ONE);
 }
 #ifndef MCS_NO_BATCH
+/* Where the search for u starts in the guide of a table of n cells. */
+MCSI_CORE const uint32_t *mcsi_pwc_guide(const mcs_pwc *t, uint32_t n, uint32_t shift, float u) {
+    int32_t ok = 1;
+    const uint32_t U = (uint32_t)((double)mcsi_sane_u(u, &ok) * MCSI_ONE);
+    return MCSI_READ(uint32_t, t, mcsi_pwc_layout(n, shift).guide) + (U >> shift);
+}
+/* Called before draws k to k + MCSI_FETCH_BLOCK of n from a table. Where that is large, it fetches the next block's
+ * cells, from the sums and from the list at `other` unless that is 0, and the guide of the block behind. Returns where
+ * the block ends. It is inlined, as gcc takes a function that only fetches for one that does nothing. */
+MCSI_CORE size_t mcsi_pwc_fetch(const mcs_pwc *t, size_t k, size_t n, const float *u, size_t other) {
+    const size_t block = MCSI_FETCH_BLOCK;
+    const size_t end = t->n < MCSI_FETCH_CELLS ? 0 : n;
+    for (size_t i = k ? k + 2 * block : 0; i < end && i < k + 3 * block; i++)
+        MCSI_PREFETCH(mcsi_pwc_guide(t, t->n, t->shift, u[i]));
+    for (size_t i = k ? k + block : 0; i < end && i < k + 2 * block; i++) {
+        const uint32_t cell = *mcsi_pwc_guide(t, t->n, t->shift, u[i]);
+        MCSI_PREFETCH(mcsi_pwc_cdf(t).sums + cell);
+        if (other) MCSI_PREFETCH(MCSI_READ(uint32_t, t, other) + cell);
+    }
+    return n - k < block ? n : k + block;
+}
 MCS_API void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf) {
-    for (size_t k = 0; k < n; k++) {
-        const mcs_cell c = mcs_pwc_sample(t, u[k]);
-        if (x) x[k] = c.x;
-        if (pdf) pdf[k] = c.pdf;
+    for (size_t k = 0; k < n;) {
+        for (const size_t end = mcsi_pwc_fetch(t, k, n, u, 0); k < end; k++) {
+            const mcs_cell c = mcs_pwc_sample(t, u[k]);
+            if (x) x[k] = c.x;
+            if (pdf) pdf[k] = c.pdf;
+        }
     }
 }
 #endif
@@ -7746,6 +7773,20 @@ MCS_API float mcs_discrete_pmf(const mcs_discrete *t, uint32_t i) {
     const mcsi_cdf c = mcsi_pwc_cdf(t);
     return (float)((double)mcsi_cdf_mass(&c, i) / MCSI_ONE);
 }
+#ifndef MCS_NO_BATCH
+/* Pick k of an array. */
+MCSI_CORE void mcsi_put_pick(mcs_pick c, size_t k, uint32_t *i, float *pmf, float *rest) {
+    if (i) i[k] = c.i;
+    if (pmf) pmf[k] = c.pmf;
+    if (rest) rest[k] = c.u;
+}
+MCS_API void mcs_discrete_sample_n(const mcs_discrete *t, size_t n, const float *u, uint32_t *i, float *pmf,
+                                   float *rest) {
+    for (size_t k = 0; k < n;)
+        for (const size_t end = mcsi_pwc_fetch(t, k, n, u, 0); k < end; k++)
+            mcsi_put_pick(mcs_discrete_sample(t, u[k]), k, i, pmf, rest);
+}
+#endif
 
 /* ---- [tables] pwc2: the rows are a pwc table behind the header, and the columns of each are one behind that ---- */
 
@@ -7804,12 +7845,6 @@ MCS_API mcs_vec2 mcs_pwc2_invert(const mcs_pwc2 *t, float x, float y) {
     return mcsi_vec2(mcs_pwc_invert(columns, x), mcs_pwc_invert(rows, y));
 }
 #ifndef MCS_NO_BATCH
-/* Where the search for u1 starts in the guide of columns. */
-MCSI_CORE const uint32_t *mcsi_pwc2_guide(const mcs_pwc2 *t, const mcs_pwc *columns, float u1) {
-    int32_t ok = 1;
-    const uint32_t U = (uint32_t)((double)mcsi_sane_u(u1, &ok) * MCSI_ONE);
-    return MCSI_READ(uint32_t, columns, mcsi_pwc_layout(t->w, t->shift).guide) + (U >> t->shift);
-}
 /* Rows of a block are drawn and the guides of their columns fetched; then the sums; then columns are drawn. */
 MCS_API void mcs_pwc2_sample_n(const mcs_pwc2 *t, size_t n, const float *u1, const float *u2, float *x, float *y,
                                float *pdf, uint32_t *col, uint32_t *row) {
@@ -7821,11 +7856,12 @@ MCS_API void mcs_pwc2_sample_n(const mcs_pwc2 *t, size_t n, const float *u1, con
             in[k] = mcs_pwc_sample(mcsi_pwc2_rows(t), u2[i + k]);
             const mcs_pwc *columns = mcsi_pwc2_columns(t, in[k].i);
             MCSI_PREFETCH(columns);
-            MCSI_PREFETCH(mcsi_pwc2_guide(t, columns, u1[i + k]));
+            MCSI_PREFETCH(mcsi_pwc_guide(columns, t->w, t->shift, u1[i + k]));
         }
         for (size_t k = 0; k < m; k++) {
             const mcs_pwc *columns = mcsi_pwc2_columns(t, in[k].i);
-            MCSI_PREFETCH(MCSI_READ(uint32_t, columns, sizeof *columns) + *mcsi_pwc2_guide(t, columns, u1[i + k]));
+            MCSI_PREFETCH(MCSI_READ(uint32_t, columns, sizeof *columns) +
+                          *mcsi_pwc_guide(columns, t->w, t->shift, u1[i + k]));
         }
         for (size_t k = i; k < i + m; k++) {
             const mcs_cell2 c = mcsi_pwc2_cell(t, in[k - i], u1[k]);
@@ -7916,10 +7952,13 @@ MCS_API float mcs_pwl_invert(const mcs_pwl *t, float x) {
 }
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float *x, float *pdf) {
-    for (size_t k = 0; k < n; k++) {
-        const mcs_cell c = mcs_pwl_sample(t, u[k]);
-        if (x) x[k] = c.x;
-        if (pdf) pdf[k] = c.pdf;
+    const size_t vertices = mcsi_pwc_layout(t->cells.n, t->cells.shift).vertices;
+    for (size_t k = 0; k < n;) {
+        for (const size_t end = mcsi_pwc_fetch(&t->cells, k, n, u, vertices); k < end; k++) {
+            const mcs_cell c = mcs_pwl_sample(t, u[k]);
+            if (x) x[k] = c.x;
+            if (pdf) pdf[k] = c.pdf;
+        }
     }
 }
 #endif
@@ -8026,6 +8065,26 @@ MCS_API mcs_pick mcs_alias_sample_bits(const mcs_alias *t, uint32_t b1, uint32_t
     const uint64_t U = (uint64_t)b1 * t->n + ((uint64_t)b2 * t->n >> 32); /* 2^32 times that of sample */
     return mcsi_alias_pick(t, (uint32_t)(U >> 32), 0.5 * (uint32_t)U, 1);
 }
+#ifndef MCS_NO_BATCH
+MCSI_CORE const mcsi_column *mcsi_alias_column(const mcs_alias *t, float u) {
+    int32_t ok = 1;
+    return mcsi_columns(t) + (uint32_t)((double)mcsi_sane_u(u, &ok) * t->n);
+}
+/* As mcsi_pwc_fetch: columns, and before that the entries that they give the rest to. */
+MCSI_CORE size_t mcsi_alias_fetch(const mcs_alias *t, size_t k, size_t n, const float *u) {
+    const size_t block = MCSI_FETCH_BLOCK;
+    const size_t end = t->n < MCSI_FETCH_CELLS ? 0 : n;
+    for (size_t i = k ? k + 2 * block : 0; i < end && i < k + 3 * block; i++) MCSI_PREFETCH(mcsi_alias_column(t, u[i]));
+    for (size_t i = k ? k + block : 0; i < end && i < k + 2 * block; i++)
+        MCSI_PREFETCH(mcsi_columns(t) + mcsi_alias_column(t, u[i])->alias);
+    return n - k < block ? n : k + block;
+}
+MCS_API void mcs_alias_sample_n(const mcs_alias *t, size_t n, const float *u, uint32_t *i, float *pmf, float *rest) {
+    for (size_t k = 0; k < n;)
+        for (const size_t end = mcsi_alias_fetch(t, k, n, u); k < end; k++)
+            mcsi_put_pick(mcs_alias_sample(t, u[k]), k, i, pmf, rest);
+}
+#endif
 
 #endif /* MCSI_TABLES */
 #endif /* MCSI_W == 1 */

@@ -26,10 +26,10 @@
     X(pcg32_for) X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) \
     X(philox_fill_n) X(sobol_n) X(sobol_pixel) X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) \
     X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) X(discrete_bytes) X(discrete_build) \
-    X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(pwl_bytes) X(pwl_build) X(pwl_sample) \
-    X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(pwc2_bytes) X(pwc2_build) X(pwc2_sample) \
-    X(pwc2_pdf) X(pwc2_invert) X(pwc2_sample_n) X(alias_bytes) X(alias_build) X(alias_sample) \
-    X(alias_sample_bits) X(alias_pmf) X(reservoir_add) X(reservoir_merge) X(reservoir_weight) X(reservoir_k_make) \
+    X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(discrete_sample_n) X(pwl_bytes) X(pwl_build) \
+    X(pwl_sample) X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(pwc2_bytes) X(pwc2_build) \
+    X(pwc2_sample) X(pwc2_pdf) X(pwc2_invert) X(pwc2_sample_n) X(alias_bytes) X(alias_build) X(alias_sample) \
+    X(alias_sample_bits) X(alias_pmf) X(alias_sample_n) X(reservoir_add) X(reservoir_merge) X(reservoir_weight) X(reservoir_k_make) \
     X(reservoir_k_add) X(reservoir_k_merge) X(reservoir_k_weight) X(stat_add) X(stat_merge) X(stat_variance) \
     X(stat_error) X(stat_ci)
 #define BITS_MAPPED(X) \
@@ -439,6 +439,16 @@ FN(alias_pmf) {
     TABLE(alias);
     PUT(0, mcs_alias_pmf(t, WORD(13) % BITS_CELLS));
 }
+#define TABLE_PICKS(kind)                                          \
+    FN(kind##_sample_n) {                                          \
+        TABLE(kind);                                               \
+        uint32_t i;                                                \
+        mcs_##kind##_sample_n(t, 1, in + 6, &i, out + 1, out + 2); \
+        PUT_WORD(0, i);                                            \
+    }
+TABLE_PICKS(discrete)
+TABLE_PICKS(alias)
+#undef TABLE_PICKS
 #undef TABLE
 
 #define TABLE2                                                             \

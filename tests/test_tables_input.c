@@ -42,6 +42,58 @@ static void test_batch(void) {
     arena_free(&l);
 }
 
+/* Draws of every kind, of few cells and of so many that memory is fetched ahead, to arrays that may be missing. u may be
+ * where the densities go. */
+static void sample_n(int which, const void *t, size_t n, const float *u, uint32_t *i, float *x, float *pdf) {
+    switch (which) {
+    case PWC: mcs_pwc_sample_n((const mcs_pwc *)t, n, u, x, pdf); break;
+    case PWL: mcs_pwl_sample_n((const mcs_pwl *)t, n, u, x, pdf); break;
+    case DISCRETE: mcs_discrete_sample_n((const mcs_discrete *)t, n, u, i, pdf, x); break;
+    default: mcs_alias_sample_n((const mcs_alias *)t, n, u, i, pdf, x);
+    }
+}
+static void check_large(int which, const arena *a, mcs_pcg32 *r, size_t n) {
+    enum { ROOM = 1000 };
+    static float u[ROOM], x[ROOM + 1], pdf[ROOM + 1];
+    static uint32_t entry[ROOM + 1];
+    for (int missing = 0; missing < 8; missing++) {
+        const int picks = which == DISCRETE || which == ALIAS;
+        mcs_pcg32_fill_n(r, n, u);
+        for (size_t k = 0; k <= n; k++) {
+            x[k] = pdf[k] = k < n ? u[k] : -7.0f;
+            entry[k] = 7;
+        }
+        sample_n(which, a->at, n, missing & 1 ? u : pdf, missing & 4 ? NULL : entry, missing & 2 ? NULL : x,
+                 missing & 1 ? NULL : pdf);
+        int same = x[n] == -7.0f && pdf[n] == -7.0f && entry[n] == 7;
+        for (size_t k = 0; k < n; k++) {
+            const draw d = kinds[which].sample(a->at, u[k]);
+            same &= (missing & 1 || pdf[k] == d.pdf) && (missing & 2 || x[k] == (picks ? d.rest : d.x));
+            same &= missing & 4 || !picks || entry[k] == d.i;
+        }
+        CHECK(same, "%s, n = %zu, without %d: differs from scalar", kinds[which].name, n, missing);
+    }
+}
+static void test_large(void) {
+    enum { CELLS = (1 << 17) + 3 };
+    float *w = (float *)malloc((CELLS + 1) * sizeof *w);
+    CHECK(w != NULL, "out of memory");
+    if (!w) return;
+    mcs_pcg32 r = mcs_pcg32_make(mcst.seed, 32);
+    mcs_pcg32_fill_n(&r, CELLS + 1, w);
+    for (int which = 0; which < 4; which++) {
+        const uint32_t cells[2] = {1000, CELLS};
+        for (int large = 0; large < 2; large++) {
+            arena a = arena_make(kinds[which].bytes(cells[large]));
+            CHECK(kinds[which].build(a.at, a.bytes, w, cells[large]) == MCS_OK, "%s: not built", kinds[which].name);
+            for (size_t n = 0; n < 70; n++) check_large(which, &a, &r, n);
+            check_large(which, &a, &r, 1000);
+            arena_free(&a);
+        }
+    }
+    free(w);
+}
+
 /* ---- from a function ---- */
 
 static float f_square(float x, void *ctx) { return *(float *)ctx * x * x; }
@@ -305,6 +357,7 @@ int main(int argc, char **argv) {
     make_us();
     mcst_group("table batches");
     if (mcst_case("n = 0..67, 1000, 4099, shifted, in place, NULL outputs")) test_batch();
+    if (mcst_case("tables of 1000 and of 131075 cells, of every kind")) test_large();
     mcst_group("pwc from a function");
     if (mcst_case("against exact integrals; bad values; errors")) test_build_fn();
     if (mcst_case("exact for degree 7")) test_degree_seven();
