@@ -226,6 +226,10 @@ DRAW(pwl, {
     const mcs_cell c = mcs_pwl_sample(now.pwl, u1[i]);
     keep1(i, c.x, c.pdf);
 })
+DRAW(discrete, {
+    const mcs_pick c = mcs_discrete_sample(now.pwc, u1[i]);
+    keep1(i, (float)c.i + c.u, c.pmf);
+})
 DRAW(alias, {
     const mcs_pick c = mcs_alias_sample(now.alias, u1[i]);
     keep1(i, (float)c.i + c.u, c.pmf);
@@ -265,6 +269,9 @@ static void density_env_n(size_t at) {
 }
 static void draw_pwc_n(size_t at) { mcs_pwc_sample_n(now.pwc, DRAWS, pool[0] + at, out[0], out[3]); }
 static void draw_pwl_n(size_t at) { mcs_pwl_sample_n(now.pwl, DRAWS, pool[0] + at, out[0], out[3]); }
+static uint32_t entries[DRAWS];
+static void draw_discrete_n(size_t at) { mcs_discrete_sample_n(now.pwc, DRAWS, pool[0] + at, entries, out[3], out[0]); }
+static void draw_alias_n(size_t at) { mcs_alias_sample_n(now.alias, DRAWS, pool[0] + at, entries, out[3], out[0]); }
 static void draw_env_n(size_t at) {
     mcs_env_sample_n(now.env, DRAWS, pool[0] + at, pool[1] + at, out[0], out[1], out[2], out[3], NULL, NULL);
 }
@@ -409,7 +416,10 @@ static void measure_line(uint32_t n) {
                         {"pwc", "n", NULL, draw_pwc_n, NULL, (double)mcs_pwc_bytes(n)},
                         {"pwl", "scalar", build_pwl, draw_pwl, NULL, (double)mcs_pwl_bytes(n)},
                         {"pwl", "n", NULL, draw_pwl_n, NULL, (double)mcs_pwl_bytes(n)},
-                        {"alias", "scalar", build_alias, draw_alias, NULL, (double)mcs_alias_bytes(n)}};
+                        {"discrete", "scalar", NULL, draw_discrete, NULL, (double)mcs_discrete_bytes(n)},
+                        {"discrete", "n", NULL, draw_discrete_n, NULL, (double)mcs_discrete_bytes(n)},
+                        {"alias", "scalar", build_alias, draw_alias, NULL, (double)mcs_alias_bytes(n)},
+                        {"alias", "n", NULL, draw_alias_n, NULL, (double)mcs_alias_bytes(n)}};
     now.w = n;
     now.h = 0;
     now.image = malloc(((size_t)n + 1) * sizeof(float));
@@ -582,14 +592,14 @@ static void plot_env(void) {
     }
 }
 static void print_table(void) {
-    printf("\n%-7s %-11s %-13s %13s %10s %9s %9s %10s %9s %9s %9s %9s\n", "table", "form", "source", "size", "build ms",
+    printf("\n%-8s %-11s %-13s %13s %10s %9s %9s %10s %9s %9s %9s %9s\n", "table", "form", "source", "size", "build ms",
            "x memcpy", "B/cell", "ns/sample", "min", "max", "ns/pdf", "x text");
     for (int i = 0; i < row_count; i++) {
         const table_row *const r = &table_rows[i];
         char size[32];
         if (r->h) snprintf(size, sizeof size, "%ux%u", r->w, r->h);
         else snprintf(size, sizeof size, "%u", r->w);
-        printf("%-7s %-11s %-13s %13s", r->table, r->form, r->source, size);
+        printf("%-8s %-11s %-13s %13s", r->table, r->form, r->source, size);
         if (r->built > 0) printf(" %10.3g %9.3g", 1e3 * r->built, r->copies);
         else printf(" %10s %9s", "-", "-");
         if (r->sample.median > 0) {

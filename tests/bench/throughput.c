@@ -433,13 +433,13 @@ static bench_spread spread_of(const double *v) {
     return bench_spread_of(copy, rounds);
 }
 
-/* ---- vector maths and random numbers: rows with forms of their own ---- */
+/* ---- vector maths, random numbers, short and long calls: rows with forms of their own ---- */
 
 typedef struct {
     const char *name, *form;
     double rounds_ns[ROUNDS_MAX], max, rms; /* ulp of the value; max < 0: does not apply */
 } extra;
-enum { EXTRA_MAX = 32 };
+enum { EXTRA_MAX = 40 };
 static extra extras[EXTRA_MAX];
 static int extra_count;
 
@@ -551,20 +551,88 @@ static void random_sobol_scalar(void) {
     for (i = 0; i < BENCH_N; i++) out_x[i] = mcs_sobol(i, 1, 1);
 }
 static void random_sobol_n(void) { mcs_sobol_n(0, 1, 1, BENCH_N, out_x); }
+
+/* Array functions called for few points at a time, BENCH_N in all. */
+#define SHORT_CALLS(count)                                                                                         \
+    static void cosine_by_##count(void) {                                                                          \
+        for (size_t i = 0; i < BENCH_N; i += count)                                                                \
+            mcs_cosine_sample_n(count, u1 + i, u2 + i, out_x + i, out_y + i, out_z + i, out_pdf + i);              \
+    }                                                                                                              \
+    static void bounded_by_##count(void) {                                                                         \
+        for (size_t i = 0; i < BENCH_N; i += count)                                                                \
+            mcs_ggx_bounded_sample_n(&short_ggx, short_wo, count, u1 + i, u2 + i, out_x + i, out_y + i, out_z + i, \
+                                     out_pdf + i, out_weight + i);                                                 \
+    }
+static const mcs_vec3 short_wo = {0.6f, 0, 0.8f};
+static mcs_ggx short_ggx; /* as the row ggx_bounded is timed */
+SHORT_CALLS(1)
+SHORT_CALLS(4)
+SHORT_CALLS(8)
+static void cosine_scalar(void) {
+    for (size_t i = 0; i < BENCH_N; i++) {
+        const mcs_dir s = mcs_cosine_sample(u1[i], u2[i]);
+        out_x[i] = s.w.x;
+        out_y[i] = s.w.y;
+        out_z[i] = s.w.z;
+        out_pdf[i] = s.pdf;
+    }
+}
+static void bounded_scalar(void) {
+    for (size_t i = 0; i < BENCH_N; i++) {
+        const mcs_brdf s = mcs_ggx_bounded_sample(&short_ggx, short_wo, u1[i], u2[i]);
+        out_x[i] = s.wi.x;
+        out_y[i] = s.wi.y;
+        out_z[i] = s.wi.z;
+        out_pdf[i] = s.pdf;
+        out_weight[i] = s.weight;
+    }
+}
+
+/* Arrays of LONG points, which no cache holds: two of random numbers, four of results. */
+enum { LONG = 1 << 22, LONG_ARRAYS = 6 };
+static float *long_arrays; /* NULL without memory */
+static float *long_array(int k) { return long_arrays + (size_t)k * LONG; }
+static void long_cosine(void) {
+    mcs_cosine_sample_n(LONG, long_array(0), long_array(1), long_array(2), long_array(3), long_array(4), long_array(5));
+}
+static void long_memset(void) { memset(long_array(2), 0, (LONG_ARRAYS - 2) * LONG * sizeof *long_arrays); }
+static void make_long_arrays(void) {
+    mcs_pcg32 r = mcs_pcg32_make(1, 2);
+    short_ggx = mcs_ggx_make(0.1f, 0.4f);
+    long_arrays = malloc(LONG_ARRAYS * LONG * sizeof *long_arrays);
+    if (long_arrays) mcs_pcg32_fill_n(&r, LONG_ARRAYS * LONG, long_arrays);
+    else puts("SKIPPED: long arrays: not enough memory");
+}
+
 static const struct {
     const char *name, *form;
     void (*fill)(void);
-} randoms[] = {{"pcg32", "text", random_text},   {"pcg32", "scalar", random_pcg_scalar},
-               {"pcg32", "n", random_pcg_n},     {"philox", "scalar", random_philox_scalar},
-               {"philox", "n", random_philox_n}, {"sobol", "scalar", random_sobol_scalar},
-               {"sobol", "n", random_sobol_n}};
-enum { RANDOMS = sizeof randoms / sizeof randoms[0] };
+    size_t points;
+} others[] = {{"pcg32", "text", random_text, BENCH_N},
+              {"pcg32", "scalar", random_pcg_scalar, BENCH_N},
+              {"pcg32", "n", random_pcg_n, BENCH_N},
+              {"philox", "scalar", random_philox_scalar, BENCH_N},
+              {"philox", "n", random_philox_n, BENCH_N},
+              {"sobol", "scalar", random_sobol_scalar, BENCH_N},
+              {"sobol", "n", random_sobol_n, BENCH_N},
+              {"cosine calls", "scalar", cosine_scalar, BENCH_N},
+              {"cosine calls", "n = 1", cosine_by_1, BENCH_N},
+              {"cosine calls", "n = 4", cosine_by_4, BENCH_N},
+              {"cosine calls", "n = 8", cosine_by_8, BENCH_N},
+              {"bounded calls", "scalar", bounded_scalar, BENCH_N},
+              {"bounded calls", "n = 1", bounded_by_1, BENCH_N},
+              {"bounded calls", "n = 4", bounded_by_4, BENCH_N},
+              {"bounded calls", "n = 8", bounded_by_8, BENCH_N},
+              {"cosine 2^22", "memset", long_memset, LONG},
+              {"cosine 2^22", "n", long_cosine, LONG}};
+enum { OTHERS = sizeof others / sizeof others[0] };
 
 static void measure_extras(double slice) {
     struct {
         bench_kernel *kernel;
         void (*fill)(void);
         int which, turns, passes;
+        size_t points;
     } run[EXTRA_MAX];
     int k, r, i;
     for (k = 0; k < BENCH_KERNELS; k++) {
@@ -574,17 +642,21 @@ static void measure_extras(double slice) {
         for (i = 0; i < 3; i++) {
             if (!forms[i]) continue;
             run[extra_count].kernel = forms[i], run[extra_count].which = k, run[extra_count].turns = i == 1;
+            run[extra_count].points = BENCH_N;
             extras[extra_count].name = kernel_name[k], extras[extra_count].form = names[i];
             kernel_error(k, forms[i], i == 1, &extras[extra_count++]);
         }
     }
-    for (k = 0; k < RANDOMS; k++) {
-        run[extra_count].kernel = NULL, run[extra_count].fill = randoms[k].fill;
-        extras[extra_count].name = randoms[k].name, extras[extra_count].form = randoms[k].form;
+    make_long_arrays();
+    for (k = 0; k < OTHERS; k++) {
+        if (others[k].points == LONG && !long_arrays) continue;
+        run[extra_count].kernel = NULL, run[extra_count].fill = others[k].fill;
+        run[extra_count].points = others[k].points;
+        extras[extra_count].name = others[k].name, extras[extra_count].form = others[k].form;
         extras[extra_count++].max = -1;
     }
     for (r = -1; r < rounds; r++) {
-        bench_progress("vector maths, random numbers: round %d of %d", r + 1, rounds);
+        bench_progress("vector maths, random numbers, calls: round %d of %d", r + 1, rounds);
         for (k = 0; k < extra_count; k++) {
             const int passes = r < 0 ? 2 : run[k].passes;
             double began;
@@ -599,7 +671,7 @@ static void measure_extras(double slice) {
             bench_consume(BENCH_N, out_x);
             bench_consume(BENCH_N, out_y);
             if (r < 0) run[k].passes = 1 + (int)(slice / began);
-            else extras[k].rounds_ns[r] = began * 1e9 / BENCH_N;
+            else extras[k].rounds_ns[r] = began * 1e9 / (double)run[k].points;
         }
     }
 }
