@@ -8132,7 +8132,7 @@ MCSI_CORE mcsi_angles mcsi_env_angles(const mcs_frame *f, mcs_vec3 w) {
 #if MCSI_W == 1
 /* Draws of a block, for array forms: what is left of each, the row's lists, the texel, and the members of
  * mcsi_env_point. */
-enum { MCSI_ENV_BLOCK = 32 };
+enum { MCSI_ENV_BLOCK = 32, MCSI_ENV_FEW = 7 }; /* fewer are drawn one by one, which costs less */
 typedef struct {
     double rest1, rest2, density;
 } mcsi_draw; /* see "draws, in steps" */
@@ -9012,6 +9012,14 @@ typedef struct {
     float *x, *y, *z, *pdf;
     uint32_t *col, *row;
 } mcsi_texels;
+MCSI_CORE void mcsi_texels_put(const mcsi_texels *out, size_t i, mcs_texel x) {
+    if (out->x) out->x[i] = x.w.x;
+    if (out->y) out->y[i] = x.w.y;
+    if (out->z) out->z[i] = x.w.z;
+    if (out->pdf) out->pdf[i] = x.pdf;
+    if (out->col) out->col[i] = x.col;
+    if (out->row) out->row[i] = x.row;
+}
 /* For n draws in all. A block that is not full holds points all the same: directions are computed by whole vectors. */
 MCSI_CORE void mcsi_block_start(mcsi_env_block *b, size_t n) {
     if (n >= MCSI_ENV_BLOCK) return;
@@ -9084,6 +9092,10 @@ MCS_FN void mcsi_block_columns(const mcs_env *e, mcsi_env_block *b, size_t n, co
 }
 MCS_FN void mcsi_window_draw_n(const mcs_env *e, const mcsi_window *r, size_t n, const float *u1, const float *u2,
                                const mcsi_texels *out) {
+    if (n < MCSI_ENV_FEW) {
+        for (size_t k = 0; k < n; k++) mcsi_texels_put(out, k, mcsi_window_draw(e, r, mcsi_draw_start(u1[k], u2[k])));
+        return;
+    }
     mcsi_env_block b;
     mcsi_block_start(&b, n);
     size_t m;
@@ -10688,14 +10700,6 @@ MCSI_CORE mcs_texel mcsi_texel_block_get(const mcsi_texel_block *b, size_t k) {
     x.col = b->col[k];
     x.row = b->row[k];
     return x;
-}
-MCSI_CORE void mcsi_texels_put(const mcsi_texels *out, size_t i, mcs_texel x) {
-    if (out->x) out->x[i] = x.w.x;
-    if (out->y) out->y[i] = x.w.y;
-    if (out->z) out->z[i] = x.w.z;
-    if (out->pdf) out->pdf[i] = x.pdf;
-    if (out->col) out->col[i] = x.col;
-    if (out->row) out->row[i] = x.row;
 }
 /* The first n become world directions of the lobe; *kept of those that are lost becomes 0. */
 MCSI_CORE void mcsi_lobe_draw_n(const mcsi_lobe *l, size_t n, const float *u1, const float *u2, mcsi_texel_block *b,
