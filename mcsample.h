@@ -2579,8 +2579,7 @@ typedef struct {
     const float *in[MCSI_IN_MAX]; /* NULL where the caller has none */
     float *out[MCSI_OUT_MAX];     /* NULL where the caller does not want them */
     size_t n;                     /* how many points there are */
-    size_t i;                     /* the point that the loop is at */
-    size_t count;                 /* how many a turn takes: as many as there are lanes, then what remains */
+    size_t i;                     /* the point that a loop is at */
 } mcsi_batch;
 
 MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const float *in1, const float *in2) {
@@ -2591,7 +2590,18 @@ MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const fl
     b->n = n;
     b->i = 0;
 }
-
+MCS_FN void mcsi_batch_sample1(mcsi_batch *b, size_t n, const float *u, float *x, float *pdf) {
+    mcsi_batch_start(b, n, u, NULL, NULL);
+    b->out[0] = x;
+    b->out[1] = pdf;
+}
+MCS_FN void mcsi_batch_sample2(mcsi_batch *b, size_t n, const float *u1, const float *u2, float *x, float *y,
+                               float *pdf) {
+    mcsi_batch_start(b, n, u1, u2, NULL);
+    b->out[0] = x;
+    b->out[1] = y;
+    b->out[2] = pdf;
+}
 MCS_FN void mcsi_batch_dir(mcsi_batch *b, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
                            float *pdf) {
     mcsi_batch_start(b, n, u1, u2, NULL);
@@ -2609,13 +2619,6 @@ MCS_FN void mcsi_batch_hits(mcsi_batch *b, const mcs_hits *hits) {
     b->in[MCSI_IN_Y] = hits->parameter_y;
 }
 #endif
-
-/* Called at first and when no whole vector remains. Returns 0 behind the last point. */
-MCS_FN size_t mcsi_batch_next(mcsi_batch *b, size_t lanes) {
-    const size_t left = b->n - b->i;
-    b->count = left < lanes ? left : lanes;
-    return b->count;
-}
 #endif /* MCSI_BASE_W > 0 */
 
 /* Types of the scalar pass, for passes in which mcs_vec3 and the like are packets. */
@@ -3276,12 +3279,15 @@ MCSI_CORE mcs_vec3 mcsi_spread_direction(mcsi_scalar_vec3 w) {
 }
 
 #ifdef MCSI_BATCHES
-/* MCSI_EACH runs the statement behind it for all vectors of the batch b, and once more for what does not fill one. Its
- * inner loop has a plain head: gcc then takes divisions and roots that are constant out of it. mcsi_in gives the lanes
- * of input array k. mcsi_out stores those of output array k, which may be NULL. Both touch count numbers alone. */
-#define MCSI_EACH(b)                      \
-    while (mcsi_batch_next(&(b), MCSI_W)) \
-        for (; (b).i + (b).count <= (b).n; (b).i += (b).count)
+/* Runs the statement behind it for all vectors of the batch at `call`, the last of which may not be full. b is a copy
+ * that has its members in registers. */
+#define MCSI_EACH(b, call) for (mcsi_batch b = *(call); b.i < b.n; b.i += MCSI_W)
+#if MCSI_W == 1
+MCSI_CORE mcs_f mcsi_in(const mcsi_batch *b, int k) { return b->in[k][b->i]; }
+MCSI_CORE void mcsi_out(const mcsi_batch *b, int k, mcs_f v) {
+    if (b->out[k]) b->out[k][b->i] = v;
+}
+#else
 /* The first lanes of a vector, from and to memory; the other lanes repeat the first. AVX and AVX-512 have instructions
  * for that. Their mask is a vector or a number. */
 #if MCSI_W > 4 && defined(MCSI_MASKED)
@@ -3334,16 +3340,19 @@ MCSI_CORE void mcsi_store_first(float *p, mcs_f v, size_t count) {
     }
 }
 #endif
+/* The lanes of input array k. */
 MCSI_CORE mcs_f mcsi_in(const mcsi_batch *b, int k) {
-    const float *p = b->in[k] + b->i;
-    return b->count == MCSI_W ? mcs_load(p) : mcsi_load_first(p, b->count);
+    const size_t left = b->n - b->i;
+    return left < MCSI_W ? mcsi_load_first(b->in[k] + b->i, left) : mcs_load(b->in[k] + b->i);
 }
+/* Lanes to output array k, which may be NULL. */
 MCSI_CORE void mcsi_out(const mcsi_batch *b, int k, mcs_f v) {
+    const size_t left = b->n - b->i;
     if (!b->out[k]) return;
-    float *p = b->out[k] + b->i;
-    if (b->count == MCSI_W) mcs_store(p, v);
-    else mcsi_store_first(p, v, b->count);
+    if (left < MCSI_W) mcsi_store_first(b->out[k] + b->i, v, left);
+    else mcs_store(b->out[k] + b->i, v);
 }
+#endif
 MCSI_CORE mcs_vec3 mcsi_in3(const mcsi_batch *b, int k) {
     return mcsi_vec3(mcsi_in(b, k), mcsi_in(b, k + 1), mcsi_in(b, k + 2));
 }
@@ -3511,6 +3520,8 @@ MCS_FN void mcsi_philox_fill_loop(uint64_t key, uint64_t counter, size_t n, floa
 #if MCSI_W > 1
 /* The words in the lower halves of a and in the upper halves of b, in turns. */
 MCSI_CORE mcs_u mcsi_in_turns(mcsi_q a, mcsi_q b) { return (mcs_u)((a & 0xffffffffu) | (b & 0xffffffff00000000u)); }
+#endif
+#if MCSI_W > 4
 /* The outputs of two vectors of states, in turns. gcc does not know vectors of rotations. */
 MCSI_CORE mcs_u mcsi_pcg32_words(mcsi_q even, mcsi_q odd) {
     const mcs_u x = mcsi_in_turns((even ^ (even >> 18)) >> 27, (odd ^ (odd >> 18)) << 5);
@@ -3688,13 +3699,10 @@ MCSI_FN mcs_u mcs_sobol_bits(mcs_u index, uint32_t dim, uint32_t seed) {
 MCSI_FN mcs_f mcs_sobol(mcs_u index, uint32_t dim, uint32_t seed) { return mcs_u01(mcs_sobol_bits(index, dim, seed)); }
 
 #ifdef MCSI_BATCHES
-MCSI_LOOP void mcsi_sobol_loop(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
+MCSI_LOOP void mcsi_sobol_loop(uint32_t first, uint32_t dim, uint32_t seed, const mcsi_batch *call) {
     mcs_u index;
     for (int k = 0; k < MCSI_W; k++) MCSI_LANE(index, k) = first + (uint32_t)k;
-    mcsi_batch b;
-    mcsi_batch_start(&b, n, NULL, NULL, NULL);
-    b.out[0] = out;
-    MCSI_EACH(b) {
+    MCSI_EACH(b, call) {
         mcsi_out(&b, 0, mcs_sobol(index, dim, seed));
         index = index + (uint32_t)MCSI_W;
     }
@@ -4125,21 +4133,13 @@ MCSI_FN mcs_f mcs_smoothstep_invert(mcs_f a, mcs_f b, mcs_f x) {
 
 #ifdef MCSI_BATCHES
 /* The loops of the densities with one parameter and of those with two. */
-#define MCSI_LOOP_LINE(NAME)                                                                     \
-    MCSI_LOOP void mcsi_##NAME##_loop(float a, size_t n, const float *u, float *x, float *pdf) { \
-        mcsi_batch b;                                                                            \
-        mcsi_batch_start(&b, n, u, NULL, NULL);                                                  \
-        b.out[0] = x;                                                                            \
-        b.out[1] = pdf;                                                                          \
-        MCSI_EACH(b) { mcsi_out_sample1(&b, mcs_##NAME##_sample(mcs_set(a), mcsi_in(&b, 0))); }  \
+#define MCSI_LOOP_LINE(NAME)                                                                          \
+    MCSI_LOOP void mcsi_##NAME##_loop(float a, const mcsi_batch *call) {                              \
+        MCSI_EACH(b, call) { mcsi_out_sample1(&b, mcs_##NAME##_sample(mcs_set(a), mcsi_in(&b, 0))); } \
     }
-#define MCSI_LOOP_LINE_2(NAME)                                                                                \
-    MCSI_LOOP void mcsi_##NAME##_loop(float a1, float a2, size_t n, const float *u, float *x, float *pdf) {   \
-        mcsi_batch b;                                                                                         \
-        mcsi_batch_start(&b, n, u, NULL, NULL);                                                               \
-        b.out[0] = x;                                                                                         \
-        b.out[1] = pdf;                                                                                       \
-        MCSI_EACH(b) { mcsi_out_sample1(&b, mcs_##NAME##_sample(mcs_set(a1), mcs_set(a2), mcsi_in(&b, 0))); } \
+#define MCSI_LOOP_LINE_2(NAME)                                                                                      \
+    MCSI_LOOP void mcsi_##NAME##_loop(float a1, float a2, const mcsi_batch *call) {                                 \
+        MCSI_EACH(b, call) { mcsi_out_sample1(&b, mcs_##NAME##_sample(mcs_set(a1), mcs_set(a2), mcsi_in(&b, 0))); } \
     }
 MCSI_LOOP_LINE_2(linear)
 MCSI_LOOP_LINE(tent)
@@ -4230,14 +4230,8 @@ MCSI_FN mcs_vec2 mcs_bilinear_invert(mcs_f w00, mcs_f w10, mcs_f w01, mcs_f w11,
 #endif
 
 #ifdef MCSI_BATCHES
-MCSI_LOOP void mcsi_bilinear_loop(float w00, float w10, float w01, float w11, size_t n, const float *u1,
-                                  const float *u2, float *x, float *y, float *pdf) {
-    mcsi_batch b;
-    mcsi_batch_start(&b, n, u1, u2, NULL);
-    b.out[0] = x;
-    b.out[1] = y;
-    b.out[2] = pdf;
-    MCSI_EACH(b) {
+MCSI_LOOP void mcsi_bilinear_loop(float w00, float w10, float w01, float w11, const mcsi_batch *call) {
+    MCSI_EACH(b, call) {
         mcsi_out_sample2(&b, mcs_bilinear_sample(mcs_set(w00), mcs_set(w10), mcs_set(w01), mcs_set(w11), mcsi_in(&b, 0),
                                                  mcsi_in(&b, 1)));
     }
@@ -4358,13 +4352,8 @@ MCSI_FN mcs_vec2 mcs_triangle_invert(mcs_f b0, mcs_f b1) {
 #endif
 
 #ifdef MCSI_BATCHES
-MCSI_LOOP void mcsi_triangle_loop(size_t n, const float *u1, const float *u2, float *b0, float *b1, float *pdf) {
-    mcsi_batch b;
-    mcsi_batch_start(&b, n, u1, u2, NULL);
-    b.out[0] = b0;
-    b.out[1] = b1;
-    b.out[2] = pdf;
-    MCSI_EACH(b) { mcsi_out_sample2(&b, mcs_triangle_sample(mcsi_in(&b, 0), mcsi_in(&b, 1))); }
+MCSI_LOOP void mcsi_triangle_loop(const mcsi_batch *call) {
+    MCSI_EACH(b, call) { mcsi_out_sample2(&b, mcs_triangle_sample(mcsi_in(&b, 0), mcsi_in(&b, 1))); }
 }
 #endif
 
@@ -5237,34 +5226,21 @@ MCSI_CORE void mcsi_out_light(const mcsi_batch *b, mcs_light s) {
     mcsi_out_towards(b, s.w, s.pdf);
     mcsi_out(b, 4, s.distance);
 }
-MCSI_LOOP void mcsi_ball_loop(mcsi_scalar_vec3 centre, float radius, size_t n, const float *u1, const float *u2,
-                              float *x, float *y, float *z, float *pdf, float *distance) {
+MCSI_LOOP void mcsi_ball_loop(mcsi_scalar_vec3 centre, float radius, const mcsi_batch *call) {
     const mcsi_ball ball = mcsi_ball_make(mcsi_spread(centre), mcs_set(radius));
-    mcsi_batch b;
-    mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);
-    b.out[4] = distance;
-    MCSI_EACH(b) { mcsi_out_light(&b, mcsi_ball_draw(&ball, mcsi_in(&b, 0), mcsi_in(&b, 1))); }
+    MCSI_EACH(b, call) { mcsi_out_light(&b, mcsi_ball_draw(&ball, mcsi_in(&b, 0), mcsi_in(&b, 1))); }
 }
-MCSI_LOOP void mcsi_disk_light_loop(mcsi_scalar_vec3 centre, mcsi_scalar_vec3 normal, float radius, size_t n,
-                                    const float *u1, const float *u2, float *x, float *y, float *z, float *pdf,
-                                    float *distance) {
+MCSI_LOOP void mcsi_disk_light_loop(mcsi_scalar_vec3 centre, mcsi_scalar_vec3 normal, float radius,
+                                    const mcsi_batch *call) {
     const mcsi_disk_light d = mcsi_disk_light_make(mcsi_spread(centre), mcsi_spread_direction(normal), mcs_set(radius));
-    mcsi_batch b;
-    mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);
-    b.out[4] = distance;
-    MCSI_EACH(b) { mcsi_out_light(&b, mcsi_disk_light_draw(&d, mcsi_in(&b, 0), mcsi_in(&b, 1))); }
+    MCSI_EACH(b, call) { mcsi_out_light(&b, mcsi_disk_light_draw(&d, mcsi_in(&b, 0), mcsi_in(&b, 1))); }
 }
 /* The prepared light is spread to lanes once for the call. */
-#define MCSI_LOOP_OF_LIGHT(NAME)                                                                                  \
-    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##NAME *l, size_t n, const float *u1, const float *u2,    \
-                                      float *x, float *y, float *z, float *pdf, float *light_x, float *light_y) { \
-        mcs_##NAME lanes;                                                                                         \
-        for (int k = 0; k < MCSI_W; k++) mcsi_put_lane(&lanes, l, sizeof *l, k);                                  \
-        mcsi_batch b;                                                                                             \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                              \
-        b.out[4] = light_x;                                                                                       \
-        b.out[5] = light_y;                                                                                       \
-        MCSI_EACH(b) { mcsi_out_light_point(&b, mcs_##NAME##_sample(&lanes, mcsi_in(&b, 0), mcsi_in(&b, 1))); }   \
+#define MCSI_LOOP_OF_LIGHT(NAME)                                                                                      \
+    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##NAME *l, const mcsi_batch *call) {                          \
+        mcs_##NAME lanes;                                                                                             \
+        for (int k = 0; k < MCSI_W; k++) mcsi_put_lane(&lanes, l, sizeof *l, k);                                      \
+        MCSI_EACH(b, call) { mcsi_out_light_point(&b, mcs_##NAME##_sample(&lanes, mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
     }
 MCSI_CORE void mcsi_out_light_point(const mcsi_batch *b, mcs_light_point s) {
     mcsi_out_towards(b, s.w, s.pdf);
@@ -5382,29 +5358,19 @@ MCSI_FN mcs_vec2 mcs_cone_invert(mcs_f k, mcs_vec3 w) {
 
 #ifdef MCSI_BATCHES
 /* The loops of disks and of directions without a parameter and with one. */
-#define MCSI_LOOP_DISK(NAME)                                                                                         \
-    MCSI_LOOP void mcsi_##NAME##_loop(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,  \
-                                      float *pdf) {                                                                  \
-        mcsi_batch b;                                                                                                \
-        mcsi_batch_start(&b, n, u1, u2, NULL);                                                                       \
-        b.out[0] = x;                                                                                                \
-        b.out[1] = y;                                                                                                \
-        b.out[2] = pdf;                                                                                              \
-        MCSI_EACH(b) { mcsi_out_sample2(&b, mcs_##NAME##_sample(mcs_set(radius), mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
+#define MCSI_LOOP_DISK(NAME)                                                                            \
+    MCSI_LOOP void mcsi_##NAME##_loop(float radius, const mcsi_batch *call) {                           \
+        MCSI_EACH(b, call) {                                                                            \
+            mcsi_out_sample2(&b, mcs_##NAME##_sample(mcs_set(radius), mcsi_in(&b, 0), mcsi_in(&b, 1))); \
+        }                                                                                               \
     }
-#define MCSI_LOOP_SPHERE(NAME)                                                                                  \
-    MCSI_LOOP void mcsi_##NAME##_loop(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, \
-                                      float *pdf) {                                                             \
-        mcsi_batch b;                                                                                           \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                            \
-        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcsi_in(&b, 0), mcsi_in(&b, 1))); }                 \
+#define MCSI_LOOP_SPHERE(NAME)                                                                        \
+    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_batch *call) {                                       \
+        MCSI_EACH(b, call) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
     }
-#define MCSI_LOOP_ABOUT_Z(NAME)                                                                                \
-    MCSI_LOOP void mcsi_##NAME##_loop(float a, size_t n, const float *u1, const float *u2, float *x, float *y, \
-                                      float *z, float *pdf) {                                                  \
-        mcsi_batch b;                                                                                          \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                           \
-        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcs_set(a), mcsi_in(&b, 0), mcsi_in(&b, 1))); }    \
+#define MCSI_LOOP_ABOUT_Z(NAME)                                                                                   \
+    MCSI_LOOP void mcsi_##NAME##_loop(float a, const mcsi_batch *call) {                                          \
+        MCSI_EACH(b, call) { mcsi_out_dir(&b, mcs_##NAME##_sample(mcs_set(a), mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
     }
 MCSI_LOOP_DISK(disk)
 MCSI_LOOP_DISK(concentric)
@@ -5786,71 +5752,52 @@ MCSI_CORE mcs_i mcsi_cancelled(mcs_f wo_z, mcs_f d, mcs_f p2) { return (2.0f * d
  *   MCSI_LOOP_LOBE       draws from a lobe about +z: half-vectors, which need no wo, and Phong's lobe
  *   MCSI_LOOP_VISIBLE    draws half-vectors that depend on wo
  *
- * The next two get a batch that has begun, with the arrays of mcs_hits. mcsi_x_of_hits makes the materials.
+ * The next two get a batch with the arrays of mcs_hits. mcsi_x_of_hits makes the materials.
  *
  *   MCSI_LOOP_SAMPLE_HITS    draws wi, each for its hit
  *   MCSI_LOOP_PDF_HITS       density and BRDF of given wi, each for its hit; BASE is what the eval belongs to */
-#if MCSI_W == 1
-#define MCSI_SPREAD(MATERIAL, m) (*(m))
-#else
-#define MCSI_SPREAD(MATERIAL, m) mcsi_##MATERIAL##_spread(m)
-#endif
-#define MCSI_LOOP_SAMPLE(NAME, MATERIAL)                                                                         \
-    MCSI_LOOP void mcsi_##NAME##_sample_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n,     \
-                                             const float *u1, const float *u2, float *x, float *y, float *z,     \
-                                             float *pdf, float *weight) {                                        \
-        const mcs_##MATERIAL material = MCSI_SPREAD(MATERIAL, m);                                                \
-        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                          \
-        mcsi_batch b;                                                                                            \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                             \
-        b.out[4] = weight;                                                                                       \
-        MCSI_EACH(b) { mcsi_out_brdf(&b, mcs_##NAME##_sample(&material, eye, mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
+#define MCSI_LOOP_SAMPLE(NAME, MATERIAL)                                                                               \
+    MCSI_LOOP void mcsi_##NAME##_sample_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo,                     \
+                                             const mcsi_batch *call) {                                                 \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                   \
+        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                                \
+        MCSI_EACH(b, call) { mcsi_out_brdf(&b, mcs_##NAME##_sample(&material, eye, mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
     }
 #define MCSI_LOOP_VALUE(FORM, MATERIAL)                                                                               \
-    MCSI_LOOP void mcsi_##FORM##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *x, \
-                                      const float *y, const float *z, float *value) {                                 \
-        const mcs_##MATERIAL material = MCSI_SPREAD(MATERIAL, m);                                                     \
+    MCSI_LOOP void mcsi_##FORM##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, const mcsi_batch *call) { \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                  \
         const mcs_vec3 eye = mcsi_spread_direction(wo);                                                               \
-        mcsi_batch b;                                                                                                 \
-        mcsi_batch_start(&b, n, x, y, z);                                                                             \
-        b.out[0] = value;                                                                                             \
-        MCSI_EACH(b) { mcsi_out(&b, 0, mcs_##FORM(&material, eye, mcsi_in3(&b, 0))); }                                \
+        MCSI_EACH(b, call) { mcsi_out(&b, 0, mcs_##FORM(&material, eye, mcsi_in3(&b, 0))); }                          \
     }
-#define MCSI_LOOP_LOBE(NAME, MATERIAL)                                                                             \
-    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, size_t n, const float *u1, const float *u2, \
-                                      float *x, float *y, float *z, float *pdf) {                                  \
-        const mcs_##MATERIAL material = MCSI_SPREAD(MATERIAL, m);                                                  \
-        mcsi_batch b;                                                                                              \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                               \
-        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(&material, mcsi_in(&b, 0), mcsi_in(&b, 1))); }         \
+#define MCSI_LOOP_LOBE(NAME, MATERIAL)                                                                           \
+    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, const mcsi_batch *call) {                 \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                             \
+        MCSI_EACH(b, call) { mcsi_out_dir(&b, mcs_##NAME##_sample(&material, mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
     }
-#define MCSI_LOOP_VISIBLE(NAME, MATERIAL)                                                                              \
-    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, size_t n, const float *u1, \
-                                      const float *u2, float *x, float *y, float *z, float *pdf) {                     \
-        const mcs_##MATERIAL material = MCSI_SPREAD(MATERIAL, m);                                                      \
-        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                                \
-        mcsi_batch b;                                                                                                  \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                   \
-        MCSI_EACH(b) { mcsi_out_dir(&b, mcs_##NAME##_sample(&material, eye, mcsi_in(&b, 0), mcsi_in(&b, 1))); }        \
+#define MCSI_LOOP_VISIBLE(NAME, MATERIAL)                                                                             \
+    MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##MATERIAL *m, mcsi_scalar_vec3 wo, const mcsi_batch *call) { \
+        const mcs_##MATERIAL material = mcsi_##MATERIAL##_spread(m);                                                  \
+        const mcs_vec3 eye = mcsi_spread_direction(wo);                                                               \
+        MCSI_EACH(b, call) { mcsi_out_dir(&b, mcs_##NAME##_sample(&material, eye, mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
     }
-#define MCSI_LOOP_SAMPLE_HITS(NAME, MATERIAL)                                                       \
-    MCSI_LOOP void mcsi_##NAME##_sample_hits_loop(const mcsi_scalar_##MATERIAL *m, mcsi_batch *b) { \
-        MCSI_EACH(*b) {                                                                             \
-            const mcs_##MATERIAL material = mcsi_##MATERIAL##_of_hits(m, b);                        \
-            const mcs_vec3 wo = mcsi_in3(b, MCSI_IN_WO);                                            \
-            mcsi_out_brdf(b, mcs_##NAME##_sample(&material, wo, mcsi_in(b, 0), mcsi_in(b, 1)));     \
-        }                                                                                           \
+#define MCSI_LOOP_SAMPLE_HITS(NAME, MATERIAL)                                                                \
+    MCSI_LOOP void mcsi_##NAME##_sample_hits_loop(const mcsi_scalar_##MATERIAL *m, const mcsi_batch *call) { \
+        MCSI_EACH(b, call) {                                                                                 \
+            const mcs_##MATERIAL material = mcsi_##MATERIAL##_of_hits(m, &b);                                \
+            const mcs_vec3 wo = mcsi_in3(&b, MCSI_IN_WO);                                                    \
+            mcsi_out_brdf(&b, mcs_##NAME##_sample(&material, wo, mcsi_in(&b, 0), mcsi_in(&b, 1)));           \
+        }                                                                                                    \
     }
-#define MCSI_LOOP_PDF_HITS(NAME, BASE, MATERIAL)                                                 \
-    MCSI_LOOP void mcsi_##NAME##_pdf_hits_loop(const mcsi_scalar_##MATERIAL *m, mcsi_batch *b) { \
-        MCSI_EACH(*b) {                                                                          \
-            const mcs_##MATERIAL material = mcsi_##MATERIAL##_of_hits(m, b);                     \
-            const mcs_vec3 wo = mcsi_in3(b, MCSI_IN_WO);                                         \
-            const mcs_vec3 wi = mcsi_in3(b, 0);                                                  \
-            const mcs_f pdf = mcs_##NAME##_pdf(&material, wo, wi);                               \
-            if (b->out[1]) mcsi_out(b, 1, mcs_##BASE##_eval(&material, wo, wi));                 \
-            mcsi_out(b, 0, pdf);                                                                 \
-        }                                                                                        \
+#define MCSI_LOOP_PDF_HITS(NAME, BASE, MATERIAL)                                                          \
+    MCSI_LOOP void mcsi_##NAME##_pdf_hits_loop(const mcsi_scalar_##MATERIAL *m, const mcsi_batch *call) { \
+        MCSI_EACH(b, call) {                                                                              \
+            const mcs_##MATERIAL material = mcsi_##MATERIAL##_of_hits(m, &b);                             \
+            const mcs_vec3 wo = mcsi_in3(&b, MCSI_IN_WO);                                                 \
+            const mcs_vec3 wi = mcsi_in3(&b, 0);                                                          \
+            const mcs_f pdf = mcs_##NAME##_pdf(&material, wo, wi);                                        \
+            if (b.out[1]) mcsi_out(&b, 1, mcs_##BASE##_eval(&material, wo, wi));                          \
+            mcsi_out(&b, 0, pdf);                                                                         \
+        }                                                                                                 \
     }
 #endif
 
@@ -6083,7 +6030,7 @@ MCSI_FN mcs_f mcs_phong_weight(const mcs_phong *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_sane_result(ok & in_lobe, m->weight_norm * wi.z);
 }
 #endif
-#if defined(MCSI_LOOPS) && MCSI_W > 1
+#ifdef MCSI_BATCHES
 MCSI_CORE mcs_phong mcsi_phong_spread(const mcsi_scalar_phong *m) {
     mcs_phong all;
     all.n = mcs_set(m->n);
@@ -6093,10 +6040,8 @@ MCSI_CORE mcs_phong mcsi_phong_spread(const mcsi_scalar_phong *m) {
     all.weight_norm = mcs_set(m->weight_norm);
     return all;
 }
-#endif
-#ifdef MCSI_BATCHES
 MCSI_CORE mcs_phong mcsi_phong_of_hits(const mcsi_scalar_phong *m, const mcsi_batch *b) {
-    return b->in[MCSI_IN_X] ? mcs_phong_make(mcsi_in(b, MCSI_IN_X)) : MCSI_SPREAD(phong, m);
+    return b->in[MCSI_IN_X] ? mcs_phong_make(mcsi_in(b, MCSI_IN_X)) : mcsi_phong_spread(m);
 }
 MCSI_LOOP_LOBE(phong_lobe, phong)
 MCSI_LOOP_SAMPLE(phong, phong)
@@ -6135,7 +6080,7 @@ MCSI_CORE mcsi_slopes mcsi_slopes_make(mcs_f alpha_x, mcs_f alpha_y) {
     m.norm = mcsi_sel(ok, MCSI_1_PI * m.inv_alpha_x * m.inv_alpha_y, mcs_set(0.0f));
     return m;
 }
-#if defined(MCSI_LOOPS) && MCSI_W > 1
+#ifdef MCSI_BATCHES
 MCSI_CORE mcsi_slopes mcsi_slopes_spread(const mcsi_scalar_slopes *m) {
     mcsi_slopes all;
     all.alpha_x = mcs_set(m->alpha_x);
@@ -6361,18 +6306,16 @@ MCSI_FN mcs_f mcs_ward_weight(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
     return mcsi_sane_result(ok, mcsi_ward_weight(m->model, wo, wi));
 }
 #endif
-#if defined(MCSI_LOOPS) && MCSI_W > 1
+#ifdef MCSI_BATCHES
 MCSI_CORE mcs_ward mcsi_ward_spread(const mcsi_scalar_ward *m) {
     mcs_ward all;
     all.s = mcsi_slopes_spread(&m->s);
     all.model = m->model;
     return all;
 }
-#endif
-#ifdef MCSI_BATCHES
 MCSI_CORE mcs_ward mcsi_ward_of_hits(const mcsi_scalar_ward *m, const mcsi_batch *b) {
     return b->in[MCSI_IN_X] ? mcs_ward_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y), m->model)
-                            : MCSI_SPREAD(ward, m);
+                            : mcsi_ward_spread(m);
 }
 MCSI_LOOP_LOBE(ward_h, ward)
 MCSI_LOOP_SAMPLE(ward, ward)
@@ -6460,17 +6403,14 @@ MCSI_FN mcs_f mcs_beckmann_weight(const mcs_beckmann *m, mcs_vec3 wo, mcs_vec3 w
     return mcsi_sane_result(ok, wi.z * (mcsi_dot(h, h) / h.z) / divisor);
 }
 #endif
-#if defined(MCSI_LOOPS) && MCSI_W > 1
+#ifdef MCSI_BATCHES
 MCSI_CORE mcs_beckmann mcsi_beckmann_spread(const mcsi_scalar_beckmann *m) {
     mcs_beckmann all;
     all.s = mcsi_slopes_spread(&m->s);
     return all;
 }
-#endif
-#ifdef MCSI_BATCHES
 MCSI_CORE mcs_beckmann mcsi_beckmann_of_hits(const mcsi_scalar_beckmann *m, const mcsi_batch *b) {
-    return b->in[MCSI_IN_X] ? mcs_beckmann_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y))
-                            : MCSI_SPREAD(beckmann, m);
+    return b->in[MCSI_IN_X] ? mcs_beckmann_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y)) : mcsi_beckmann_spread(m);
 }
 MCSI_LOOP_LOBE(beckmann_h, beckmann)
 MCSI_LOOP_SAMPLE(beckmann, beckmann)
@@ -6965,17 +6905,15 @@ MCSI_FN mcs_vec2 mcs_ggx_vndf_h_invert(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 h
     return mcsi_ggx_cap_h_invert(m, wo, h, MCSI_GGX_VISIBLE);
 }
 #endif
-#if defined(MCSI_LOOPS) && MCSI_W > 1
+#ifdef MCSI_BATCHES
 MCSI_CORE mcs_ggx mcsi_ggx_spread(const mcsi_scalar_ggx *m) {
     mcs_ggx all;
     all.s = mcsi_slopes_spread(&m->s);
     all.detour_below = mcs_set(m->detour_below);
     return all;
 }
-#endif
-#ifdef MCSI_BATCHES
 MCSI_CORE mcs_ggx mcsi_ggx_of_hits(const mcsi_scalar_ggx *m, const mcsi_batch *b) {
-    return b->in[MCSI_IN_X] ? mcs_ggx_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y)) : MCSI_SPREAD(ggx, m);
+    return b->in[MCSI_IN_X] ? mcs_ggx_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y)) : mcsi_ggx_spread(m);
 }
 MCSI_LOOP_LOBE(ggx_h, ggx)
 MCSI_LOOP_SAMPLE(ggx, ggx)
@@ -6995,30 +6933,30 @@ MCSI_LOOP_PDF_HITS(ggx_bounded, ggx, ggx)
 /* The samples of hits. The first step is done for some vectors before the second one is for the first of them: in
  * either step divisions and roots wait for one another, and processors overlap two vectors only where such a chain is
  * short. AVX-512 gains 8 %, AVX2 15 %, SSE2 18 %. */
-MCSI_CORE void mcsi_ggx_cap_sample_hits(const mcsi_scalar_ggx *m, mcsi_batch *b, int bounded) {
+MCSI_CORE void mcsi_ggx_cap_sample_hits(const mcsi_scalar_ggx *m, const mcsi_batch *call, int bounded) {
     enum { AHEAD = 4 };
     mcs_ggx material[AHEAD];
     mcsi_ggx_view view[AHEAD];
-    MCSI_EACH(*b) {
+    for (mcsi_batch b = *call; b.i < b.n;) {
+        const size_t first = b.i;
         int count = 0;
-        for (; count < AHEAD && b->i + b->count <= b->n; b->i += b->count) {
-            material[count] = mcsi_ggx_of_hits(m, b);
-            view[count] = mcsi_ggx_view_make(&material[count], mcsi_in3(b, MCSI_IN_WO), bounded);
+        for (; count < AHEAD && b.i < b.n; b.i += MCSI_W) {
+            material[count] = mcsi_ggx_of_hits(m, &b);
+            view[count] = mcsi_ggx_view_make(&material[count], mcsi_in3(&b, MCSI_IN_WO), bounded);
             count++;
         }
-        b->i -= (size_t)count * b->count;
+        b.i = first;
         for (int k = 0; k < count; k++) {
-            mcsi_out_brdf(b, mcsi_ggx_view_sample(&material[k], &view[k], mcsi_in(b, 0), mcsi_in(b, 1), bounded));
-            b->i += b->count;
+            mcsi_out_brdf(&b, mcsi_ggx_view_sample(&material[k], &view[k], mcsi_in(&b, 0), mcsi_in(&b, 1), bounded));
+            b.i += MCSI_W;
         }
-        b->i -= b->count; /* MCSI_EACH adds it */
     }
 }
-MCSI_LOOP void mcsi_ggx_vndf_sample_hits_loop(const mcsi_scalar_ggx *m, mcsi_batch *b) {
-    mcsi_ggx_cap_sample_hits(m, b, MCSI_GGX_VISIBLE);
+MCSI_LOOP void mcsi_ggx_vndf_sample_hits_loop(const mcsi_scalar_ggx *m, const mcsi_batch *call) {
+    mcsi_ggx_cap_sample_hits(m, call, MCSI_GGX_VISIBLE);
 }
-MCSI_LOOP void mcsi_ggx_bounded_sample_hits_loop(const mcsi_scalar_ggx *m, mcsi_batch *b) {
-    mcsi_ggx_cap_sample_hits(m, b, MCSI_GGX_BOUNDED);
+MCSI_LOOP void mcsi_ggx_bounded_sample_hits_loop(const mcsi_scalar_ggx *m, const mcsi_batch *call) {
+    mcsi_ggx_cap_sample_hits(m, call, MCSI_GGX_BOUNDED);
 }
 #endif
 
@@ -7298,7 +7236,7 @@ MCSI_FN mcs_f mcs_ashikhmin_weight(const mcs_ashikhmin *m, mcs_vec3 wo, mcs_vec3
     return mcsi_sane_result(ok, wi.z / mcsi_max(wo.z, wi.z));
 }
 #endif
-#if defined(MCSI_LOOPS) && MCSI_W > 1
+#ifdef MCSI_BATCHES
 MCSI_CORE mcs_ashikhmin mcsi_ashikhmin_spread(const mcsi_scalar_ashikhmin *m) {
     mcs_ashikhmin all;
     all.nu = mcs_set(m->nu);
@@ -7309,11 +7247,9 @@ MCSI_CORE mcs_ashikhmin mcsi_ashikhmin_spread(const mcsi_scalar_ashikhmin *m) {
     all.norm = mcs_set(m->norm);
     return all;
 }
-#endif
-#ifdef MCSI_BATCHES
 MCSI_CORE mcs_ashikhmin mcsi_ashikhmin_of_hits(const mcsi_scalar_ashikhmin *m, const mcsi_batch *b) {
     return b->in[MCSI_IN_X] ? mcs_ashikhmin_make(mcsi_in(b, MCSI_IN_X), mcsi_in(b, MCSI_IN_Y))
-                            : MCSI_SPREAD(ashikhmin, m);
+                            : mcsi_ashikhmin_spread(m);
 }
 MCSI_LOOP_LOBE(ashikhmin_h, ashikhmin)
 MCSI_LOOP_SAMPLE(ashikhmin, ashikhmin)
@@ -8176,16 +8112,10 @@ MCSI_LOOP void mcsi_env_directions_loop(const mcsi_scalar_frame *f, size_t n, mc
         mcs_store(b->z + i, v.z);
     }
 }
-MCSI_LOOP void mcsi_env_angles_loop(const mcsi_scalar_frame *f, size_t n, const float *x, const float *y,
-                                    const float *z, mcsi_angles_block *angles) {
+MCSI_LOOP void mcsi_env_angles_loop(const mcsi_scalar_frame *f, const mcsi_batch *call) {
     const mcs_frame frame = mcsi_spread_frame(f);
-    mcsi_batch b;
-    mcsi_batch_start(&b, n, x, y, z);
-    b.out[0] = angles->off_pole;
-    b.out[1] = angles->polar;
-    b.out[2] = angles->azimuth;
-    MCSI_EACH(b) {
-        const mcsi_angles a = mcsi_env_angles(&frame, mcsi_vec3(mcsi_in(&b, 0), mcsi_in(&b, 1), mcsi_in(&b, 2)));
+    MCSI_EACH(b, call) {
+        const mcsi_angles a = mcsi_env_angles(&frame, mcsi_in3(&b, 0));
         mcsi_out(&b, 0, a.off_pole);
         mcsi_out(&b, 1, a.polar);
         mcsi_out(&b, 2, a.azimuth);
@@ -10966,7 +10896,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_LOOP_VISIBLE
 #undef MCSI_LOOP_SAMPLE_HITS
 #undef MCSI_LOOP_PDF_HITS
-#undef MCSI_SPREAD
 #undef MCSI_W
 #undef MCSI_LOOPS
 #undef MCSI_BATCHES
@@ -12164,7 +12093,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define MCSI_TRY_AVX2(n, loop, args)
 #endif
 #define MCSI_WIDE(n, loop, args) MCSI_TRY_AVX512(n, loop, args) MCSI_TRY_AVX2(n, loop, args) MCSI_BASE(loop) args
-/* So few points are taken one by one, which costs less than a vector. */
+/* So few points are taken one by one, which costs less than the narrowest vector. */
 #define MCSI_FEW (MCSI_BASE_W < 16 ? 1 : 2)
 #define MCSI_BATCH_LOOP(loop, args)      \
     if (n <= MCSI_FEW) mcsi_##loop args; \
@@ -12176,7 +12105,12 @@ MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *
 }
 MCS_FN void mcsi_env_angles_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z,
                               mcsi_angles_block *angles) {
-    MCSI_WIDE(n, env_angles_loop, (f, n, x, y, z, angles));
+    mcsi_batch call;
+    mcsi_batch_start(&call, n, x, y, z);
+    call.out[0] = angles->off_pole;
+    call.out[1] = angles->polar;
+    call.out[2] = angles->azimuth;
+    MCSI_WIDE(n, env_angles_loop, (f, &call));
 }
 #ifdef MCSI_PRODUCTS
 MCS_FN void mcsi_tile_values_n(const mcsi_surface *s, size_t n, const float *tile, float *value) {
@@ -12211,232 +12145,200 @@ MCS_API void mcs_philox_fill_n(uint64_t key, uint64_t counter, size_t n, float *
     else MCSI_WIDE(n / 4, philox_fill_loop, (key, counter, n, out));
 }
 MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, float *out) {
-    MCSI_BATCH_LOOP(sobol_loop, (first, dim, seed, n, out));
+    mcsi_batch call;
+    mcsi_batch_start(&call, n, NULL, NULL, NULL);
+    call.out[0] = out;
+    MCSI_BATCH_LOOP(sobol_loop, (first, dim, seed, &call));
 }
+/* MCSI_ARRAY_X makes the array functions of the loops that MCSI_LOOP_X makes. */
 #ifndef MCS_NO_1D
-MCS_API void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_BATCH_LOOP(linear_loop, (a, b, n, u, x, pdf));
-}
-MCS_API void mcs_tent_sample_n(float r, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_BATCH_LOOP(tent_loop, (r, n, u, x, pdf));
-}
-MCS_API void mcs_exponential_sample_n(float rate, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_BATCH_LOOP(exponential_loop, (rate, n, u, x, pdf));
-}
-MCS_API void mcs_truncexp_sample_n(float rate, float m, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_BATCH_LOOP(truncexp_loop, (rate, m, n, u, x, pdf));
-}
-MCS_API void mcs_normal_sample_n(float mean, float sd, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_BATCH_LOOP(normal_loop, (mean, sd, n, u, x, pdf));
-}
-MCS_API void mcs_logistic_sample_n(float mean, float scale, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_BATCH_LOOP(logistic_loop, (mean, scale, n, u, x, pdf));
-}
-MCS_API void mcs_power_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_BATCH_LOOP(power_loop, (e, n, u, x, pdf));
-}
-MCS_API void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_BATCH_LOOP(evenpower_loop, (e, n, u, x, pdf));
-}
-MCS_API void mcs_smoothstep_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf) {
-    MCSI_BATCH_LOOP(smoothstep_loop, (a, b, n, u, x, pdf));
-}
+#define MCSI_ARRAY_LINE(NAME)                                                                     \
+    MCS_API void mcs_##NAME##_sample_n(float a, size_t n, const float *u, float *x, float *pdf) { \
+        mcsi_batch call;                                                                          \
+        mcsi_batch_sample1(&call, n, u, x, pdf);                                                  \
+        MCSI_BATCH_LOOP(NAME##_loop, (a, &call));                                                 \
+    }
+#define MCSI_ARRAY_LINE_2(NAME)                                                                              \
+    MCS_API void mcs_##NAME##_sample_n(float a1, float a2, size_t n, const float *u, float *x, float *pdf) { \
+        mcsi_batch call;                                                                                     \
+        mcsi_batch_sample1(&call, n, u, x, pdf);                                                             \
+        MCSI_BATCH_LOOP(NAME##_loop, (a1, a2, &call));                                                       \
+    }
+MCSI_ARRAY_LINE_2(linear)
+MCSI_ARRAY_LINE(tent)
+MCSI_ARRAY_LINE(exponential)
+MCSI_ARRAY_LINE_2(truncexp)
+MCSI_ARRAY_LINE_2(normal)
+MCSI_ARRAY_LINE_2(logistic)
+MCSI_ARRAY_LINE(power)
+MCSI_ARRAY_LINE(evenpower)
+MCSI_ARRAY_LINE_2(smoothstep)
+#undef MCSI_ARRAY_LINE
+#undef MCSI_ARRAY_LINE_2
 MCS_API void mcs_bilinear_sample_n(float w00, float w10, float w01, float w11, size_t n, const float *u1,
                                    const float *u2, float *x, float *y, float *pdf) {
-    MCSI_BATCH_LOOP(bilinear_loop, (w00, w10, w01, w11, n, u1, u2, x, y, pdf));
+    mcsi_batch call;
+    mcsi_batch_sample2(&call, n, u1, u2, x, y, pdf);
+    MCSI_BATCH_LOOP(bilinear_loop, (w00, w10, w01, w11, &call));
 }
 #endif
-MCS_API void mcs_disk_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,
-                               float *pdf) {
-    MCSI_BATCH_LOOP(disk_loop, (radius, n, u1, u2, x, y, pdf));
-}
-MCS_API void mcs_concentric_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                     float *pdf) {
-    MCSI_BATCH_LOOP(concentric_loop, (radius, n, u1, u2, x, y, pdf));
-}
+#define MCSI_ARRAY_DISK(NAME)                                                                                        \
+    MCS_API void mcs_##NAME##_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y, \
+                                       float *pdf) {                                                                 \
+        mcsi_batch call;                                                                                             \
+        mcsi_batch_sample2(&call, n, u1, u2, x, y, pdf);                                                             \
+        MCSI_BATCH_LOOP(NAME##_loop, (radius, &call));                                                               \
+    }
+#define MCSI_ARRAY_SPHERE(NAME)                                                                                  \
+    MCS_API void mcs_##NAME##_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, \
+                                       float *pdf) {                                                             \
+        mcsi_batch call;                                                                                         \
+        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                          \
+        MCSI_BATCH_LOOP(NAME##_loop, (&call));                                                                   \
+    }
+#define MCSI_ARRAY_ABOUT_Z(NAME)                                                                                \
+    MCS_API void mcs_##NAME##_sample_n(float a, size_t n, const float *u1, const float *u2, float *x, float *y, \
+                                       float *z, float *pdf) {                                                  \
+        mcsi_batch call;                                                                                        \
+        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                         \
+        MCSI_BATCH_LOOP(NAME##_loop, (a, &call));                                                               \
+    }
+MCSI_ARRAY_DISK(disk)
+MCSI_ARRAY_DISK(concentric)
 MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, float *b0, float *b1, float *pdf) {
-    MCSI_BATCH_LOOP(triangle_loop, (n, u1, u2, b0, b1, pdf));
+    mcsi_batch call;
+    mcsi_batch_sample2(&call, n, u1, u2, b0, b1, pdf);
+    MCSI_BATCH_LOOP(triangle_loop, (&call));
 }
+MCSI_ARRAY_SPHERE(sphere)
+MCSI_ARRAY_SPHERE(hemisphere)
+MCSI_ARRAY_SPHERE(cosine)
+MCSI_ARRAY_ABOUT_Z(cone)
+#ifndef MCS_NO_MEDIA
+MCSI_ARRAY_ABOUT_Z(henyey_greenstein)
+MCSI_ARRAY_SPHERE(rayleigh)
+MCSI_ARRAY_ABOUT_Z(von_mises_fisher)
+#endif
+#undef MCSI_ARRAY_DISK
+#undef MCSI_ARRAY_SPHERE
+#undef MCSI_ARRAY_ABOUT_Z
 #ifndef MCS_NO_LIGHTS
 MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2, float *x,
                                float *y, float *z, float *pdf, float *distance) {
-    MCSI_BATCH_LOOP(ball_loop, (centre, radius, n, u1, u2, x, y, z, pdf, distance));
+    mcsi_batch call;
+    mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);
+    call.out[4] = distance;
+    MCSI_BATCH_LOOP(ball_loop, (centre, radius, &call));
 }
 MCS_API void mcs_disk_light_sample_n(mcs_vec3 centre, mcs_vec3 normal, float radius, size_t n, const float *u1,
                                      const float *u2, float *x, float *y, float *z, float *pdf, float *distance) {
-    MCSI_BATCH_LOOP(disk_light_loop, (centre, normal, radius, n, u1, u2, x, y, z, pdf, distance));
+    mcsi_batch call;
+    mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);
+    call.out[4] = distance;
+    MCSI_BATCH_LOOP(disk_light_loop, (centre, normal, radius, &call));
 }
-MCS_API void mcs_spherical_rectangle_sample_n(const mcs_spherical_rectangle *l, size_t n, const float *u1,
-                                              const float *u2, float *x, float *y, float *z, float *pdf, float *light_x,
-                                              float *light_y) {
-    MCSI_BATCH_LOOP(spherical_rectangle_loop, (l, n, u1, u2, x, y, z, pdf, light_x, light_y));
-}
-MCS_API void mcs_spherical_triangle_sample_n(const mcs_spherical_triangle *l, size_t n, const float *u1,
-                                             const float *u2, float *x, float *y, float *z, float *pdf, float *weight_a,
-                                             float *weight_b) {
-    MCSI_BATCH_LOOP(spherical_triangle_loop, (l, n, u1, u2, x, y, z, pdf, weight_a, weight_b));
-}
-#endif
-MCS_API void mcs_sphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
-    MCSI_BATCH_LOOP(sphere_loop, (n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                     float *pdf) {
-    MCSI_BATCH_LOOP(hemisphere_loop, (n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, float *pdf) {
-    MCSI_BATCH_LOOP(cosine_loop, (n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_cone_sample_n(float k, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                               float *pdf) {
-    MCSI_BATCH_LOOP(cone_loop, (k, n, u1, u2, x, y, z, pdf));
-}
-#ifndef MCS_NO_MEDIA
-MCS_API void mcs_henyey_greenstein_sample_n(float g, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                            float *z, float *pdf) {
-    MCSI_BATCH_LOOP(henyey_greenstein_loop, (g, n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_rayleigh_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                                   float *pdf) {
-    MCSI_BATCH_LOOP(rayleigh_loop, (n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_von_mises_fisher_sample_n(float kappa, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                           float *z, float *pdf) {
-    MCSI_BATCH_LOOP(von_mises_fisher_loop, (kappa, n, u1, u2, x, y, z, pdf));
-}
+#define MCSI_ARRAY_OF_LIGHT(NAME)                                                                                 \
+    MCS_API void mcs_##NAME##_sample_n(const mcs_##NAME *l, size_t n, const float *u1, const float *u2, float *x, \
+                                       float *y, float *z, float *pdf, float *light_x, float *light_y) {          \
+        mcsi_batch call;                                                                                          \
+        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                           \
+        call.out[4] = light_x;                                                                                    \
+        call.out[5] = light_y;                                                                                    \
+        MCSI_BATCH_LOOP(NAME##_loop, (l, &call));                                                                 \
+    }
+MCSI_ARRAY_OF_LIGHT(spherical_rectangle)
+MCSI_ARRAY_OF_LIGHT(spherical_triangle)
+#undef MCSI_ARRAY_OF_LIGHT
 #endif
 #ifndef MCS_NO_LOBES
-MCS_API void mcs_phong_lobe_sample_n(const mcs_phong *m, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                     float *z, float *pdf) {
-    MCSI_BATCH_LOOP(phong_lobe_loop, (m, n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_phong_sample_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                                float *y, float *z, float *pdf, float *weight) {
-    MCSI_BATCH_LOOP(phong_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
-}
-MCS_API void mcs_phong_pdf_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                             float *pdf) {
-    MCSI_BATCH_LOOP(phong_pdf_loop, (m, wo, n, x, y, z, pdf));
-}
-MCS_API void mcs_phong_eval_n(const mcs_phong *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                              float *value) {
-    MCSI_BATCH_LOOP(phong_eval_loop, (m, wo, n, x, y, z, value));
-}
-MCS_API void mcs_ward_h_sample_n(const mcs_ward *m, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                 float *z, float *pdf) {
-    MCSI_BATCH_LOOP(ward_h_loop, (m, n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_ward_sample_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                               float *y, float *z, float *pdf, float *weight) {
-    MCSI_BATCH_LOOP(ward_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
-}
-MCS_API void mcs_ward_pdf_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                            float *pdf) {
-    MCSI_BATCH_LOOP(ward_pdf_loop, (m, wo, n, x, y, z, pdf));
-}
-MCS_API void mcs_ward_eval_n(const mcs_ward *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                             float *value) {
-    MCSI_BATCH_LOOP(ward_eval_loop, (m, wo, n, x, y, z, value));
-}
-MCS_API void mcs_beckmann_h_sample_n(const mcs_beckmann *m, size_t n, const float *u1, const float *u2, float *x,
-                                     float *y, float *z, float *pdf) {
-    MCSI_BATCH_LOOP(beckmann_h_loop, (m, n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_beckmann_sample_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                   float *x, float *y, float *z, float *pdf, float *weight) {
-    MCSI_BATCH_LOOP(beckmann_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
-}
-MCS_API void mcs_beckmann_pdf_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                const float *z, float *pdf) {
-    MCSI_BATCH_LOOP(beckmann_pdf_loop, (m, wo, n, x, y, z, pdf));
-}
-MCS_API void mcs_beckmann_eval_n(const mcs_beckmann *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                 const float *z, float *value) {
-    MCSI_BATCH_LOOP(beckmann_eval_loop, (m, wo, n, x, y, z, value));
-}
-MCS_API void mcs_ggx_h_sample_n(const mcs_ggx *m, size_t n, const float *u1, const float *u2, float *x, float *y,
-                                float *z, float *pdf) {
-    MCSI_BATCH_LOOP(ggx_h_loop, (m, n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_ggx_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                              float *y, float *z, float *pdf, float *weight) {
-    MCSI_BATCH_LOOP(ggx_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
-}
-MCS_API void mcs_ggx_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                           float *pdf) {
-    MCSI_BATCH_LOOP(ggx_pdf_loop, (m, wo, n, x, y, z, pdf));
-}
-MCS_API void mcs_ggx_eval_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                            float *value) {
-    MCSI_BATCH_LOOP(ggx_eval_loop, (m, wo, n, x, y, z, value));
-}
-MCS_API void mcs_ggx_vndf_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                     float *x, float *y, float *z, float *pdf) {
-    MCSI_BATCH_LOOP(ggx_vndf_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_ggx_vndf_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2, float *x,
-                                   float *y, float *z, float *pdf, float *weight) {
-    MCSI_BATCH_LOOP(ggx_vndf_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
-}
-MCS_API void mcs_ggx_vndf_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y, const float *z,
-                                float *pdf) {
-    MCSI_BATCH_LOOP(ggx_vndf_pdf_loop, (m, wo, n, x, y, z, pdf));
-}
-MCS_API void mcs_ggx_bounded_h_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                        float *x, float *y, float *z, float *pdf) {
-    MCSI_BATCH_LOOP(ggx_bounded_h_loop, (m, wo, n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_ggx_bounded_sample_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                      float *x, float *y, float *z, float *pdf, float *weight) {
-    MCSI_BATCH_LOOP(ggx_bounded_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
-}
-MCS_API void mcs_ggx_bounded_pdf_n(const mcs_ggx *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                   const float *z, float *pdf) {
-    MCSI_BATCH_LOOP(ggx_bounded_pdf_loop, (m, wo, n, x, y, z, pdf));
-}
-MCS_API void mcs_ashikhmin_h_sample_n(const mcs_ashikhmin *m, size_t n, const float *u1, const float *u2, float *x,
-                                      float *y, float *z, float *pdf) {
-    MCSI_BATCH_LOOP(ashikhmin_h_loop, (m, n, u1, u2, x, y, z, pdf));
-}
-MCS_API void mcs_ashikhmin_sample_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *u1, const float *u2,
-                                    float *x, float *y, float *z, float *pdf, float *weight) {
-    MCSI_BATCH_LOOP(ashikhmin_sample_loop, (m, wo, n, u1, u2, x, y, z, pdf, weight));
-}
-MCS_API void mcs_ashikhmin_pdf_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                 const float *z, float *pdf) {
-    MCSI_BATCH_LOOP(ashikhmin_pdf_loop, (m, wo, n, x, y, z, pdf));
-}
-MCS_API void mcs_ashikhmin_eval_n(const mcs_ashikhmin *m, mcs_vec3 wo, size_t n, const float *x, const float *y,
-                                  const float *z, float *value) {
-    MCSI_BATCH_LOOP(ashikhmin_eval_loop, (m, wo, n, x, y, z, value));
-}
-/* The two functions of a BRDF for hits. */
-#define MCSI_HITS_N(NAME, MATERIAL)                                                                                   \
+#define MCSI_ARRAY_SAMPLE(NAME, MATERIAL)                                                                          \
+    MCS_API void mcs_##NAME##_sample_n(const mcs_##MATERIAL *m, mcs_vec3 wo, size_t n, const float *u1,            \
+                                       const float *u2, float *x, float *y, float *z, float *pdf, float *weight) { \
+        mcsi_batch call;                                                                                           \
+        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                            \
+        call.out[4] = weight;                                                                                      \
+        MCSI_BATCH_LOOP(NAME##_sample_loop, (m, wo, &call));                                                       \
+    }
+#define MCSI_ARRAY_VALUE(FORM, MATERIAL)                                                                        \
+    MCS_API void mcs_##FORM##_n(const mcs_##MATERIAL *m, mcs_vec3 wo, size_t n, const float *x, const float *y, \
+                                const float *z, float *value) {                                                 \
+        mcsi_batch call;                                                                                        \
+        mcsi_batch_start(&call, n, x, y, z);                                                                    \
+        call.out[0] = value;                                                                                    \
+        MCSI_BATCH_LOOP(FORM##_loop, (m, wo, &call));                                                           \
+    }
+#define MCSI_ARRAY_LOBE(NAME, MATERIAL)                                                                               \
+    MCS_API void mcs_##NAME##_sample_n(const mcs_##MATERIAL *m, size_t n, const float *u1, const float *u2, float *x, \
+                                       float *y, float *z, float *pdf) {                                              \
+        mcsi_batch call;                                                                                              \
+        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                               \
+        MCSI_BATCH_LOOP(NAME##_loop, (m, &call));                                                                     \
+    }
+#define MCSI_ARRAY_VISIBLE(NAME, MATERIAL)                                                              \
+    MCS_API void mcs_##NAME##_sample_n(const mcs_##MATERIAL *m, mcs_vec3 wo, size_t n, const float *u1, \
+                                       const float *u2, float *x, float *y, float *z, float *pdf) {     \
+        mcsi_batch call;                                                                                \
+        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                 \
+        MCSI_BATCH_LOOP(NAME##_loop, (m, wo, &call));                                                   \
+    }
+/* Both functions for hits. */
+#define MCSI_ARRAY_HITS(NAME, MATERIAL)                                                                               \
     MCS_API void mcs_##NAME##_sample_hits_n(const mcs_##MATERIAL *m, const mcs_hits *hits, size_t n, const float *u1, \
                                             const float *u2, float *x, float *y, float *z, float *pdf,                \
                                             float *weight) {                                                          \
-        mcsi_batch b;                                                                                                 \
-        mcsi_batch_dir(&b, n, u1, u2, x, y, z, pdf);                                                                  \
-        b.out[4] = weight;                                                                                            \
-        mcsi_batch_hits(&b, hits);                                                                                    \
-        MCSI_BATCH_LOOP(NAME##_sample_hits_loop, (m, &b));                                                            \
+        mcsi_batch call;                                                                                              \
+        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                               \
+        call.out[4] = weight;                                                                                         \
+        mcsi_batch_hits(&call, hits);                                                                                 \
+        MCSI_BATCH_LOOP(NAME##_sample_hits_loop, (m, &call));                                                         \
     }                                                                                                                 \
     MCS_API void mcs_##NAME##_pdf_hits_n(const mcs_##MATERIAL *m, const mcs_hits *hits, size_t n, const float *x,     \
                                          const float *y, const float *z, float *pdf, float *value) {                  \
-        mcsi_batch b;                                                                                                 \
-        mcsi_batch_start(&b, n, x, y, z);                                                                             \
-        b.out[0] = pdf;                                                                                               \
-        b.out[1] = value;                                                                                             \
-        mcsi_batch_hits(&b, hits);                                                                                    \
-        MCSI_BATCH_LOOP(NAME##_pdf_hits_loop, (m, &b));                                                               \
+        mcsi_batch call;                                                                                              \
+        mcsi_batch_start(&call, n, x, y, z);                                                                          \
+        call.out[0] = pdf;                                                                                            \
+        call.out[1] = value;                                                                                          \
+        mcsi_batch_hits(&call, hits);                                                                                 \
+        MCSI_BATCH_LOOP(NAME##_pdf_hits_loop, (m, &call));                                                            \
     }
-MCSI_HITS_N(phong, phong)
-MCSI_HITS_N(ward, ward)
-MCSI_HITS_N(beckmann, beckmann)
-MCSI_HITS_N(ggx_bounded, ggx)
-MCSI_HITS_N(ggx_vndf, ggx)
-MCSI_HITS_N(ggx, ggx)
-MCSI_HITS_N(ashikhmin, ashikhmin)
+MCSI_ARRAY_LOBE(phong_lobe, phong)
+MCSI_ARRAY_SAMPLE(phong, phong)
+MCSI_ARRAY_VALUE(phong_pdf, phong)
+MCSI_ARRAY_VALUE(phong_eval, phong)
+MCSI_ARRAY_HITS(phong, phong)
+MCSI_ARRAY_LOBE(ward_h, ward)
+MCSI_ARRAY_SAMPLE(ward, ward)
+MCSI_ARRAY_VALUE(ward_pdf, ward)
+MCSI_ARRAY_VALUE(ward_eval, ward)
+MCSI_ARRAY_HITS(ward, ward)
+MCSI_ARRAY_LOBE(beckmann_h, beckmann)
+MCSI_ARRAY_SAMPLE(beckmann, beckmann)
+MCSI_ARRAY_VALUE(beckmann_pdf, beckmann)
+MCSI_ARRAY_VALUE(beckmann_eval, beckmann)
+MCSI_ARRAY_HITS(beckmann, beckmann)
+MCSI_ARRAY_LOBE(ggx_h, ggx)
+MCSI_ARRAY_SAMPLE(ggx, ggx)
+MCSI_ARRAY_VALUE(ggx_pdf, ggx)
+MCSI_ARRAY_VALUE(ggx_eval, ggx)
+MCSI_ARRAY_HITS(ggx, ggx)
+MCSI_ARRAY_VISIBLE(ggx_vndf_h, ggx)
+MCSI_ARRAY_SAMPLE(ggx_vndf, ggx)
+MCSI_ARRAY_VALUE(ggx_vndf_pdf, ggx)
+MCSI_ARRAY_HITS(ggx_vndf, ggx)
+MCSI_ARRAY_VISIBLE(ggx_bounded_h, ggx)
+MCSI_ARRAY_SAMPLE(ggx_bounded, ggx)
+MCSI_ARRAY_VALUE(ggx_bounded_pdf, ggx)
+MCSI_ARRAY_HITS(ggx_bounded, ggx)
+MCSI_ARRAY_LOBE(ashikhmin_h, ashikhmin)
+MCSI_ARRAY_SAMPLE(ashikhmin, ashikhmin)
+MCSI_ARRAY_VALUE(ashikhmin_pdf, ashikhmin)
+MCSI_ARRAY_VALUE(ashikhmin_eval, ashikhmin)
+MCSI_ARRAY_HITS(ashikhmin, ashikhmin)
+#undef MCSI_ARRAY_SAMPLE
+#undef MCSI_ARRAY_VALUE
+#undef MCSI_ARRAY_LOBE
+#undef MCSI_ARRAY_VISIBLE
+#undef MCSI_ARRAY_HITS
 #endif
 #endif /* MCSI_BATCH */
 #endif /* MCSI_DECLARED */

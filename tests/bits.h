@@ -29,9 +29,9 @@
     X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(discrete_sample_n) X(pwl_bytes) X(pwl_build) \
     X(pwl_sample) X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(pwc2_bytes) X(pwc2_build) \
     X(pwc2_sample) X(pwc2_pdf) X(pwc2_invert) X(pwc2_sample_n) X(alias_bytes) X(alias_build) X(alias_sample) \
-    X(alias_sample_bits) X(alias_pmf) X(alias_sample_n) X(reservoir_add) X(reservoir_merge) X(reservoir_weight) X(reservoir_k_make) \
-    X(reservoir_k_add) X(reservoir_k_merge) X(reservoir_k_weight) X(stat_add) X(stat_merge) X(stat_variance) \
-    X(stat_error) X(stat_ci)
+    X(alias_sample_bits) X(alias_pmf) X(alias_sample_n) X(reservoir_add) X(reservoir_merge) X(reservoir_weight) \
+    X(reservoir_k_make) X(reservoir_k_add) X(reservoir_k_merge) X(reservoir_k_weight) X(stat_add) X(stat_merge) \
+    X(stat_variance) X(stat_error) X(stat_ci)
 #define BITS_MAPPED(X) \
     X(image_make) X(env_bytes) X(env_build) X(env_build_rows) X(env_finish) X(env_check) X(env_mean) X(env_sample) \
     X(env_sample_bits) X(env_pdf) X(env_invert) X(env_texel) X(env_weight) X(env_window_bytes) X(env_window_build) \
