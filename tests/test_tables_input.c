@@ -44,12 +44,17 @@ static void test_batch(void) {
 
 /* Draws of every kind, of few cells and of so many that memory is fetched ahead, to arrays that may be missing. u may be
  * where the densities go. */
-static void sample_n(int which, const void *t, size_t n, const float *u, uint32_t *i, float *x, float *pdf) {
+/* Where the results of draws go; any may be NULL. Of picks x is the rest. */
+typedef struct {
+    uint32_t *entry;
+    float *x, *pdf;
+} drawn;
+static void sample_n(int which, const void *t, size_t n, const float *u, drawn d) {
     switch (which) {
-    case PWC: mcs_pwc_sample_n((const mcs_pwc *)t, n, u, x, pdf); break;
-    case PWL: mcs_pwl_sample_n((const mcs_pwl *)t, n, u, x, pdf); break;
-    case DISCRETE: mcs_discrete_sample_n((const mcs_discrete *)t, n, u, i, pdf, x); break;
-    default: mcs_alias_sample_n((const mcs_alias *)t, n, u, i, pdf, x);
+    case PWC: mcs_pwc_sample_n((const mcs_pwc *)t, n, u, d.x, d.pdf); break;
+    case PWL: mcs_pwl_sample_n((const mcs_pwl *)t, n, u, d.x, d.pdf); break;
+    case DISCRETE: mcs_discrete_sample_n((const mcs_discrete *)t, n, u, d.entry, d.pdf, d.x); break;
+    default: mcs_alias_sample_n((const mcs_alias *)t, n, u, d.entry, d.pdf, d.x);
     }
 }
 static void check_large(int which, const arena *a, mcs_pcg32 *r, size_t n) {
@@ -63,8 +68,8 @@ static void check_large(int which, const arena *a, mcs_pcg32 *r, size_t n) {
             x[k] = pdf[k] = k < n ? u[k] : -7.0f;
             entry[k] = 7;
         }
-        sample_n(which, a->at, n, missing & 1 ? u : pdf, missing & 4 ? NULL : entry, missing & 2 ? NULL : x,
-                 missing & 1 ? NULL : pdf);
+        const drawn to = {missing & 4 ? NULL : entry, missing & 2 ? NULL : x, missing & 1 ? NULL : pdf};
+        sample_n(which, a->at, n, missing & 1 ? u : pdf, to);
         int same = x[n] == -7.0f && pdf[n] == -7.0f && entry[n] == 7;
         for (size_t k = 0; k < n; k++) {
             const draw d = kinds[which].sample(a->at, u[k]);
