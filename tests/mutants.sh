@@ -50,15 +50,18 @@ ONLY="$*" DIR=$dir LC_ALL=C awk '
             if ((kill == "") == (why == "")) wrong("wants either kill: or equivalent:")
             printf "%s", kill > (path "/kill")
             close(path "/kill")
+            print lanes > (path "/lanes")
+            close(path "/lanes")
             if (why != "") print why > (path "/why")
             print name > (ENVIRON["DIR"] "/names")
         }
         name = scope = find = make = kill = why = ""
         times = 1
+        lanes = 4
     }
     function wrong(what) { print name ": " what > (ENVIRON["DIR"] "/wrong") }
     function rest() { return substr($0, index($0, ": ") + 2) }
-    BEGIN { only = ENVIRON["ONLY"]; times = 1; name = "" }
+    BEGIN { only = ENVIRON["ONLY"]; times = 1; lanes = 4; name = "" }
     FNR == NR { header[++lines] = $0; next }
     /^#/ { next }
     /^name: /       { flush_record(); name = rest(); if (seen[name]++) wrong("a second record of that name"); next }
@@ -67,6 +70,7 @@ ONLY="$*" DIR=$dir LC_ALL=C awk '
     /^make: /       { make = rest(); next }
     /^make:$/       { make = ""; next }
     /^times: /      { times = rest() + 0; next }
+    /^lanes: /      { lanes = rest() + 0; next }
     /^kill: /       { kill = kill rest() "\n"; next }
     /^equivalent: / { why = rest(); next }
     NF              { wrong("line " FNR " is not understood: " $0) }
@@ -76,10 +80,10 @@ ONLY="$*" DIR=$dir LC_ALL=C awk '
 
 # Where the filter begins with the name of a row of the registry, and the program looks at one row after the other, that row alone
 # is built, which takes a fraction of the time.
-build() { # HEADER_FOLDER PROGRAM FILTER OUTPUT
+build() { # HEADER_FOLDER PROGRAM FILTER OUTPUT LANES
     row=
     case $2 in test_oracle | test_width) row=$(sed -n "s/^ *\(M(X, [A-Z]*, ${3%%[/ ]*},[^)]*)\).*/\1/p" tests/registry.h) ;; esac
-    ${CC:-cc} -O1 -DMCS_MAX_LANES=4 ${row:+"-DMCST_LIST(M, X)=$row"} -std=c99 -w -Wno-psabi -ffp-contract=off -I"$1" -I. -Itests \
+    ${CC:-cc} -O1 -DMCS_MAX_LANES="$5" ${row:+"-DMCST_LIST(M, X)=$row"} -std=c99 -w -Wno-psabi -ffp-contract=off -I"$1" -I. -Itests \
         "tests/$2.c" -o "$4" -lm >"$4.log" 2>&1
 }
 binary() { # FOLDER PROGRAM FILTER
@@ -89,7 +93,7 @@ binary() { # FOLDER PROGRAM FILTER
 baseline() {
     sort -u "$dir"/*/kill | while read -r program filter; do
         exe=$(binary "$dir" "$program" "$filter")
-        [ -x "$exe" ] || build . "$program" "$filter" "$exe" || { echo "$program does not compile" >>"$dir/wrong"; continue; }
+        [ -x "$exe" ] || build . "$program" "$filter" "$exe" 4 || { echo "$program does not compile" >>"$dir/wrong"; continue; }
         began=$(date +%s)
         "$exe" --filter "$filter" >"$exe.out" 2>&1 ||
             echo "$program --filter '$filter' fails with the header as it is" >>"$dir/wrong"
@@ -105,7 +109,7 @@ judge() { # NAME
     fi
     while read -r program filter; do
         exe=$(binary "$at" "$program" "$filter")
-        [ -x "$exe" ] || build "$at" "$program" "$filter" "$exe" || { echo "FAIL $1: does not compile"; return; }
+        [ -x "$exe" ] || build "$at" "$program" "$filter" "$exe" "$(cat "$at/lanes")" || { echo "FAIL $1: does not compile"; return; }
         seconds=$(awk -v of="$program $filter" '{ t = $1; sub(/^[0-9]+ /, ""); if ($0 == of) { print t; exit } }' "$dir/seconds")
         timeout -k 5 $((60 + 20 * ${seconds:-0})) "$exe" --filter "$filter" >"$exe.out" 2>&1
         status=$?
