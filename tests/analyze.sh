@@ -27,6 +27,9 @@ shiftTooManyBitsSigned	masks from signs: >> of a negative int keeps its sign wit
 Condition 'k<[mn]' is always false	wrong: n was set by ?: a line before, and the tests run these loops
 mcsample.h:[0-9]+:[0-9]+: .*garbage value \[clang-analyzer-core.UndefinedBinaryOperatorResult	arrays and places that a function fills through a pointer in every case; valgrind and msan run them
 Condition '\(unsigned long\)bytes==bytes' is always true	not where size_t has 32 bits
+redundantPointerOp	MCSI_EACH takes the name of a batch, and a loop that is handed one has a pointer to it
+'l\.(rays|through)\[k\]' is assigned a value that is never used	l holds pointers into the caller's region
+argument angles that points at uninitialized variable	the loop fills it: what it takes of it before are addresses of its arrays
 clarifyCondition	!flag & (a > b): both are 0 or 1, and & saves a jump
 END
 }
