@@ -218,7 +218,8 @@ if have i686-linux-gnu-gcc; then ia32='i686-linux-gnu-gcc -static'; fi
 
 # job NAME: builds and runs in a folder of its own. Foreign machines at -O1, for what the levels do is shown here and -O2 doubles
 # the build time; the C library of another machine is linked in. s390x evaluates floats as double under -std=c99, as -std=gnu99
-# does not; it goes without packets, whose text is that of the array forms, as each run of .ci/run waits for it.
+# does not. Each run of .ci/run waits for it, so it has what the order of bytes could be seen in: the bits of every function, and files;
+# without packets, whose text is that of the array forms. ppc64, which has that order too, has the usual tests.
 job() {
     dir=$root/$1
     mkdir -p "$dir" || exit 1
@@ -228,8 +229,8 @@ job() {
     aarch64) try aarch64 qemu-aarch64 "$usual" aarch64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
     arm) try arm qemu-arm "$usual" arm-linux-gnueabihf-gcc -std=c99 -O1 -static $exact ;;
     riscv64) try riscv64 qemu-riscv64 "$usual" riscv64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
-    s390x) try s390x qemu-s390x "$usual env env_input env_files" s390x-linux-gnu-gcc -std=gnu99 -O1 -static $exact -DMCST_ARRAYS ;;
-    ppc64) try ppc64 qemu-ppc64 "$usual" powerpc64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
+    s390x) try s390x qemu-s390x "bits hdr env_files env_input" s390x-linux-gnu-gcc -std=gnu99 -O1 -static $exact -DMCST_ARRAYS ;;
+    ppc64) try ppc64 qemu-ppc64 "$usual env env_input env_files" powerpc64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
     i386) try i386 "" "$usual env env_input env_memory env_files" $ia32 -std=c99 -O1 -msse2 -mfpmath=sse $exact ;;
     x87) x87 ;;
     mingw)
