@@ -46,8 +46,10 @@ STRESS_SUM = awk '/: [0-9]+ passed, [0-9]+ failed, [0-9.]+ s$$/ { p += $$(NF - 5
 	END { print p + 0 " passed, " f + 0 " failed"; exit f != 0 || p == 0 }'
 STRESS_CUT = $(if $(filter-out $(TESTS) $(WITHOUT),$(wildcard tests/test_*.c)),,$(STRESS_BINS))
 EXAMPLE_BINS = $(EXAMPLES:%.c=$(BUILD)/%)
-# What most of their compile time went into is compiled once: tests/shared.
+# What most of their compile time went into is compiled once: tests/shared. ASSERTING=yes: rows that count what MCS_ASSERT tells, which
+# two programs want, are for all programs.
 SHARED = $(BUILD)/tests/shared
+ROWS = $(SHARED)/$(if $(ASSERTING),asserting,rows).o
 WIDE = $(SHARED)/wide16.o $(SHARED)/wide8.o $(SHARED)/wide4.o
 RENDER = $(BUILD)/examples/render
 GALLERY = $(BUILD)/examples/gallery
@@ -283,7 +285,7 @@ $(GALLERY): $(wildcard examples/gallery_*.h) examples/render_png.h tests/bench/s
 $(TEST_BINS) $(STRESS_BINS): CONTRACT = $(EXACT) -DMCST_LINKED
 # Headers define functions that one object or another does not call.
 SHARED_FLAGS = -DMCST_LINKED -DMCST_SHARED -Wno-unused-function -Wno-unused-variable
-$(STRESS_BINS) $(patsubst %,$(BUILD)/tests/test_%,bits chi2_lobes chi2_rest fenv lines mutants values width): $(SHARED)/rows.o
+$(STRESS_BINS) $(patsubst %,$(BUILD)/tests/test_%,bits chi2_lobes chi2_rest fenv lines mutants values width): $(ROWS)
 $(patsubst %,$(BUILD)/tests/test_%,mistakes oracle): $(SHARED)/asserting.o
 $(patsubst %,$(BUILD)/tests/%,test_bits test_fenv test_lines test_width stress/floats stress/hostile): $(WIDE)
 $(patsubst %,$(BUILD)/tests/test_%,bits fenv): $(SHARED)/functions.o

@@ -106,19 +106,24 @@ static int bits_valid; /* tables and maps have no bad entries */
 #define MCST_W 1
 #include "bits.h"
 #ifdef MCST_WIDE
-#define MCST_W 4
-#include "bits.h"
 #define MCST_W 8
+#include "bits.h"
+#ifndef MCST_EIGHT
+#define MCST_W 4
 #include "bits.h"
 #define MCST_W 16
 #include "bits.h"
+#endif
 #endif
 #endif
 
 #ifndef MCST_SHARED
 /* --- functions by name -------------------------------------------------------------------------------------------- */
 
-#ifdef MCST_WIDE
+#if defined(MCST_WIDE) && defined(MCST_EIGHT)
+#define FOUR(x) \
+    { bits1_##x, NULL, bits8_##x, NULL }
+#elif defined(MCST_WIDE)
 #define FOUR(x) \
     { bits1_##x, bits4_##x, bits8_##x, bits16_##x }
 #else

@@ -1,10 +1,10 @@
 /* The registry: one row per continuous sampler of mcsample.h, and everything the generic checks need to know about it.
  *
  * Define MCST_WIDE before including to get the 4, 8 and 16 wide forms too (they cost compile time); a compiler without
- * vectors and -DMCST_ARRAYS leave them out. With -DMCST_LINKED the functions of the rows are only declared: make
- * compiles them once, in tests/shared (-DMCST_SHARED), for all programs. Without it a program holds them itself, so
- * that it can be compiled alone. The other samplers (tables, alias, discrete, environment, product) have tests of their
- * own: see mcst_exempt. */
+ * vectors and -DMCST_ARRAYS leave them out, -DMCST_EIGHT those of 4 and 16. With -DMCST_LINKED the functions of the
+ * rows are only declared: make compiles them once, in tests/shared (-DMCST_SHARED), for all programs. Without it a
+ * program holds them itself, so that it can be compiled alone. The other samplers (tables, alias, discrete,
+ * environment, product) have tests of their own: see mcst_exempt. */
 #ifndef MCST_REGISTRY_H
 #define MCST_REGISTRY_H
 #include <float.h>
@@ -458,12 +458,14 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_W 1
 #include "adapters.h"
 #ifdef MCST_WIDE
-#define MCST_W 4
-#include "adapters.h"
 #define MCST_W 8
+#include "adapters.h"
+#ifndef MCST_EIGHT
+#define MCST_W 4
 #include "adapters.h"
 #define MCST_W 16
 #include "adapters.h"
+#endif
 #endif
 #include "truth.h"
 #endif
@@ -471,7 +473,9 @@ MCST_ROWS(MCST_DECLARE)
 /* --- the table ---------------------------------------------------------------------------------------------------- */
 
 /* clang-format off */
-#ifdef MCST_WIDE
+#if defined(MCST_WIDE) && defined(MCST_EIGHT)
+#define MCST_FOR_WIDTHS(M, row) {M(mcst1_, row), {0}, M(mcst8_, row), {0}}
+#elif defined(MCST_WIDE)
 #define MCST_FOR_WIDTHS(M, row) {M(mcst1_, row), M(mcst4_, row), M(mcst8_, row), M(mcst16_, row)}
 #else
 #define MCST_FOR_WIDTHS(M, row) {M(mcst1_, row), {0}, {0}, {0}}

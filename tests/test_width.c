@@ -24,6 +24,8 @@ static int same(float a, float b, int contracted) {
     return fabs((double)a - (double)b) <= 1e-3 * fmax(fabs((double)a), fabs((double)b)) + 1e-6;
 }
 
+static int one_is_0(float a, float b) { return (a == 0 && b > 0) || (a > 0 && b == 0); }
+
 /* Random numbers of all kinds: mostly ordinary, some at the edges, some bad. */
 static float any_u(uint64_t *state) {
     static const float edge[] = {0, -0.0f, 0x1p-149f, 0x1p-24f, 0.25f, 0.5f, 0.75f, 1 - 0x1p-24f, 1, -1, 2};
@@ -84,6 +86,9 @@ static void check_lanes(const mcst_row *row, int form, int lanes, uint64_t *stat
         for (i = 0; i < RESULTS; i++) {
             if (lanes_contract && (i == 6 || i == 7))
                 continue; /* the azimuth of a point at the pole is nothing but its roundings */
+            if (lanes_contract && i == 5 && row->domain.bad == mcst_bad_light &&
+                one_is_0(out[i * lanes + l], want[l][i]))
+                continue; /* and so is whether a point on the rim of a light is on the light */
             CHECK(same(out[i * lanes + l], want[l][i], lanes_contract),
                   "%d wide, lane %d, result %d: %.9g, scalar %.9g (p %g %g, wo %g %g %g, u %a %a, x %.9g %.9g %.9g)",
                   lanes, l, i, (double)out[i * lanes + l], (double)want[l][i], (double)p[l], (double)p[lanes + l],
