@@ -129,7 +129,7 @@ reference() {
 
 switches=$(grep -oE '\bMCS_NO_[A-Z0-9]+' mcsample.h | sort -u)
 name='s/^[^(]*[ *](mcs[a-z0-9]*_[A-Za-z0-9_]*) \(.*/\1/'
-for s in none $switches MCS_PACKETS=16; do
+for s in none $switches MCS_PACKETS=8 MCS_PACKETS=16; do
     [ "$s" = none ] && define= || define=$s
     prototypes "$define" >"$dir/all.$s"
     grep -E '^[^(]*[ *]mcs[0-9]*_[A-Za-z0-9_]* \(' "$dir/all.$s" >"$dir/prototypes.$s"
@@ -155,20 +155,21 @@ include() { case $1 in MCS_DECLARE | MCS_IMPLEMENTATION) echo none ;; *) echo "$
 
 # --- the matrix: compilers x standards x switches. A file that only includes the header is compiled at -O0 and -O2. The one that uses
 # everything goes through the front end each time, and through code generation (a minute of work with packets) in plain form, with
-# MCS_NO_WIDE, which changes bodies where the other switches only leave some out, and with packets in C at -O2. As C++ it is generated at
-# -O0 alone, for linking: the optimiser sees the same bodies. All switches go with C99 and C++17. The standards after C++17, as far as the
-# compiler knows them, may deprecate what those allow: the front end will say. The newest clang is asked about the oldest and newest
-# standards.
+# MCS_NO_WIDE, which changes bodies where the other switches only leave some out, and with packets in C at -O2: those of 16 lanes, but by
+# gcc, which takes twice as long for them, those of 8: packets have one text, and gcc compiles the others for test_width. As C++ it is
+# generated at -O0 alone, for linking: the optimiser sees the same bodies. All switches go with C99 and C++17. The standards after C++17,
+# as far as the compiler knows them, may deprecate what those allow: the front end will say. The newest clang is asked about the oldest
+# and newest standards.
+packets() { [ "$1" = gcc ] && echo MCS_PACKETS=8 || echo MCS_PACKETS=16; }
 for c in $compilers; do
+    echo "$c c99 O2 $(packets "$c") $dir/use_$(packets "$c").c"
     if [ "$c" = "$newest" ]; then
         for std in c99 c2x c++11 c++2b; do
             for s in none $ways; do echo "$c $std fsyntax-only $s $dir/$(use $s).c"; done
         done
-        for std in c99 c++17; do
-            echo "$c $std O0 none $dir/include_none.c"
-            echo "$c $std O2 none $dir/use_none.c"
-        done
-        echo "$c c99 O2 MCS_PACKETS=16 $dir/use_MCS_PACKETS=16.c"
+        for std in c99 c++17; do echo "$c $std O0 none $dir/include_none.c"; done
+        echo "$c c99 O2 none $dir/use_none.c"
+        echo "$c c++17 O0 none $dir/use_none.c"
         continue
     fi
     for std in c++20 c++2b; do # 2b: C++23, by the name that older compilers know, too
@@ -185,8 +186,7 @@ for c in $compilers; do
             for level in O0 O2; do
                 echo "$c $std $level $s $dir/include_$(include $s).c"
                 case $std-$level-$s in
-                    c99-*-none | c99-*-MCS_NO_WIDE | c++17-O0-none | c99-O2-MCS_PACKETS=16)
-                        echo "$c $std $level $s $dir/use_$s.c" ;;
+                    c99-*-none | c99-*-MCS_NO_WIDE | c++17-O0-none) echo "$c $std $level $s $dir/use_$s.c" ;;
                 esac
             done
         done
@@ -208,7 +208,7 @@ void hygiene_fill(void *p, size_t size) { (void)p, (void)size; }
 void hygiene_use(const void *p, size_t size) { (void)p, (void)size; }
 int main(void) { return 0; }
 EOF
-set -- "$dir"/matrix/*-none-use_none.o "$dir"/matrix/*-use_MCS_PACKETS=16.o
+set -- "$dir"/matrix/*-none-use_none.o "$dir"/matrix/*-use_MCS_PACKETS=*.o
 gcc "$dir/main.c" "$@" -o "$dir/units" -lm -lstdc++ 2>"$dir/units.log" && "$dir/units"
 linked=$?
 [ $# -ge 4 ] && [ $linked = 0 ]
@@ -224,7 +224,7 @@ done
 
 # --- symbols of an optimised object that uses everything
 for c in $compilers; do
-    nm "$dir/matrix/$c-c99-O2-MCS_PACKETS=16-use_MCS_PACKETS=16.o" >"$dir/symbols" || bad "$c: nothing to look at"
+    nm "$dir/matrix/$c-c99-O2-$(packets "$c")-use_$(packets "$c").o" >"$dir/symbols" || bad "$c: nothing to look at"
     mutable=$(awk '$(NF-1) ~ /^[DdBbCGgSsVvu]$/ { print $NF }' "$dir/symbols")
     [ -s "$dir/symbols" ] && [ -z "$mutable" ]
     check $? "$c: no mutable data" $mutable
@@ -258,7 +258,8 @@ check "$([ -z "$lines" ]; echo $?)" "only printable ASCII, no tabs" "$lines"
 
 . "$(dirname "$0")/sources.sh"
 
-# --- every standard header before ours: alone in the compilers' default modes, all of them in every mode
+# --- every standard header before ours: all of them in every mode of every compiler, and each alone, which leaves out what the others
+# undo. Headers of the C library and of the C++ library are the same for all compilers: one compiler a language tells of them.
 std_headers='assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic stdbit
     stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype'
 mkdir -p "$dir/after"
@@ -271,13 +272,12 @@ printf '#include "all.h"\n' >"$dir/after/all.c"
 for f in "$dir"/after/*.c; do
     printf '#include "mcsample.h"\nmcs_sample1 after(float u);\nmcs_sample1 after(float u) { return mcs_normal_sample(0, 1, u); }\n' >>"$f"
 done
+second=$(echo "$compilers gcc" | awk '{ print $2 }')
+for f in "$dir"/after/*.c; do printf '%s\n' "gcc -x c $f" "$second -x c++ $f"; done >"$dir/after/list"
 for c in $compilers; do
-    for language in c c++; do
-        for f in "$dir"/after/*.c; do echo "$c -x $language $f"; done
-    done
     for std in c99 c11 c17 c2x gnu99 gnu2x; do echo "$c -x c -std=$std $dir/after/all.c"; done
-    for std in c++11 c++14 c++17 c++20 c++2b; do echo "$c -x c++ -std=$std $dir/after/all.c"; done
-done >"$dir/after/list"
+    for std in c++11 c++14 c++17 gnu++17 c++20 c++2b; do echo "$c -x c++ -std=$std $dir/after/all.c"; done
+done >>"$dir/after/list"
 xargs -P "$jobs" -I '{}' sh -c '{} -I. -w -fsyntax-only >/dev/null 2>&1 || echo "{}"' <"$dir/after/list" >"$dir/after/failed"
 [ -s "$dir/after/list" ] && [ ! -s "$dir/after/failed" ]
 check $? "$(wc -l <"$dir/after/list") compilations after standard headers" "$(head -n 3 "$dir/after/failed")"
@@ -305,6 +305,10 @@ done
 
 # --- wide forms exist, and how wide array forms are for every level of x86-64: a constant unless the processor is to be asked
 cat >"$dir/lanes.c" <<'EOF'
+#define MCS_NO_LIGHTS
+#define MCS_NO_LOBES
+#define MCS_NO_MEDIA
+#define MCS_NO_TABLES
 #include "mcsample.h"
 void lanes_differ(void);
 void eight(const float *u, float *to);
@@ -343,13 +347,16 @@ for c in $compilers; do
 done
 
 # --- MCS_FN is the linkage of every function: with none, an object exports all of the public ones; modules of C++ can export them too
+# At -O0 and with packets of 4 lanes: where a function is defined is no matter of the optimiser, nor of the lanes, as packets have one
+# text.
 printf '#include "mcsample.h"\n' >"$dir/library.c"
+grep -vE '^mcs(8|16)_' "$dir/functions.MCS_PACKETS=16" >"$dir/functions.four"
 for c in $compilers; do
-    $c -std=c99 -O1 -w -Wno-psabi -DMCS_FN= -DMCS_PACKETS=16 -fPIC -I. -c "$dir/library.c" -o "$dir/library.o" &&
+    $c -std=c99 -O0 -w -Wno-psabi -DMCS_FN= -DMCS_PACKETS=4 -fPIC -I. -c "$dir/library.c" -o "$dir/library.o" &&
         nm --defined-only "$dir/library.o" | sed -n 's/^[0-9a-f]* T //p' | sort >"$dir/exported"
-    lost=$(comm -23 "$dir/functions.MCS_PACKETS=16" "$dir/exported" | head -n 3)
+    lost=$(comm -23 "$dir/functions.four" "$dir/exported" | head -n 3)
     [ -s "$dir/exported" ] && [ -z "$lost" ]
-    check $? "$c: with MCS_FN empty an object exports all $(wc -l <"$dir/functions.MCS_PACKETS=16") functions" $lost
+    check $? "$c: with MCS_FN empty an object exports all $(wc -l <"$dir/functions.four") functions" $lost
 done
 if [ -n "$newest" ]; then
     {
@@ -426,7 +433,7 @@ printf '#include "mcsample.h"\n#define MCS_IMPLEMENTATION\n#include "mcsample.h"
 ! gcc -DMCS_DECLARE -I. -fsyntax-only "$dir/late.c" 2>"$dir/late.log" && grep -q 'define MCS_IMPLEMENTATION before' "$dir/late.log"
 check $? "MCS_IMPLEMENTATION behind the first include is refused"
 
-# --- a shared library, called by Python
+# --- a shared library, called by Python; at -O0, which calls as any level does
 if command -v python3 >/dev/null && python3 -c 'import ctypes' 2>/dev/null; then
     cat >"$dir/call.py" <<'EOF'
 import ctypes as c, sys
@@ -454,7 +461,7 @@ EOF
     for c in gcc clang; do
         command -v $c >/dev/null || continue
         for way in '' '-DMCS_FN='; do
-            MAKEFLAGS='' "${MAKE:-make}" -s lib CC=$c CFLAGS="-O1 $way" BUILD="$dir/$c" >"$dir/call.log" 2>&1 &&
+            MAKEFLAGS='' "${MAKE:-make}" -s lib CC=$c CFLAGS="-O0 $way" BUILD="$dir/$c" >"$dir/call.log" 2>&1 &&
                 python3 "$dir/call.py" "$dir/$c/lib/libmcsample.so" ${way:+all} 2>"$dir/call.log"
             check $? "$c${way:+ $way}: Python calls the shared library of make lib" "$(tail -n 1 "$dir/call.log")"
         done
