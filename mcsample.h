@@ -718,14 +718,14 @@ MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, f
 #endif
 
 /* ==== [lights] directions towards a light =========================================================================
- * Maps from the unit square to the directions in which a light is seen. All is in one frame, that of the world or any
- * other. Balls and disks take their centre as seen from the point that is lit: centre - point. Rectangles and triangles
- * take the point and the corners.
+ * Maps from the unit square to the directions in which a light is seen. Each function takes the point that is lit first
+ * and then the light, both in the space of your scene.
  *
- *   w         a direction, from the point to the light. A density above 0 says that it meets the light, if nothing is
- *             in its way.
- *
- * A shadow ray goes from the point to point + distance w, or to the place on the light that the sample has.
+ *   p         the point that is lit. From there to the light all is in double, so that a light nearby keeps its digits
+ *             far from the origin. If your scene is in double, pass (0, 0, 0), and the light less p.
+ *   w         a direction, from p to the light. A density above 0 says that it meets the light, if nothing is in its
+ *             way.
+ *   distance  of the light along w: a shadow ray goes from p to p + distance w. It is 0 where the density is 0.
  *
  * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24 */
 #ifndef MCS_NO_LIGHTS
@@ -734,45 +734,45 @@ MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, f
 typedef struct {
     mcs_vec3 w;     /* of unit length */
     float pdf;      /* per solid angle */
-    float distance; /* of the light along w; 0 where pdf is 0 */
+    float distance; /* of the light along w */
 } mcs_light;
 
 /* ---- ball: a sphere that gives light, from outside and from inside, uniform in solid angle ----
  * From outside it is a cone about the direction of the centre, cut from the sphere of directions by its sine
- * radius/|centre|. From inside, and on the surface, it is all directions. The light is where w first meets the surface,
- * at the point distance w. On the surface that is at once for half of the directions, whose distance is 0.
+ * radius/d, where d is the distance of the centre. From inside, and on the surface, it is all directions. The light is
+ * where w first meets the surface. On the surface that is at once for half of the directions, whose distance is 0.
  *
- * centre     of the ball, from the point; coordinates in [-1e18, 1e18]
- * radius     in [1e-18, 1e18]; below 1e-15 of |centre| it counts as that
+ * p, centre  coordinates in [-1e18, 1e18]
+ * radius     in [1e-18, 1e18]; below 1e-15 d it counts as that
  * map        1 - cos(theta) = k u1, where theta is the angle to the direction of the centre and k is
- *            1 - sqrt(1 - radius^2/|centre|^2), or 2 from inside. The azimuth 2 pi u2 is from s to t of the frame that
- *            mcs_frame_make has for that direction. A centre within 1e-18 of the point has the direction +z.
+ *            1 - sqrt(1 - radius^2/d^2), or 2 from inside. The azimuth 2 pi u2 is from s to t of the frame that
+ *            mcs_frame_make has for that direction. A centre within 1e-18 of p has the direction +z.
  * density    1/(2 pi k); from outside 0 where w misses the ball by more than an angle of 2^-23, as rounding may move a
  *            sampled w by nearly so much. MIS is right with that, as light is 0 there.
- * accuracy   pdf and distance within 1e-7 of themselves, for |centre| up to 1e9 radii. The distance is that of the
- *            exact direction of u.
+ * accuracy   pdf and distance within 1e-7 of themselves, for d up to 1e9 radii. The distance is that of the exact
+ *            direction of u.
  * cost       4 square roots, 10 divisions, 1 sincos; array forms spend half of these once for all
  * functions  mcs_ball_sample, mcs_ball_pdf, mcs_ball_invert, mcs_ball_sample_n for arrays
  * source     the cone is that of Wang 1992, "Physically correct direct lighting for distribution ray tracing" */
-MCS_FN mcs_light mcs_ball_sample(mcs_vec3 centre, float radius, float u1, float u2);
-MCS_FN float mcs_ball_pdf(mcs_vec3 centre, float radius, mcs_vec3 w);
-MCS_FN mcs_vec2 mcs_ball_invert(mcs_vec3 centre, float radius, mcs_vec3 w);
+MCS_FN mcs_light mcs_ball_sample(mcs_vec3 p, mcs_vec3 centre, float radius, float u1, float u2);
+MCS_FN float mcs_ball_pdf(mcs_vec3 p, mcs_vec3 centre, float radius, mcs_vec3 w);
+MCS_FN mcs_vec2 mcs_ball_invert(mcs_vec3 p, mcs_vec3 centre, float radius, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
-MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2, float *x,
-                               float *y, float *z, float *pdf, float *distance);
+MCS_API void mcs_ball_sample_n(mcs_vec3 p, mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2,
+                               float *x, float *y, float *z, float *pdf, float *distance);
 #endif
 
 /* ---- disk_light: a disk that gives light to both sides, uniform in its area ----
  * The density per solid angle is that of the area, converted exactly. It is nearly even where the disk is further away
  * than it is large, and high where the disk is seen from its edge. In the plane of the disk it is 0.
  *
- * centre     of the disk, from the point; coordinates in [-1e18, 1e18]
+ * p, centre  coordinates in [-1e18, 1e18]
  * normal     of the disk, a direction. For a disk that gives light to the side of its normal alone, leave out samples
  *            whose w is on the side of the normal.
- * radius     in [1e-18, 1e18]; below 1e-15 of the largest coordinate of centre it counts as that
+ * radius     in [1e-18, 1e18]; below 1e-15 of the largest coordinate of centre - p it counts as that
  * map        the point is that of mcs_concentric_sample, in the frame of mcs_frame_make(normal), and w is its
- *            direction. Where it is within 1e-18 of the point that is lit, w is +z and the density 0. Where the density
- *            is 0, or too small for a float, pdf and distance are 0.
+ *            direction. Where it is within 1e-18 of p, w is +z and the density 0. A density that is too small for a
+ *            float is 0.
  * density    distance^2 / (pi radius^2 |w.normal|); 0 where w misses the disk by more than an angle of 2^-23, and where
  *            |w.normal| is below 1e-7
  * accuracy   coordinates within 2^-24, pdf and distance within 1e-7 of themselves, for samples whose distance is 1e-4
@@ -780,18 +780,19 @@ MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const fl
  * cost       2 square roots, 8 divisions; array forms spend half of these once for all
  * functions  mcs_disk_light_sample, mcs_disk_light_pdf, mcs_disk_light_invert, mcs_disk_light_sample_n for arrays
  * source     Shirley and Chiu 1997, as in [disk] */
-MCS_FN mcs_light mcs_disk_light_sample(mcs_vec3 centre, mcs_vec3 normal, float radius, float u1, float u2);
-MCS_FN float mcs_disk_light_pdf(mcs_vec3 centre, mcs_vec3 normal, float radius, mcs_vec3 w);
-MCS_FN mcs_vec2 mcs_disk_light_invert(mcs_vec3 centre, mcs_vec3 normal, float radius, mcs_vec3 w);
+MCS_FN mcs_light mcs_disk_light_sample(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, float radius, float u1, float u2);
+MCS_FN float mcs_disk_light_pdf(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, float radius, mcs_vec3 w);
+MCS_FN mcs_vec2 mcs_disk_light_invert(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, float radius, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
-MCS_API void mcs_disk_light_sample_n(mcs_vec3 centre, mcs_vec3 normal, float radius, size_t n, const float *u1,
-                                     const float *u2, float *x, float *y, float *z, float *pdf, float *distance);
+MCS_API void mcs_disk_light_sample_n(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, float radius, size_t n,
+                                     const float *u1, const float *u2, float *x, float *y, float *z, float *pdf,
+                                     float *distance);
 #endif
 
 /* ---- spherical_rectangle and spherical_triangle: lights that are prepared for a point p ----
  * Directions are uniform in the solid angle of the light, and the maps are continuous: neither the distance nor the
- * cosine at the light is left in the estimate. All is in the space of the corners. Lights are seen from both sides.
- * Small, distant, thin and grazing ones are as exact as others. A light is what the floats say that are given.
+ * cosine at the light is left in the estimate. Lights are seen from both sides. Small, distant, thin and grazing ones
+ * are as exact as others. A light is what the floats say that are given.
  *
  * density    1/(solid angle); 0 in directions that miss the light, and for bad input. It is a member of the prepared
  *            light, too, for those who know that a ray hits. Where p is in the plane of the light, all densities are 0,
@@ -800,16 +801,18 @@ MCS_API void mcs_disk_light_sample_n(mcs_vec3 centre, mcs_vec3 normal, float rad
  *            than about 1e-7 of its size.
  * bad        A light is bad if one of its numbers is not finite or its area is 0.
  * accuracy   w within 1.1 x 2^-24 of the exact map by coordinate, places on the light within 1.1 x 2^-24, pdf within
- *            2e-7 of itself, for solid angles of 1e-12 and more and lights 1e5 times as long as wide
+ *            2e-7 and distance within 1e-7 of itself, for solid angles of 1e-12 and more and lights 1e5 times as long
+ *            as wide
  * source     Urena, Fajardo and King 2013, "An area-preserving parametrization for spherical rectangles"; Arvo 1995,
  *            "Stratified sampling of spherical triangles"; Van Oosterom and Strackee 1983, "The solid angle of a plane
  *            triangle" */
 
 /* A direction sampled towards such a light, and where it meets the light. */
 typedef struct {
-    mcs_vec3 w; /* of unit length */
-    float pdf;  /* per solid angle */
-    float x, y; /* coordinates on the light */
+    mcs_vec3 w;     /* of unit length */
+    float pdf;      /* per solid angle */
+    float distance; /* of the light along w */
+    float x, y;     /* coordinates on the light */
 } mcs_light_point;
 
 /* What prepared lights consist of. */
@@ -827,7 +830,8 @@ typedef struct {
  *            mcs_spherical_rectangle_invert, mcs_spherical_rectangle_sample_n for arrays */
 typedef struct {
     mcsi_vec3_d axis_x, axis_y, normal; /* of unit length; the normal points away from p */
-    double x0, x1, y0, y1;              /* the sides seen from p, in distances of p from the plane */
+    double to_plane;                    /* the distance of p from the plane */
+    double x0, x1, y0, y1;              /* the sides seen from p, in units of that distance */
     double size_y0, size_y1;            /* |y0| and |y1| */
     double per_x, per_y;                /* 1/(x1 - x0), 1/(y1 - y0) */
     double before, angle, behind, rest; /* halves of solid angles whose sum is pi: see the bodies */
@@ -840,8 +844,8 @@ MCS_FN float mcs_spherical_rectangle_pdf(const mcs_spherical_rectangle *l, mcs_v
 MCS_FN mcs_vec2 mcs_spherical_rectangle_invert(const mcs_spherical_rectangle *l, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_spherical_rectangle_sample_n(const mcs_spherical_rectangle *l, size_t n, const float *u1,
-                                              const float *u2, float *x, float *y, float *z, float *pdf, float *light_x,
-                                              float *light_y);
+                                              const float *u2, float *x, float *y, float *z, float *pdf,
+                                              float *distance, float *light_x, float *light_y);
 #endif
 
 /* ---- spherical_triangle: the light with the corners a, b and c ----
@@ -866,8 +870,8 @@ MCS_FN float mcs_spherical_triangle_pdf(const mcs_spherical_triangle *l, mcs_vec
 MCS_FN mcs_vec2 mcs_spherical_triangle_invert(const mcs_spherical_triangle *l, mcs_vec3 w);
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_spherical_triangle_sample_n(const mcs_spherical_triangle *l, size_t n, const float *u1,
-                                             const float *u2, float *x, float *y, float *z, float *pdf, float *weight_a,
-                                             float *weight_b);
+                                             const float *u2, float *x, float *y, float *z, float *pdf, float *distance,
+                                             float *weight_a, float *weight_b);
 #endif
 
 /* mcs_pdf_to_solid_angle makes a density per area of a light one per solid angle, times distance^2/|cosine|, and
@@ -2573,7 +2577,7 @@ typedef double mcsi_d;
 /* ---- batches: the arrays of one call ----------------------------------------------------------------------------- */
 
 #if MCSI_BASE_W > 0
-enum { MCSI_IN_MAX = 8, MCSI_OUT_MAX = 6 };
+enum { MCSI_IN_MAX = 8, MCSI_OUT_MAX = 7 };
 enum { MCSI_IN_WO = 3, MCSI_IN_X = 6, MCSI_IN_Y = 7 }; /* where the arrays of mcs_hits are among those of `in` */
 typedef struct {
     const float *in[MCSI_IN_MAX]; /* NULL where the caller has none */
@@ -4368,7 +4372,7 @@ typedef struct {
 } mcs_light;
 typedef struct {
     mcs_vec3 w;
-    mcs_f pdf, x, y;
+    mcs_f pdf, distance, x, y;
 } mcs_light_point;
 typedef struct {
     mcsi_d x, y, z;
@@ -4392,17 +4396,24 @@ MCSI_CORE void mcsi_widen3(const mcs_vec3 *v, mcsi_vec3_d *d) {
     d->y = MCSI_WIDEN(v->y);
     d->z = MCSI_WIDEN(v->z);
 }
+MCSI_CORE mcsi_vec3_d mcsi_from_to(mcs_vec3 p, mcs_vec3 q) {
+    mcsi_vec3_d d;
+    d.x = MCSI_WIDEN(q.x) - MCSI_WIDEN(p.x);
+    d.y = MCSI_WIDEN(q.y) - MCSI_WIDEN(p.y);
+    d.z = MCSI_WIDEN(q.z) - MCSI_WIDEN(p.z);
+    return d;
+}
+MCSI_CORE mcs_vec3 mcsi_origin(void) { return mcsi_vec3(mcs_set(0.0f), mcs_set(0.0f), mcs_set(0.0f)); }
 
-/* The unit vector n of some v, and what the frame of mcs_frame_make has around it: its sign and a. */
+/* The unit vector n from p to q, and what the frame of mcs_frame_make has around it: its sign and a. */
 typedef struct {
     mcsi_d n_x, n_y, n_z, sign, a;
-    mcsi_d length2, inverse; /* the squared length of v, and 1 / its length */
+    mcsi_d length2, inverse; /* the squared distance of both, and 1 / the distance */
 } mcsi_axis;
 
-/* The length of v is in [1e-18, 1e19]. */
-MCSI_CORE mcsi_axis mcsi_axis_make(mcs_vec3 v) {
-    mcsi_vec3_d d;
-    mcsi_widen3(&v, &d);
+/* The distance is in [1e-18, 1e19]. */
+MCSI_CORE mcsi_axis mcsi_axis_make(mcs_vec3 p, mcs_vec3 q) {
+    const mcsi_vec3_d d = mcsi_from_to(p, q);
     mcsi_axis axis;
     axis.length2 = MCSI_DOT_D(d, d);
     mcsi_d length = axis.length2;
@@ -4411,7 +4422,7 @@ MCSI_CORE mcsi_axis mcsi_axis_make(mcs_vec3 v) {
     axis.n_x = axis.inverse * d.x;
     axis.n_y = axis.inverse * d.y;
     axis.n_z = axis.inverse * d.z;
-    axis.sign = MCSI_WIDEN(mcsi_with_sign(mcs_set(1.0f), v.z));
+    axis.sign = MCSI_WIDEN(mcsi_with_sign(mcs_set(1.0f), MCSI_NARROW(d.z)));
     axis.a = -1.0 / (axis.sign + axis.n_z);
     return axis;
 }
@@ -4422,10 +4433,9 @@ MCSI_CORE mcs_vec3 mcsi_from_axis(const mcsi_axis *axis, const mcsi_vec3_d *v) {
     return mcsi_vec3(MCSI_NARROW(v->x + axis->n_x * along), MCSI_NARROW(axis->sign * v->y + axis->n_y * along),
                      MCSI_NARROW(axis->n_z * v->z - tilt));
 }
-/* (w.s, w.t, w.n) */
-MCSI_CORE mcsi_vec3_d mcsi_to_axis(const mcsi_axis *axis, mcs_vec3 w) {
-    mcsi_vec3_d d;
-    mcsi_widen3(&w, &d);
+/* (d.s, d.t, d.n), where d is q - p. */
+MCSI_CORE mcsi_vec3_d mcsi_to_axis(const mcsi_axis *axis, mcs_vec3 p, mcs_vec3 q) {
+    const mcsi_vec3_d d = mcsi_from_to(p, q);
     const mcsi_d level = axis->n_x * d.x + axis->n_y * d.y;
     const mcsi_d along = axis->a * level - d.z;
     mcsi_vec3_d v;
@@ -4440,10 +4450,13 @@ MCSI_CORE mcs_i mcsi_place_ok(mcs_vec3 p) {
     const mcs_f z = mcsi_abs(p.z);
     return (x <= 1e18f) & (y <= 1e18f) & (z <= 1e18f);
 }
-MCSI_CORE mcs_f mcsi_largest(mcs_vec3 v) { return mcsi_max(mcsi_max(mcsi_abs(v.x), mcsi_abs(v.y)), mcsi_abs(v.z)); }
+/* The largest coordinate of q - p. */
+MCSI_CORE mcs_f mcsi_largest(mcs_vec3 p, mcs_vec3 q) {
+    return mcsi_max(mcsi_max(mcsi_abs(q.x - p.x), mcsi_abs(q.y - p.y)), mcsi_abs(q.z - p.z));
+}
 
 /* ---- ball ----
- * c is the distance of the centre and r the radius. From outside, where c > r, sin^2 of the rim is r^2/c^2, and its
+ * c is the distance d of the centre and r the radius. From outside, where c > r, sin^2 of the rim is r^2/c^2, and its
  * cosine the root of (c^2 - r^2)/c^2. k is 1 less that cosine, as sin^2 / (1 + cos). */
 
 typedef struct {
@@ -4455,14 +4468,15 @@ typedef struct {
     mcs_f scale; /* 1 / the larger of c and r, rounded */
 } mcsi_ball;
 
-MCSI_CORE mcsi_ball mcsi_ball_make(mcs_vec3 centre, mcs_f radius) {
+MCSI_CORE mcsi_ball mcsi_ball_make(mcs_vec3 p, mcs_vec3 centre, mcs_f radius) {
     const mcs_f zero = mcs_set(0.0f);
     const mcs_f one = mcs_set(1.0f);
     mcsi_ball b;
-    b.ok = mcsi_scale_ok(radius) & mcsi_place_ok(centre);
+    b.ok = mcsi_scale_ok(radius) & mcsi_place_ok(p) & mcsi_place_ok(centre);
     MCSI_REQUIRE(b.ok);
-    const mcs_i apart = b.ok & (mcsi_largest(centre) >= 1e-18f);
-    b.axis = mcsi_axis_make(mcsi_sel3(apart, centre, mcsi_vec3(zero, zero, one)));
+    const mcs_i apart = b.ok & (mcsi_largest(p, centre) >= 1e-18f);
+    p = mcsi_sel3(apart, p, mcsi_origin());
+    b.axis = mcsi_axis_make(p, mcsi_sel3(apart, centre, mcsi_vec3(zero, zero, one)));
     const mcsi_d c2 = b.axis.length2 * MCSI_WIDEN(mcsi_sel(apart, one, zero));
     b.c = c2 * b.axis.inverse;
     const mcs_f far_off = MCSI_NARROW(b.c);
@@ -4515,19 +4529,19 @@ MCSI_CORE mcs_light mcsi_ball_draw(const mcsi_ball *b, mcs_f u1, mcs_f u2) {
     light.distance = mcsi_sane_result(ok, mcsi_ball_distance(b, u1));
     return light;
 }
-MCSI_SAMPLE mcs_light mcs_ball_sample(mcs_vec3 centre, mcs_f radius, mcs_f u1, mcs_f u2) {
-    const mcsi_ball b = mcsi_ball_make(centre, radius);
+MCSI_SAMPLE mcs_light mcs_ball_sample(mcs_vec3 p, mcs_vec3 centre, mcs_f radius, mcs_f u1, mcs_f u2) {
+    const mcsi_ball b = mcsi_ball_make(p, centre, radius);
     return mcsi_ball_draw(&b, u1, u2);
 }
 #ifdef MCSI_PUBLIC
 /* w in the frame about the centre. */
 MCSI_CORE mcs_vec3 mcsi_ball_local(const mcsi_ball *b, mcs_vec3 w) {
-    const mcsi_vec3_d v = mcsi_to_axis(&b->axis, w);
+    const mcsi_vec3_d v = mcsi_to_axis(&b->axis, mcsi_origin(), w);
     return mcsi_vec3(MCSI_NARROW(v.x), MCSI_NARROW(v.y), MCSI_NARROW(v.z));
 }
 /* A direction at the angle d beyond the rim has 1 - cos = k + d sin + d^2/2, about. */
-MCSI_FN mcs_f mcs_ball_pdf(mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
-    const mcsi_ball b = mcsi_ball_make(centre, radius);
+MCSI_FN mcs_f mcs_ball_pdf(mcs_vec3 p, mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
+    const mcsi_ball b = mcsi_ball_make(p, centre, radius);
     mcs_i ok = b.ok;
     w = mcsi_sane_direction(w, &ok);
     const mcs_f k = MCSI_NARROW(b.k);
@@ -4535,8 +4549,8 @@ MCSI_FN mcs_f mcs_ball_pdf(mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
     const mcs_i hit = mcsi_one_minus_z(mcsi_ball_local(&b, w)) <= rim;
     return mcsi_sane_result(ok & hit, MCSI_NARROW(0.15915494309189535 / b.k));
 }
-MCSI_FN mcs_vec2 mcs_ball_invert(mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
-    const mcsi_ball b = mcsi_ball_make(centre, radius);
+MCSI_FN mcs_vec2 mcs_ball_invert(mcs_vec3 p, mcs_vec3 centre, mcs_f radius, mcs_vec3 w) {
+    const mcsi_ball b = mcsi_ball_make(p, centre, radius);
     mcs_i ok = b.ok;
     const mcs_vec3 v = mcsi_ball_local(&b, mcsi_sane_direction(w, &ok));
     return mcsi_uv(ok, mcsi_one_minus_z(v) / MCSI_NARROW(b.k), mcsi_atan2_turns(v.y, v.x));
@@ -4555,16 +4569,16 @@ typedef struct {
     mcsi_d further;          /* further away than any point of the disk */
 } mcsi_disk_light;
 
-MCSI_CORE mcsi_disk_light mcsi_disk_light_make(mcs_vec3 centre, mcs_vec3 normal, mcs_f radius) {
-    const mcs_f zero = mcs_set(0.0f);
+MCSI_CORE mcsi_disk_light mcsi_disk_light_make(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, mcs_f radius) {
     mcsi_disk_light d;
-    d.ok = mcsi_scale_ok(radius) & mcsi_place_ok(centre);
+    d.ok = mcsi_scale_ok(radius) & mcsi_place_ok(p) & mcsi_place_ok(centre);
     MCSI_REQUIRE(d.ok);
-    centre = mcsi_sel3(d.ok, centre, mcsi_vec3(zero, zero, zero));
-    const mcs_f largest = mcsi_largest(centre);
+    p = mcsi_sel3(d.ok, p, mcsi_origin());
+    centre = mcsi_sel3(d.ok, centre, mcsi_origin());
+    const mcs_f largest = mcsi_largest(p, centre);
     const mcs_f size = mcsi_max(mcsi_sel(d.ok, radius, mcs_set(1.0f)), 1e-15f * largest);
-    d.axis = mcsi_axis_make(mcsi_sane_direction(normal, &d.ok));
-    d.centre = mcsi_to_axis(&d.axis, centre);
+    d.axis = mcsi_axis_make(mcsi_origin(), mcsi_sane_direction(normal, &d.ok));
+    d.centre = mcsi_to_axis(&d.axis, p, centre);
     d.radius = MCSI_WIDEN(size);
     d.per_area = 0.3183098861837907 / (d.radius * d.radius); /* 1/pi */
     d.further = 2.0 * (MCSI_WIDEN(largest) + d.radius);
@@ -4610,8 +4624,9 @@ MCSI_CORE mcs_light mcsi_disk_light_draw(const mcsi_disk_light *d, mcs_f u1, mcs
     light.distance = mcsi_sane_result(light.pdf > 0.0f, MCSI_NARROW(distance));
     return light;
 }
-MCSI_SAMPLE mcs_light mcs_disk_light_sample(mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_f u1, mcs_f u2) {
-    const mcsi_disk_light d = mcsi_disk_light_make(centre, normal, radius);
+MCSI_SAMPLE mcs_light mcs_disk_light_sample(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_f u1,
+                                            mcs_f u2) {
+    const mcsi_disk_light d = mcsi_disk_light_make(p, centre, normal, radius);
     return mcsi_disk_light_draw(&d, u1, u2);
 }
 #ifdef MCSI_PUBLIC
@@ -4624,7 +4639,7 @@ typedef struct {
 
 MCSI_CORE mcsi_disk_hit mcsi_disk_light_hit(const mcsi_disk_light *d, mcs_vec3 w) {
     const mcs_f one = mcs_set(1.0f);
-    const mcsi_vec3_d v = mcsi_to_axis(&d->axis, w);
+    const mcsi_vec3_d v = mcsi_to_axis(&d->axis, mcsi_origin(), w);
     const mcsi_d side = MCSI_WIDEN(mcsi_with_sign(one, MCSI_NARROW(v.z)));
     const mcsi_d height = side * d->centre.z;
     const mcs_f h = MCSI_NARROW(height);
@@ -4645,14 +4660,14 @@ MCSI_CORE mcsi_disk_hit mcsi_disk_light_hit(const mcsi_disk_light *d, mcs_vec3 w
     hit.density = MCSI_NARROW(t * t * length3 * d->per_area * inverse);
     return hit;
 }
-MCSI_FN mcs_f mcs_disk_light_pdf(mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_vec3 w) {
-    const mcsi_disk_light d = mcsi_disk_light_make(centre, normal, radius);
+MCSI_FN mcs_f mcs_disk_light_pdf(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_vec3 w) {
+    const mcsi_disk_light d = mcsi_disk_light_make(p, centre, normal, radius);
     mcs_i ok = d.ok;
     const mcsi_disk_hit hit = mcsi_disk_light_hit(&d, mcsi_sane_direction(w, &ok));
     return mcsi_sane_result(ok & hit.ahead & (hit.beyond <= 1.0f), hit.density);
 }
-MCSI_FN mcs_vec2 mcs_disk_light_invert(mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_vec3 w) {
-    const mcsi_disk_light d = mcsi_disk_light_make(centre, normal, radius);
+MCSI_FN mcs_vec2 mcs_disk_light_invert(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_vec3 w) {
+    const mcsi_disk_light d = mcsi_disk_light_make(p, centre, normal, radius);
     mcs_i ok = d.ok;
     const mcsi_disk_hit hit = mcsi_disk_light_hit(&d, mcsi_sane_direction(w, &ok));
     const mcs_vec2 u = mcs_concentric_invert(MCSI_NARROW(d.radius), hit.x, hit.y);
@@ -4732,9 +4747,6 @@ MCS_FN mcsi_vec3_d mcsi_make3_d(double x, double y, double z) {
     v.z = z;
     return v;
 }
-MCS_FN mcsi_vec3_d mcsi_from_to_d(mcs_vec3 p, mcs_vec3 q) {
-    return mcsi_make3_d((double)q.x - (double)p.x, (double)q.y - (double)p.y, (double)q.z - (double)p.z);
-}
 MCS_FN mcsi_vec3_d mcsi_widened_d(mcs_vec3 v) { return mcsi_make3_d((double)v.x, (double)v.y, (double)v.z); }
 /* a + s b */
 MCS_FN mcsi_vec3_d mcsi_add_d(mcsi_vec3_d a, double s, mcsi_vec3_d b) {
@@ -4758,8 +4770,8 @@ MCS_FN double mcsi_per_angle_d(double angle) { return angle > 1e-38 ? 0.5 / angl
 #endif
 
 /* ---- spherical_rectangle ----
- * Lengths are in units of the distance of p from the plane of the light, which is z = 1. The strip of the plane from y0
- * to y1 has the solid angle t between 0 and x, with x = s/sqrt(1 - s^2) and, by Urena et al.,
+ * Lengths are in units of `to_plane`, the distance of p from the plane of the light, which is z = 1. The strip of the
+ * plane from y0 to y1 has the solid angle t between 0 and x, with x = s/sqrt(1 - s^2) and, by Urena et al.,
  *
  *   s^2 = sin^2(t) / (b0^2 + b1^2 - 2 b0 b1 cos(t)),   b = y/sqrt(1 + y^2) = sin(e)
  *
@@ -4781,7 +4793,7 @@ MCS_FN double mcsi_per_angle_d(double angle) { return angle > 1e-38 ? 0.5 / angl
 #if MCSI_W > 1
 typedef struct {
     mcsi_vec3_d axis_x, axis_y, normal;
-    mcsi_d x0, x1, y0, y1, size_y0, size_y1, per_x, per_y, before, angle, behind, rest, scale, pdf;
+    mcsi_d to_plane, x0, x1, y0, y1, size_y0, size_y1, per_x, per_y, before, angle, behind, rest, scale, pdf;
 } mcs_spherical_rectangle;
 #endif
 #if MCSI_W == 1
@@ -4834,7 +4846,7 @@ MCS_FN void mcsi_spherical_rectangle_finish(mcs_spherical_rectangle *l) {
 /* Returns whether the light is good. A light that is not to be drawn from becomes a small one about its centre. */
 MCS_FN int mcsi_spherical_rectangle_prepare(mcs_spherical_rectangle *l, mcs_vec3 p, mcs_vec3 c, mcs_vec3 edge_x,
                                             mcs_vec3 edge_y) {
-    const mcsi_vec3_d corner = mcsi_from_to_d(p, c);
+    const mcsi_vec3_d corner = mcsi_from_to(p, c);
     const mcsi_vec3_d along_y = mcsi_widened_d(edge_y);
     l->axis_x = mcsi_widened_d(edge_x);
     l->normal = mcsi_cross_d(l->axis_x, along_y);
@@ -4848,6 +4860,7 @@ MCS_FN int mcsi_spherical_rectangle_prepare(mcs_spherical_rectangle *l, mcs_vec3
     if (volume < 0.0) l->normal = mcsi_make3_d(-l->normal.x, -l->normal.y, -l->normal.z);
     const double extent = mcsi_length_d(corner) + mcsi_length_d(along_y) + (ok ? 1.0 / per_edge : 0.0);
     if (ok && z > 1e-18 * extent) {
+        l->to_plane = z;
         l->x0 = MCSI_DOT_D(corner, l->axis_x) / z;
         l->y0 = MCSI_DOT_D(corner, l->axis_y) / z;
         l->per_x = mcsi_at_most_d(z * per_edge, 1e30);
@@ -4858,6 +4871,7 @@ MCS_FN int mcsi_spherical_rectangle_prepare(mcs_spherical_rectangle *l, mcs_vec3
     mcsi_unit_d(&centre);
     l->normal = centre;
     l->axis_x = l->axis_y = mcsi_make3_d(0.0, 0.0, 0.0);
+    l->to_plane = 0.0;
     l->x0 = l->y0 = -0.5e-9;
     l->per_x = l->per_y = 1e9;
     mcsi_spherical_rectangle_finish(l);
@@ -4947,6 +4961,7 @@ MCSI_SAMPLE mcs_light_point mcs_spherical_rectangle_sample(const mcs_spherical_r
     mcsi_inverse_root(&cos2, &per_cos);
     const mcsi_d h = 0.5 * (plus - minus);
     const mcsi_d y = h * per_cos * (d2 * per_d);
+    const mcsi_d distance = l->to_plane * (per_cos * (d2 * per_d));
     const mcsi_d w_z = cos2 * per_cos * per_d;
     const mcsi_d w_x = x * w_z;
     const mcs_f zero = mcs_set(0.0f);
@@ -4956,6 +4971,7 @@ MCSI_SAMPLE mcs_light_point mcs_spherical_rectangle_sample(const mcs_spherical_r
     s.w.y = MCSI_NARROW(w_x * l->axis_x.y + h * l->axis_y.y + w_z * l->normal.y);
     s.w.z = MCSI_NARROW(w_x * l->axis_x.z + h * l->axis_y.z + w_z * l->normal.z);
     s.pdf = mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
+    s.distance = mcsi_sane_result(s.pdf > 0.0f, MCSI_NARROW(distance));
     s.x = mcsi_min(mcsi_max(MCSI_NARROW((x - l->x0) * l->per_x), zero), one);
     s.y = mcsi_min(mcsi_max(MCSI_NARROW((y - l->y0) * l->per_y), zero), one);
     return s;
@@ -5028,16 +5044,16 @@ MCS_FN mcsi_vec3_d mcsi_side_d(double s, mcsi_vec3_d a, mcsi_vec3_d edge) {
 }
 /* Six times the volume of the tetrahedron of p and a triangle, signed. It keeps most digits if a is next to p. */
 MCS_FN double mcsi_volume_d(mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
-    const mcsi_vec3_d to_a = mcsi_from_to_d(p, a);
-    const mcsi_vec3_d normal = mcsi_cross_d(mcsi_from_to_d(a, b), mcsi_from_to_d(a, c));
+    const mcsi_vec3_d to_a = mcsi_from_to(p, a);
+    const mcsi_vec3_d normal = mcsi_cross_d(mcsi_from_to(a, b), mcsi_from_to(a, c));
     return MCSI_DOT_D(to_a, normal);
 }
 /* Returns whether the light is good. A light that is not to be drawn from becomes its centre. */
 MCS_FN int mcsi_spherical_triangle_prepare(mcs_spherical_triangle *l, mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
-    const mcsi_vec3_d to_a = mcsi_from_to_d(p, a);
-    const mcsi_vec3_d to_b = mcsi_from_to_d(p, b);
-    const mcsi_vec3_d to_c = mcsi_from_to_d(p, c);
-    const mcsi_vec3_d normal = mcsi_cross_d(mcsi_from_to_d(a, b), mcsi_from_to_d(a, c));
+    const mcsi_vec3_d to_a = mcsi_from_to(p, a);
+    const mcsi_vec3_d to_b = mcsi_from_to(p, b);
+    const mcsi_vec3_d to_c = mcsi_from_to(p, c);
+    const mcsi_vec3_d normal = mcsi_cross_d(mcsi_from_to(a, b), mcsi_from_to(a, c));
     mcsi_vec3_d centre = mcsi_add_d(mcsi_add_d(to_a, 1.0, to_b), 1.0, to_c);
     const int ok = mcsi_length_d(normal) > 0.0 && mcsi_length_d(centre) <= 1e60;
     l->a = to_a;
@@ -5050,9 +5066,9 @@ MCS_FN int mcsi_spherical_triangle_prepare(mcs_spherical_triangle *l, mcs_vec3 p
                           : l->per_c > l->per_a                      ? mcsi_volume_d(p, c, a, b)
                                                                      : mcsi_volume_d(p, a, b, c);
     const double turn = volume < 0.0 ? -1.0 : 1.0;
-    l->past_a = mcsi_side_d(turn * l->per_b * l->per_c, to_b, mcsi_from_to_d(b, c));
-    l->past_b = mcsi_side_d(turn * l->per_c * l->per_a, to_c, mcsi_from_to_d(c, a));
-    l->past_c = mcsi_side_d(turn * l->per_a * l->per_b, to_a, mcsi_from_to_d(a, b));
+    l->past_a = mcsi_side_d(turn * l->per_b * l->per_c, to_b, mcsi_from_to(b, c));
+    l->past_b = mcsi_side_d(turn * l->per_c * l->per_a, to_c, mcsi_from_to(c, a));
+    l->past_c = mcsi_side_d(turn * l->per_a * l->per_b, to_a, mcsi_from_to(a, b));
     const mcsi_vec3_d a_and_b = mcsi_add_d(l->a, 1.0, l->b);
     l->cos_bc = 0.5 * mcsi_length_d(mcsi_add_d(l->b, 1.0, l->c));
     l->cos_ca = 0.5 * mcsi_length_d(mcsi_add_d(l->c, 1.0, l->a));
@@ -5150,6 +5166,7 @@ MCSI_SAMPLE mcs_light_point mcs_spherical_triangle_sample(const mcs_spherical_tr
     mcs_light_point s;
     s.w = mcsi_vec3(MCSI_NARROW(w.x), MCSI_NARROW(w.y), MCSI_NARROW(w.z));
     s.pdf = mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
+    s.distance = mcsi_sane_result(s.pdf > 0.0f, MCSI_NARROW(per_sum));
     s.x = mcsi_min(MCSI_NARROW(at_a * per_sum), mcs_set(1.0f));
     s.y = mcsi_min(mcsi_max(MCSI_NARROW(at_b * per_sum), mcs_set(0.0f)), 1.0f - s.x);
     return s;
@@ -5226,13 +5243,14 @@ MCSI_CORE void mcsi_out_light(const mcsi_batch *b, mcs_light s) {
     mcsi_out_towards(b, s.w, s.pdf);
     mcsi_out(b, 4, s.distance);
 }
-MCSI_LOOP void mcsi_ball_loop(mcsi_scalar_vec3 centre, float radius, const mcsi_batch *call) {
-    const mcsi_ball ball = mcsi_ball_make(mcsi_spread(centre), mcs_set(radius));
+MCSI_LOOP void mcsi_ball_loop(mcsi_scalar_vec3 p, mcsi_scalar_vec3 centre, float radius, const mcsi_batch *call) {
+    const mcsi_ball ball = mcsi_ball_make(mcsi_spread(p), mcsi_spread(centre), mcs_set(radius));
     MCSI_EACH(b, call) { mcsi_out_light(&b, mcsi_ball_draw(&ball, mcsi_in(&b, 0), mcsi_in(&b, 1))); }
 }
-MCSI_LOOP void mcsi_disk_light_loop(mcsi_scalar_vec3 centre, mcsi_scalar_vec3 normal, float radius,
+MCSI_LOOP void mcsi_disk_light_loop(mcsi_scalar_vec3 p, mcsi_scalar_vec3 centre, mcsi_scalar_vec3 normal, float radius,
                                     const mcsi_batch *call) {
-    const mcsi_disk_light d = mcsi_disk_light_make(mcsi_spread(centre), mcsi_spread_direction(normal), mcs_set(radius));
+    const mcsi_disk_light d =
+        mcsi_disk_light_make(mcsi_spread(p), mcsi_spread(centre), mcsi_spread_direction(normal), mcs_set(radius));
     MCSI_EACH(b, call) { mcsi_out_light(&b, mcsi_disk_light_draw(&d, mcsi_in(&b, 0), mcsi_in(&b, 1))); }
 }
 /* The prepared light is spread to lanes once for the call. */
@@ -5244,8 +5262,9 @@ MCSI_LOOP void mcsi_disk_light_loop(mcsi_scalar_vec3 centre, mcsi_scalar_vec3 no
     }
 MCSI_CORE void mcsi_out_light_point(const mcsi_batch *b, mcs_light_point s) {
     mcsi_out_towards(b, s.w, s.pdf);
-    mcsi_out(b, 4, s.x);
-    mcsi_out(b, 5, s.y);
+    mcsi_out(b, 4, s.distance);
+    mcsi_out(b, 5, s.x);
+    mcsi_out(b, 6, s.y);
 }
 MCSI_LOOP_OF_LIGHT(spherical_rectangle)
 MCSI_LOOP_OF_LIGHT(spherical_triangle)
@@ -11195,6 +11214,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_finite MCSI_(finite)
 #define mcsi_from_axis MCSI_(from_axis)
 #define mcsi_from_bits MCSI_(from_bits)
+#define mcsi_from_to MCSI_(from_to)
 #define mcsi_gauss MCSI_(gauss)
 #define mcsi_gauss_h_invert MCSI_(gauss_h_invert)
 #define mcsi_gauss_h_pdf MCSI_(gauss_h_pdf)
@@ -11290,6 +11310,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_off_zero MCSI_(off_zero)
 #define mcsi_one_minus_cos_power MCSI_(one_minus_cos_power)
 #define mcsi_one_minus_z MCSI_(one_minus_z)
+#define mcsi_origin MCSI_(origin)
 #define mcsi_out MCSI_(out)
 #define mcsi_out_brdf MCSI_(out_brdf)
 #define mcsi_out_dir MCSI_(out_dir)
@@ -11832,6 +11853,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_finite
 #undef mcsi_from_axis
 #undef mcsi_from_bits
+#undef mcsi_from_to
 #undef mcsi_gauss
 #undef mcsi_gauss_h_invert
 #undef mcsi_gauss_h_pdf
@@ -11927,6 +11949,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_off_zero
 #undef mcsi_one_minus_cos_power
 #undef mcsi_one_minus_z
+#undef mcsi_origin
 #undef mcsi_out
 #undef mcsi_out_brdf
 #undef mcsi_out_dir
@@ -12223,28 +12246,31 @@ MCSI_ARRAY_ABOUT_Z(von_mises_fisher)
 #undef MCSI_ARRAY_SPHERE
 #undef MCSI_ARRAY_ABOUT_Z
 #ifndef MCS_NO_LIGHTS
-MCS_API void mcs_ball_sample_n(mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2, float *x,
-                               float *y, float *z, float *pdf, float *distance) {
+MCS_API void mcs_ball_sample_n(mcs_vec3 p, mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2,
+                               float *x, float *y, float *z, float *pdf, float *distance) {
     mcsi_batch call;
     mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);
     call.out[4] = distance;
-    MCSI_BATCH_LOOP(ball_loop, (centre, radius, &call));
+    MCSI_BATCH_LOOP(ball_loop, (p, centre, radius, &call));
 }
-MCS_API void mcs_disk_light_sample_n(mcs_vec3 centre, mcs_vec3 normal, float radius, size_t n, const float *u1,
-                                     const float *u2, float *x, float *y, float *z, float *pdf, float *distance) {
+MCS_API void mcs_disk_light_sample_n(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, float radius, size_t n,
+                                     const float *u1, const float *u2, float *x, float *y, float *z, float *pdf,
+                                     float *distance) {
     mcsi_batch call;
     mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);
     call.out[4] = distance;
-    MCSI_BATCH_LOOP(disk_light_loop, (centre, normal, radius, &call));
+    MCSI_BATCH_LOOP(disk_light_loop, (p, centre, normal, radius, &call));
 }
-#define MCSI_ARRAY_OF_LIGHT(NAME)                                                                                 \
-    MCS_API void mcs_##NAME##_sample_n(const mcs_##NAME *l, size_t n, const float *u1, const float *u2, float *x, \
-                                       float *y, float *z, float *pdf, float *light_x, float *light_y) {          \
-        mcsi_batch call;                                                                                          \
-        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                           \
-        call.out[4] = light_x;                                                                                    \
-        call.out[5] = light_y;                                                                                    \
-        MCSI_BATCH_LOOP(NAME##_loop, (l, &call));                                                                 \
+#define MCSI_ARRAY_OF_LIGHT(NAME)                                                                                  \
+    MCS_API void mcs_##NAME##_sample_n(const mcs_##NAME *l, size_t n, const float *u1, const float *u2, float *x,  \
+                                       float *y, float *z, float *pdf, float *distance, float *light_x,            \
+                                       float *light_y) {                                                           \
+        mcsi_batch call;                                                                                           \
+        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                            \
+        call.out[4] = distance;                                                                                    \
+        call.out[5] = light_x;                                                                                     \
+        call.out[6] = light_y;                                                                                     \
+        MCSI_BATCH_LOOP(NAME##_loop, (l, &call));                                                                  \
     }
 MCSI_ARRAY_OF_LIGHT(spherical_rectangle)
 MCSI_ARRAY_OF_LIGHT(spherical_triangle)

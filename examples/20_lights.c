@@ -8,23 +8,22 @@
 
 enum { LIGHTS = 10, SAMPLES = 500000 };
 
-/* Seen from the point that is lit, whose normal is +z. */
 typedef struct {
-    mcs_vec3 towards; /* the centre, a unit vector */
-    float distance, radius, radiance;
+    mcs_vec3 centre;
+    float radius, radiance;
 } sphere;
 
-/* One sample of all lights; your shadow ray would make it 0 where the light is hidden. */
+static const mcs_vec3 lit = {3, -2, 1}; /* a point of the surface, whose normal is +z */
+
+/* One sample of all lights. Your shadow ray, from lit along d.w as far as d.distance, would make it 0 where the light is
+ * hidden. */
 static double reflected(const sphere *lights, const mcs_discrete *table, float u1, float u2) {
     const mcs_pick pick = mcs_discrete_sample(table, u1);
     if (!(pick.pmf > 0)) return 0;
     const sphere *l = &lights[pick.i];
-    const float k = mcs_cone_from_sin2(l->radius * l->radius / (l->distance * l->distance));
-    const mcs_dir d = mcs_cone_sample(k, pick.u, u2);
+    const mcs_light d = mcs_ball_sample(lit, l->centre, l->radius, pick.u, u2);
     if (!(d.pdf > 0)) return 0;
-    const mcs_frame frame = mcs_frame_make(l->towards);
-    const mcs_vec3 w = mcs_to_world(&frame, d.w);
-    return l->radiance * mcs_cosine_pdf(w) / (pick.pmf * d.pdf); /* f cos is cos/pi, as mcs_cosine_pdf */
+    return l->radiance * mcs_cosine_pdf(d.w) / (pick.pmf * d.pdf); /* f cos is cos/pi, as mcs_cosine_pdf */
 }
 
 int main(void) {
@@ -40,11 +39,13 @@ int main(void) {
         float u[5];
         mcs_pcg32_fill_n(&rng, 5, u);
         const mcs_vec3 towards = mcs_cone_sample(0.5f, u[0], u[1]).w; /* at least 30 degrees high: seen whole */
-        const sphere l = {towards, 3 + 3 * u[2], 0.5f + 0.9f * u[3], 1 / (0.01f + u[4])};
-        const double sin2 = pow((double)l.radius / l.distance, 2);
+        const float distance = 3 + 3 * u[2];
+        const mcs_vec3 centre = {lit.x + distance * towards.x, lit.y + distance * towards.y,
+                                 lit.z + distance * towards.z};
+        const sphere l = {centre, 0.5f + 0.9f * u[3], 1 / (0.01f + u[4])};
         lights[i] = l;
         power[i] = l.radiance * l.radius * l.radius;
-        exact += l.radiance * sin2 * l.towards.z;
+        exact += l.radiance * pow((double)l.radius / distance, 2) * towards.z;
     }
     if (!table || mcs_discrete_build(table, bytes, power, LIGHTS) != MCS_OK) {
         puts("the table could not be built");

@@ -15,7 +15,7 @@ static mcs_spherical_rectangle panel; /* prepared for the point that is lit */
 
 static double sample_panel(float u1, float u2, int mis) {
     const mcs_light_point s = mcs_spherical_rectangle_sample(&panel, u1, u2);
-    if (!(s.pdf > 0 && s.w.z > 0)) return 0; /* your shadow ray goes to corner + s.x edge_x + s.y edge_y */
+    if (!(s.pdf > 0 && s.w.z > 0)) return 0; /* your shadow ray goes s.distance along s.w */
     const double value = radiance * mcs_ggx_eval(&m, wo, s.w) * s.w.z / s.pdf;
     return mis ? value * mcs_mis_power(s.pdf, mcs_ggx_bounded_pdf(&m, wo, s.w)) : value;
 }

@@ -79,8 +79,8 @@ static lamps_view lamps_from(const lamp_pair *both, vec3 p, int by_area) {
 
 /* Densities with which each lamp is drawn, half of the samples being for the other one. */
 static float pdf_by_angle(const lamps_view *view, vec3 w) {
-    const vec3 to_center = sub(view->both->center, view->p);
-    return 0.5f * (mcs_spherical_rectangle_pdf(&view->panel, w) + mcs_ball_pdf(to_center, view->both->radius, w));
+    const lamp_pair *both = view->both;
+    return 0.5f * (mcs_spherical_rectangle_pdf(&view->panel, w) + mcs_ball_pdf(view->p, both->center, both->radius, w));
 }
 
 static float pdf_by_area(const lamps_view *view, vec3 w) {
@@ -107,8 +107,7 @@ static incoming lamps_along(const lamps_view *view, vec3 w) {
 
 static incoming lamps_draw_angle(const lamps_view *view, int bulb, float u1, float u2) {
     if (!bulb) return lamps_along(view, mcs_spherical_rectangle_sample(&view->panel, u1, u2).w);
-    const vec3 to_center = sub(view->both->center, view->p);
-    return lamps_along(view, mcs_ball_sample(to_center, view->both->radius, u1, u2).w);
+    return lamps_along(view, mcs_ball_sample(view->p, view->both->center, view->both->radius, u1, u2).w);
 }
 
 static incoming lamps_draw_area(const lamps_view *view, int bulb, float u1, float u2) {

@@ -55,8 +55,8 @@ MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
 #define ARGS_2 LD(0), LD(1),
 #define ARGS_corners LD(0), LD(1), M_(set)(1.0f), M_(set)(3.0f),
 #define ARGS_cross LD(0), M_(set)(0.0f), M_(set)(0.0f), LD(1),
-#define ARGS_ball A_(aside)(LD(0)), LD(1),
-#define ARGS_disk_light A_(aside)(LD(0)), A_(tilted)(), LD(1),
+#define ARGS_ball A_(origin)(), A_(aside)(LD(0)), LD(1),
+#define ARGS_disk_light A_(origin)(), A_(aside)(LD(0)), A_(tilted)(), LD(1),
 #define MAKE_rectangle const M_(spherical_rectangle) m = A_(row_rectangle)(LD(0), LD(1))
 #define MAKE_triangle const M_(spherical_triangle) m = A_(row_triangle)(LD(0), LD(1))
 #define MAKE_phong const M_(phong) m = M_(phong_make)(LD(0))
@@ -127,7 +127,8 @@ MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
 #define MCST_DIR(row, fn, args, unused) MCST_DIRECTION(row, fn, (void)p, ARGS_##args)
 #define MCST_LIGHT(row, fn, args, unused) \
     MCST_TOWARDS(row, fn, light, M_(store)(out + 4 * MCST_W, s.distance), (void)p, ARGS_##args)
-#define MCST_POLYGON(row, fn, mat, unused) MCST_TOWARDS(row, fn, light_point, (void)0, MAKE_##mat, LEAD_M)
+#define MCST_POLYGON(row, fn, mat, unused) \
+    MCST_TOWARDS(row, fn, light_point, M_(store)(out + 4 * MCST_W, s.distance), MAKE_##mat, LEAD_M)
 #define MCST_LOBE(row, fn, mat, unused) MCST_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
 #define MCST_VLOBE(row, fn, mat, unused) MCST_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)
 
@@ -156,7 +157,7 @@ MCST_HD static inline void A_(store3)(float *a, M_(vec3) v) {
 MCST_ROWS(MCST_ADAPT)
 
 #if MCST_W == 1
-/* The array forms: out[0..4] = x, y, z, pdf, weight. */
+/* The array forms: out[0..4] = x, y, z, pdf, and weight or distance. */
 #define MCST_N_LINE(row, fn, args, unused)                                                                           \
     MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
         (void)p, (void)u2;                                                                                           \
@@ -180,7 +181,7 @@ MCST_ROWS(MCST_ADAPT)
 #define MCST_N_POLYGON(row, fn, mat, unused)                                                                         \
     MCST_HOST_FN void mcstn_##row(const float *p, size_t n, const float *u1, const float *u2, float *const out[5]) { \
         MAKE_##mat;                                                                                                  \
-        mcs_##fn##_sample_n(&m, n, u1, u2, out[0], out[1], out[2], out[3], NULL, NULL);                              \
+        mcs_##fn##_sample_n(&m, n, u1, u2, out[0], out[1], out[2], out[3], out[4], NULL, NULL);                      \
     }
 #define MCST_N_LOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M)
 #define MCST_N_VLOBE(row, fn, mat, unused) MCST_N_DIRECTION(row, fn, MAKE_##mat, LEAD_M_WO)

@@ -628,6 +628,7 @@ static inline o_vec3 o_between(o_vec3 a, o_vec3 b, ld t) { return o_add(a, o_sca
 
 typedef struct {
     o_vec3 w;
+    ld distance;
     ld x, y; /* on the light */
 } o_light;
 
@@ -659,7 +660,9 @@ static inline o_light o_triangle_light(o_triangle l, ld u1, ld u2) {
     const ld from_b = sinl(angle - part) / o_len(l.b);
     const ld from_end = sinl(part) / o_len(end);
     o_light s;
-    s.w = o_unit(o_add(o_scale(from_b, l.b), o_scale(from_end, end)));
+    const o_vec3 sum = o_add(o_scale(from_b, l.b), o_scale(from_end, end));
+    s.w = o_unit(sum);
+    s.distance = o_len(sum) / (from_b + from_end);
     s.x = from_end * (1.0L - t) / (from_b + from_end);
     s.y = from_b / (from_b + from_end);
     return s;
@@ -739,7 +742,9 @@ static inline o_light o_rectangle_light(o_rectangle l, ld u1, ld u2) {
     l.x = l.x0 + s.x * l.width;
     s.y = o_reach(o_rectangle_rise, &l, u2 * o_rectangle_rise(&l, 1.0L));
     const o_vec3 in_plane = o_add(o_scale(l.x, l.axis_x), o_scale(l.y0 + s.y * l.height, l.axis_y));
-    s.w = o_unit(o_add(in_plane, o_scale(l.z, l.normal)));
+    const o_vec3 place = o_add(in_plane, o_scale(l.z, l.normal));
+    s.w = o_unit(place);
+    s.distance = o_len(place);
     return s;
 }
 static inline o_vec3 o_spherical_rectangle_map(o_rectangle l, ld u1, ld u2) { return o_rectangle_light(l, u1, u2).w; }

@@ -35,8 +35,10 @@
 #define MCST_LIGHTS(M, X)                                                                                              \
     M(X, LIGHT, ball, ball, ball, -, BY_TRUTH, ball, ball, 0, MCST_WHOLE | MCST_DISTANCE)                              \
     M(X, LIGHT, disk_light, disk_light, disk_light, -, BY_TRUTH, disk_light, disk_light, 0, MCST_FREE | MCST_DISTANCE) \
-    M(X, POLYGON, spherical_rectangle, spherical_rectangle, rectangle, -, BY_TRUTH, light, direction, 0, MCST_FREE)    \
-    M(X, POLYGON, spherical_triangle, spherical_triangle, triangle, -, BY_TRUTH, light, direction, 0, MCST_FREE)
+    M(X, POLYGON, spherical_rectangle, spherical_rectangle, rectangle, -, BY_TRUTH, light, direction, 0,               \
+      MCST_FREE | MCST_DISTANCE)                                                                                       \
+    M(X, POLYGON, spherical_triangle, spherical_triangle, triangle, -, BY_TRUTH, light, direction, 0,                  \
+      MCST_FREE | MCST_DISTANCE)
 #define MCST_MEDIA(M, X)                                                                                 \
     M(X, DIR, henyey_greenstein, henyey_greenstein, 1, -, BY_TRUTH, asymmetry, asymmetry, 1, MCST_WHOLE) \
     M(X, DIR, rayleigh, rayleigh, 0, -, SPHERE, none, direction, 0, MCST_WHOLE)                          \

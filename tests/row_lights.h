@@ -7,6 +7,8 @@ MCST_HD static inline M_(vec3) L_(vec3_of)(F_ x, F_ y, F_ z) {
     v.z = z;
     return v;
 }
+/* The point that is lit. */
+MCST_HD static inline M_(vec3) L_(origin)(void) { return L_(vec3_of)(M_(set)(0.0f), M_(set)(0.0f), M_(set)(0.0f)); }
 /* A light that lies neither on an axis nor in front: at (-1/2, 1/4, 1) times a distance. */
 MCST_HD static inline M_(vec3) L_(aside)(F_ distance) {
     return L_(vec3_of)(-0.5f * distance, 0.25f * distance, distance);
@@ -17,14 +19,12 @@ MCST_HD static inline M_(spherical_rectangle) L_(row_rectangle)(F_ a, F_ b) {
     const F_ height = a * b;
     const F_ zero = M_(set)(0.0f);
     const F_ z = 1.0f - 0.0625f * a;
-    return M_(spherical_rectangle_make)(L_(vec3_of)(zero, zero, zero),
-                                        L_(vec3_of)(-0.25f * a, -0.5f * height, z - 0.0625f * height),
+    return M_(spherical_rectangle_make)(L_(origin)(), L_(vec3_of)(-0.25f * a, -0.5f * height, z - 0.0625f * height),
                                         L_(vec3_of)(a, zero, 0.25f * a), L_(vec3_of)(zero, height, 0.125f * height));
 }
 MCST_HD static inline M_(spherical_triangle) L_(row_triangle)(F_ a, F_ b) {
     const F_ height = a * b;
-    const F_ zero = M_(set)(0.0f);
-    return M_(spherical_triangle_make)(L_(vec3_of)(zero, zero, zero), L_(vec3_of)(-a, -height, 1.25f - 0.25f * height),
+    return M_(spherical_triangle_make)(L_(origin)(), L_(vec3_of)(-a, -height, 1.25f - 0.25f * height),
                                        L_(vec3_of)(0.9f * a, -0.5f * height, 1.25f - 0.125f * height),
                                        L_(vec3_of)(0.25f * a, height, 1.25f + 0.25f * height));
 }

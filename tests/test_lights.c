@@ -1,5 +1,6 @@
-/* Lights anywhere, of any size: spherical rectangles and triangles against the truth of oracle.h; points in the plane
- * of a light, lights that are none or too faint, densities per area and per solid angle, lanes and arrays. */
+/* Lights anywhere, of any size: spherical rectangles and triangles against the truth of oracle.h; balls and disks away
+ * from the origin; points in the plane of a light, lights that are none or too faint, densities per area and per solid
+ * angle, lanes and arrays. */
 #include <float.h>
 #include <math.h>
 #include "mcs_test.h"
@@ -89,6 +90,8 @@ static void check_sample(const char *what, mcs_light_point s, o_light exact, ld 
     CHECK(place <= eps * 1.1, "%s, u %a %a: place %.9g %.9g, not %.9Lg %.9Lg", what, (double)u1, (double)u2,
           (double)s.x, (double)s.y, exact.x, exact.y);
     CHECK(fabsl((ld)s.pdf / pdf - 1) <= 0.2e-6L, "%s: pdf %.9g, not %.9Lg", what, (double)s.pdf, pdf);
+    CHECK(fabsl((ld)s.distance / exact.distance - 1) <= 1e-7L, "%s, u %a %a: distance %.9g, not %.9Lg", what,
+          (double)u1, (double)u2, (double)s.distance, exact.distance);
 }
 /* The exact inverse of the float w, while lights are so large that their own roundings are small. */
 static void check_inverse(const char *what, mcs_vec2 u, o_vec2 exact) {
@@ -139,12 +142,84 @@ static void triangles(mcs_pcg32 *r, const kind *k) {
     }
 }
 
+/* --- balls and disks ---------------------------------------------------------------------------------------------- */
+
+static mcs_vec3 plus(mcs_vec3 v, mcs_vec3 w) {
+    const mcs_vec3 sum = {v.x + w.x, v.y + w.y, v.z + w.z};
+    return sum;
+}
+static mcs_vec3 any_place(mcs_pcg32 *r, double size) {
+    const mcs_vec3 v = {(float)(size * any(r)), (float)(size * any(r)), (float)(size * any(r))};
+    return v;
+}
+static mcs_vec3 any_on_grid(mcs_pcg32 *r, double size) {
+    const mcs_vec3 v = any_place(r, size);
+    const mcs_vec3 on_grid = {floorf(v.x * 1024) / 1024, floorf(v.y * 1024) / 1024, floorf(v.z * 1024) / 1024};
+    return on_grid;
+}
+static int same_light(mcs_light a, mcs_light b) {
+    return a.w.x == b.w.x && a.w.y == b.w.y && a.w.z == b.w.z && a.pdf == b.pdf && a.distance == b.distance;
+}
+/* On a grid whose sums are floats, p and the light may be moved together. */
+static void moved_together(mcs_pcg32 *r) {
+    const mcs_vec3 zero = {0, 0, 0};
+    for (int i = 0; i < 20000; i++) {
+        const mcs_vec3 c = any_on_grid(r, 4);
+        const mcs_vec3 p = any_on_grid(r, 1000);
+        const mcs_vec3 moved = plus(p, c);
+        const mcs_vec3 n = mcs_sphere_sample(mcs_pcg32_float(r), mcs_pcg32_float(r)).w;
+        const float radius = (float)pick(r, 1e-3, 10);
+        const float u1 = any_u(r);
+        const float u2 = any_u(r);
+        const mcs_light ball = mcs_ball_sample(p, moved, radius, u1, u2);
+        const mcs_light disk = mcs_disk_light_sample(p, moved, n, radius, u1, u2);
+        CHECK(same_light(ball, mcs_ball_sample(zero, c, radius, u1, u2)) &&
+                  same_light(disk, mcs_disk_light_sample(zero, c, n, radius, u1, u2)),
+              "samples, u %a %a", (double)u1, (double)u2);
+        CHECK(mcs_ball_pdf(p, moved, radius, disk.w) == mcs_ball_pdf(zero, c, radius, disk.w) &&
+                  mcs_disk_light_pdf(p, moved, n, radius, ball.w) == mcs_disk_light_pdf(zero, c, n, radius, ball.w),
+              "densities, u %a %a", (double)u1, (double)u2);
+        const mcs_vec2 in_ball = mcs_ball_invert(p, moved, radius, ball.w);
+        const mcs_vec2 in_disk = mcs_disk_light_invert(p, moved, n, radius, disk.w);
+        const mcs_vec2 want_ball = mcs_ball_invert(zero, c, radius, ball.w);
+        const mcs_vec2 want_disk = mcs_disk_light_invert(zero, c, n, radius, disk.w);
+        CHECK(in_ball.x == want_ball.x && in_ball.y == want_ball.y && in_disk.x == want_disk.x &&
+                  in_disk.y == want_disk.y,
+              "inverses, u %a %a", (double)u1, (double)u2);
+    }
+}
+/* Where centre - p is no float, it is not rounded to one: density and distance are rounded once, which moves them by
+ * 2^-24 of themselves. */
+static void away_from_origin(mcs_pcg32 *r) {
+    for (int i = 0; i < 20000; i++) {
+        const mcs_vec3 p = any_place(r, 1);
+        const mcs_vec3 centre = plus(any_place(r, 100), p);
+        const o_vec3 to_centre = o_add(wide(centre), o_scale(-1.0L, wide(p)));
+        const mcs_vec3 n = mcs_sphere_sample(mcs_pcg32_float(r), mcs_pcg32_float(r)).w;
+        const float radius = (float)((double)o_len(to_centre) * pick(r, 1e-4, 0.5));
+        const float u1 = mcs_pcg32_float(r);
+        const float u2 = mcs_pcg32_float(r);
+        const mcs_light ball = mcs_ball_sample(p, centre, radius, u1, u2);
+        const o_vec3 w = o_ball_map(to_centre, (ld)radius, (ld)u1, (ld)u2);
+        CHECK(fabsl((ld)ball.pdf / o_ball_pdf_u(to_centre, (ld)radius, (ld)u1, (ld)u2) - 1) <= 7e-8L &&
+                  fabsl((ld)ball.distance / o_ball_distance(to_centre, (ld)radius, w) - 1) <= 7e-8L &&
+                  off(w, ball.w) <= 2.5 * eps && mcs_ball_pdf(p, centre, radius, ball.w) == ball.pdf,
+              "a ball, u %a %a: %.9g %.9g", (double)u1, (double)u2, (double)ball.pdf, (double)ball.distance);
+        const o_vec3 place = o_disk_light_point(to_centre, wide(n), (ld)radius, (ld)u1, (ld)u2);
+        if (fabsl(o_dot(o_unit(place), wide(n))) < 1e-3L) continue;
+        const mcs_light disk = mcs_disk_light_sample(p, centre, n, radius, u1, u2);
+        CHECK(fabsl((ld)disk.distance / o_len(place) - 1) <= 7e-8L && off(o_unit(place), disk.w) <= eps,
+              "a disk, u %a %a: distance %.9g, not %.9Lg", (double)u1, (double)u2, (double)disk.distance, o_len(place));
+    }
+}
+
 /* --- no light at all ---------------------------------------------------------------------------------------------- */
 
 /* pdf 0, and a unit direction to a place on the light. */
 static void check_dark(const char *what, mcs_light_point s, float pdf, mcs_vec2 u) {
     const ld length = o_len(wide(s.w));
-    CHECK(s.pdf == 0 && pdf == 0, "%s: pdf %g, of +z %g", what, (double)s.pdf, (double)pdf);
+    CHECK(s.pdf == 0 && s.distance == 0 && pdf == 0, "%s: pdf %g, of +z %g, distance %g", what, (double)s.pdf,
+          (double)pdf, (double)s.distance);
     CHECK(fabsl(length - 1) <= 4 * eps, "%s: %g %g %g", what, (double)s.w.x, (double)s.w.y, (double)s.w.z);
     CHECK(s.x >= 0 && s.x <= 1 && s.y >= 0 && s.y <= 1, "%s: at %g %g", what, (double)s.x, (double)s.y);
     CHECK(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1, "%s: inverse %g %g", what, (double)u.x, (double)u.y);
@@ -197,10 +272,30 @@ static void no_lights(void) {
 }
 /* A disk whose density is below all floats counts as none: it has no distance either. */
 static void faint_disk(void) {
+    const mcs_vec3 p = {0, 0, 0};
     const mcs_vec3 centre = {2e-18f, -1e-18f, 4e-18f};
     const mcs_vec3 normal = {0.48f, 0.6f, -0.64f};
-    const mcs_light s = mcs_disk_light_sample(centre, normal, 1e18f, 0.5f, 0.5f);
+    const mcs_light s = mcs_disk_light_sample(p, centre, normal, 1e18f, 0.5f, 0.5f);
     CHECK(s.pdf == 0 && s.distance == 0, "%g %g", (double)s.pdf, (double)s.distance);
+}
+/* Balls and disks where p or the centre is not finite, or out of range. */
+static void bad_places(void) {
+    static const float bad[] = {NAN, INFINITY, -INFINITY, 1.1e18f};
+    const mcs_vec3 up = {0, 0, 1};
+    for (int i = 0; i < 24; i++) {
+        mcs_vec3 p = {1, 2, 3};
+        mcs_vec3 centre = {3, 1, 2};
+        float *const number[6] = {&p.x, &p.y, &p.z, &centre.x, &centre.y, &centre.z};
+        *number[i % 6] = bad[i / 6];
+        const mcs_light s[2] = {mcs_ball_sample(p, centre, 1, 0.3f, 0.6f),
+                                mcs_disk_light_sample(p, centre, up, 1, 0.3f, 0.6f)};
+        for (int k = 0; k < 2; k++)
+            CHECK(s[k].pdf == 0 && s[k].distance == 0 && fabsl(o_len(wide(s[k].w)) - 1) <= 4 * eps,
+                  "number %d, %g: pdf %g, distance %g", i % 6, (double)bad[i / 6], (double)s[k].pdf,
+                  (double)s[k].distance);
+        CHECK(mcs_ball_pdf(p, centre, 1, up) == 0 && mcs_disk_light_pdf(p, centre, up, 1, up) == 0, "number %d, %g",
+              i % 6, (double)bad[i / 6]);
+    }
 }
 /* Where p approaches the plane over the light, the solid angle approaches 2 pi. */
 static void half_of_all(void) {
@@ -261,10 +356,10 @@ static void conversions(mcs_pcg32 *r) {
 
 /* --- widths ------------------------------------------------------------------------------------------------------- */
 
-/* Places on the light, too, in lanes and arrays; what else there is, test_width looks at. */
+/* Distances and places on the light in lanes and arrays; what else there is, test_width looks at. */
 #ifndef MCS_NO_WIDE
 #define PLACES(W)                                                                                                     \
-    static void places##W(const shape *s, const float *u1, const float *u2, const float *x, const float *y) {         \
+    static void places##W(const shape *s, const float *u1, const float *u2, const mcs_light_point *want) {            \
         mcs##W##_vec3 v[4];                                                                                           \
         for (int i = 0; i < 4; i++) {                                                                                 \
             const mcs_vec3 *from = i == 0 ? &s->p : i == 1 ? &s->a : i == 2 ? &s->b : &s->c;                          \
@@ -277,9 +372,11 @@ static void conversions(mcs_pcg32 *r) {
         const mcs##W##_light_point a = mcs##W##_spherical_rectangle_sample(&q, mcs##W##_load(u1), mcs##W##_load(u2)); \
         const mcs##W##_light_point b = mcs##W##_spherical_triangle_sample(&t, mcs##W##_load(u1), mcs##W##_load(u2));  \
         for (int k = 0; k < W; k++)                                                                                   \
-            CHECK(a.x[k] == x[k] && a.y[k] == y[k] && b.x[k] == x[16 + k] && b.y[k] == y[16 + k],                     \
-                  #W " wide, lane %d: %.9g %.9g %.9g %.9g", k, (double)a.x[k], (double)a.y[k], (double)b.x[k],        \
-                  (double)b.y[k]);                                                                                    \
+            CHECK(a.x[k] == want[k].x && a.y[k] == want[k].y && b.x[k] == want[16 + k].x &&                           \
+                      b.y[k] == want[16 + k].y && a.distance[k] == want[k].distance &&                                \
+                      b.distance[k] == want[16 + k].distance,                                                         \
+                  #W " wide, lane %d: %.9g %.9g %.9g %.9g, distances %.9g %.9g", k, (double)a.x[k], (double)a.y[k],   \
+                  (double)b.x[k], (double)b.y[k], (double)a.distance[k], (double)b.distance[k]);                      \
     }
 PLACES(4)
 PLACES(8)
@@ -292,30 +389,26 @@ static void check_places(mcs_pcg32 *r) {
         const mcs_spherical_triangle t = mcs_spherical_triangle_make(s.p, s.a, s.b, s.c);
         float u1[16];
         float u2[16];
-        float x[32];
-        float y[32];
+        mcs_light_point want[32];
         for (int k = 0; k < 16; k++) {
             u1[k] = any_u(r);
             u2[k] = any_u(r);
-            const mcs_light_point a = mcs_spherical_rectangle_sample(&q, u1[k], u2[k]);
-            const mcs_light_point b = mcs_spherical_triangle_sample(&t, u1[k], u2[k]);
-            x[k] = a.x;
-            y[k] = a.y;
-            x[16 + k] = b.x;
-            y[16 + k] = b.y;
+            want[k] = mcs_spherical_rectangle_sample(&q, u1[k], u2[k]);
+            want[16 + k] = mcs_spherical_triangle_sample(&t, u1[k], u2[k]);
         }
 #ifndef MCS_NO_WIDE
-        places4(&s, u1, u2, x, y);
-        places8(&s, u1, u2, x, y);
-        places16(&s, u1, u2, x, y);
+        places4(&s, u1, u2, want);
+        places8(&s, u1, u2, want);
+        places16(&s, u1, u2, want);
 #endif
+        float got[32];
         float got_x[32];
         float got_y[32];
-        mcs_spherical_rectangle_sample_n(&q, 13, u1, u2, NULL, NULL, NULL, NULL, got_x, got_y);
-        mcs_spherical_triangle_sample_n(&t, 13, u1, u2, NULL, NULL, NULL, NULL, got_x + 16, got_y + 16);
+        mcs_spherical_rectangle_sample_n(&q, 13, u1, u2, NULL, NULL, NULL, NULL, got, got_x, got_y);
+        mcs_spherical_triangle_sample_n(&t, 13, u1, u2, NULL, NULL, NULL, NULL, got + 16, got_x + 16, got_y + 16);
         for (int k = 0; k < 29; k++)
-            CHECK((k > 12 && k < 16) || (got_x[k] == x[k] && got_y[k] == y[k]), "arrays, %d: %.9g %.9g", k,
-                  (double)got_x[k], (double)got_y[k]);
+            CHECK((k > 12 && k < 16) || (got_x[k] == want[k].x && got_y[k] == want[k].y && got[k] == want[k].distance),
+                  "arrays, %d: %.9g %.9g, distance %.9g", k, (double)got_x[k], (double)got_y[k], (double)got[k]);
     }
 }
 
@@ -328,8 +421,11 @@ int main(int argc, char **argv) {
         if (mcst_case("triangle, %s", kinds[i].name)) triangles(&r, &kinds[i]);
     }
     if (mcst_case("half of all directions")) half_of_all();
+    if (mcst_case("balls and disks, moved with p")) moved_together(&r);
+    if (mcst_case("balls and disks, away from the origin")) away_from_origin(&r);
     if (mcst_case("no light")) no_lights();
     if (mcst_case("a disk too faint")) faint_disk();
+    if (mcst_case("balls and disks, bad places")) bad_places();
     if (mcst_case("per area and per solid angle")) conversions(&r);
     if (mcst_arrays_contract()) puts("SKIPPED: the bits of lanes and arrays, as this build contracts a*b + c");
     else if (mcst_case("places in lanes and arrays")) check_places(&r);

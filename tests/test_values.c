@@ -343,7 +343,9 @@ static void ends_of_von_mises_fisher(void) {
     }
 }
 
-/* ---- lights ---- */
+/* ---- lights, as they are seen from the origin ---- */
+
+static const mcs_vec3 origin = {0, 0, 0};
 
 /* A centre within 1 of the point by coordinate; some lie nearly along z, or nearly across it. */
 static mcs_vec3 any_centre(uint64_t *state) {
@@ -371,8 +373,8 @@ static void balls(double least, double most) {
         const double ratio = least > 0.5 && i % 2 ? most - (most - least) * pow(1e-7, (double)v[0]) : exp(log_ratio);
         const float r = (float)(ratio * (double)o_len(centre));
         if (i % 8 == 0) u[0] = 1 - 0x1p-24f;
-        const mcs_light s = mcs_ball_sample(c, r, u[0], u[1]);
-        const float pdf = mcs_ball_pdf(c, r, s.w);
+        const mcs_light s = mcs_ball_sample(origin, c, r, u[0], u[1]);
+        const float pdf = mcs_ball_pdf(origin, c, r, s.w);
         const o_vec3 w = o_ball_map(centre, (ld)r, (ld)u[0], (ld)u[1]);
         const o_vec3 off = o_add(o_v3(s.w.x, s.w.y, s.w.z), o_scale(-1, w));
         const ld err = fmaxl(fmaxl(fabsl(off.x), fabsl(off.y)), fabsl(off.z));
@@ -391,8 +393,8 @@ static void ends_of_balls(void) {
     const mcs_vec3 at = {0, 0, 0};
     for (int i = 0; i < 100; i++) {
         const float u1 = (float)i / 100;
-        const mcs_light on = mcs_ball_sample(ahead, 1, u1, 0.3f);
-        const mcs_light in = mcs_ball_sample(at, 3, u1, 0.3f);
+        const mcs_light on = mcs_ball_sample(origin, ahead, 1, u1, 0.3f);
+        const mcs_light in = mcs_ball_sample(origin, at, 3, u1, 0.3f);
         CHECK(relative(on.pdf, 0.25L / O_PI) <= EPS && fabsf(on.distance - 2 * fmaxf(1 - 2 * u1, 0)) <= 2 * (float)EPS,
               "on the surface, u1 = %g: pdf %.9g, distance %.9g", (double)u1, (double)on.pdf, (double)on.distance);
         CHECK(in.pdf == on.pdf && in.distance == 3 && fabsf(in.w.z - (1 - 2 * u1)) <= 2 * (float)EPS,
@@ -404,14 +406,14 @@ static void ends_of_balls(void) {
         const mcs_vec3 c = {0, 0, 2};
         const mcs_vec3 inside = {(float)sin(rim + 0x1p-25), 0, (float)cos(rim + 0x1p-25)};
         const mcs_vec3 past = {(float)sin(rim * (1 + 1e-6) + 0x1p-22), 0, (float)cos(rim * (1 + 1e-6) + 0x1p-22)};
-        CHECK(mcs_ball_pdf(c, r, inside) > 0 && mcs_ball_pdf(c, r, past) == 0, "r = %g: pdf %g past the rim", (double)r,
-              (double)mcs_ball_pdf(c, r, past));
+        CHECK(mcs_ball_pdf(origin, c, r, inside) > 0 && mcs_ball_pdf(origin, c, r, past) == 0,
+              "r = %g: pdf %g past the rim", (double)r, (double)mcs_ball_pdf(origin, c, r, past));
     }
-    const mcs_light speck = mcs_ball_sample(ahead, 1e-18f, 0.5f, 0.5f);
+    const mcs_light speck = mcs_ball_sample(origin, ahead, 1e-18f, 0.5f, 0.5f);
     CHECK(relative(speck.pdf, 1 / (O_PI * 1e-30L)) <= 1e-6L && speck.distance == 1 && speck.w.z == 1,
           "a speck: pdf %g, distance %.9g", (double)speck.pdf, (double)speck.distance);
     const mcs_vec3 far_away = {-1e18f, 1e18f, -1e18f};
-    const mcs_light sun = mcs_ball_sample(far_away, 1e18f, 0.5f, 0.5f);
+    const mcs_light sun = mcs_ball_sample(origin, far_away, 1e18f, 0.5f, 0.5f);
     CHECK(sun.distance > 7e17f && sun.distance < 1.8e18f && sun.pdf > 0, "a sun: pdf %g, distance %g", (double)sun.pdf,
           (double)sun.distance);
 }
@@ -436,12 +438,12 @@ static void disk_lights(double ratio, float level) {
         const o_vec3 w = o_disk_light_map(centre, normal, (ld)r, (ld)u[0], (ld)u[1]);
         const ld distance = o_len(o_disk_light_point(centre, normal, (ld)r, (ld)u[0], (ld)u[1]));
         if (distance < 1e-4L * (ld)r || fabsl(o_dot(w, normal)) < 1.1e-7L) continue;
-        const mcs_light s = mcs_disk_light_sample(c, n, r, u[0], u[1]);
+        const mcs_light s = mcs_disk_light_sample(origin, c, n, r, u[0], u[1]);
         const o_vec3 off = o_add(o_v3(s.w.x, s.w.y, s.w.z), o_scale(-1, w));
         const ld err = fmaxl(fmaxl(fabsl(off.x), fabsl(off.y)), fabsl(off.z));
         const ld want = o_disk_light_pdf_u(centre, normal, (ld)r, (ld)u[0], (ld)u[1]);
         const ld want_w = o_disk_light_pdf(centre, normal, (ld)r, o_v3(s.w.x, s.w.y, s.w.z));
-        const float pdf = mcs_disk_light_pdf(c, n, r, s.w);
+        const float pdf = mcs_disk_light_pdf(origin, c, n, r, s.w);
         CHECK(err <= EPS && relative(s.pdf, want) <= 1e-7L && relative(s.distance, distance) <= 1e-7L,
               "c (%a, %a, %a), r %a, u %a %a: w off by %Lg, pdf %.9g, not %.9Lg, distance %.9g, not %.9Lg", (double)c.x,
               (double)c.y, (double)c.z, (double)r, (double)u[0], (double)u[1], err, (double)s.pdf, want,
@@ -458,23 +460,25 @@ static void ends_of_disk_lights(void) {
     const mcs_vec3 at = {0, 0, 0};
     const mcs_vec3 beside = {2, 0, 0};
     const mcs_vec3 above = {0, 0, 2};
-    const mcs_light edge = mcs_disk_light_sample(beside, up, 1, 0.3f, 0.6f);
-    const mcs_light middle = mcs_disk_light_sample(at, up, 1, 0.5f, 0.5f);
+    const mcs_light edge = mcs_disk_light_sample(origin, beside, up, 1, 0.3f, 0.6f);
+    const mcs_light middle = mcs_disk_light_sample(origin, at, up, 1, 0.5f, 0.5f);
     CHECK(edge.pdf == 0 && edge.distance == 0 && edge.w.x > 0.8f && edge.w.z == 0, "from its plane: %g %g %g, pdf %g",
           (double)edge.w.x, (double)edge.w.y, (double)edge.w.z, (double)edge.pdf);
     CHECK(middle.pdf == 0 && middle.distance == 0 && middle.w.z == 1, "from its middle: %g, pdf %g", (double)middle.w.z,
           (double)middle.pdf);
-    CHECK(mcs_disk_light_pdf(beside, up, 1, vec3((const float[]){1, 0, 0})) == 0, "along its plane");
-    CHECK(relative(mcs_disk_light_pdf(above, up, 1, up), 4 / O_PI) <= 1e-7L &&
-              relative(mcs_disk_light_pdf(above, down, 1, up), 4 / O_PI) <= 1e-7L &&
-              mcs_disk_light_pdf(above, up, 1, down) == 0 && mcs_disk_light_invert(above, up, 1, down).x == 0,
-          "from both sides, and behind: %g", (double)mcs_disk_light_pdf(above, up, 1, down));
+    CHECK(mcs_disk_light_pdf(origin, beside, up, 1, vec3((const float[]){1, 0, 0})) == 0, "along its plane");
+    CHECK(relative(mcs_disk_light_pdf(origin, above, up, 1, up), 4 / O_PI) <= 1e-7L &&
+              relative(mcs_disk_light_pdf(origin, above, down, 1, up), 4 / O_PI) <= 1e-7L &&
+              mcs_disk_light_pdf(origin, above, up, 1, down) == 0 &&
+              mcs_disk_light_invert(origin, above, up, 1, down).x == 0,
+          "from both sides, and behind: %g", (double)mcs_disk_light_pdf(origin, above, up, 1, down));
     const double rim = atan(0.5);
     const mcs_vec3 past = {(float)sin(rim + 1e-6), 0, (float)cos(rim + 1e-6)};
     const mcs_vec3 just = {(float)sin(rim), 0, (float)cos(rim)};
-    CHECK(mcs_disk_light_pdf(above, up, 1, just) > 0 && mcs_disk_light_pdf(above, up, 1, past) == 0, "the rim");
+    CHECK(mcs_disk_light_pdf(origin, above, up, 1, just) > 0 && mcs_disk_light_pdf(origin, above, up, 1, past) == 0,
+          "the rim");
     const mcs_vec3 far_away = {1e18f, -1e18f, 1e18f};
-    const mcs_light speck = mcs_disk_light_sample(far_away, up, 1e-18f, 0.5f, 0.5f);
+    const mcs_light speck = mcs_disk_light_sample(origin, far_away, up, 1e-18f, 0.5f, 0.5f);
     CHECK(speck.pdf > 1e29f && speck.pdf <= FLT_MAX && speck.distance > 1.7e18f, "a speck: pdf %g", (double)speck.pdf);
 }
 

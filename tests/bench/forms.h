@@ -23,8 +23,8 @@
 #define FORM_ARGS_2 a, b,
 #define FORM_ARGS_corners a, b, M_(set)(1.0f), M_(set)(3.0f),
 #define FORM_ARGS_cross a, M_(set)(0.0f), M_(set)(0.0f), b,
-#define FORM_ARGS_ball B_(aside)(a), b,
-#define FORM_ARGS_disk_light B_(aside)(a), B_(tilted)(), b,
+#define FORM_ARGS_ball B_(origin)(), B_(aside)(a), b,
+#define FORM_ARGS_disk_light B_(origin)(), B_(aside)(a), B_(tilted)(), b,
 #define FORM_MAKE_rectangle const M_(spherical_rectangle) m = B_(row_rectangle)(a, b)
 #define FORM_MAKE_triangle const M_(spherical_triangle) m = B_(row_triangle)(a, b)
 #define FORM_MAKE_phong const M_(phong) m = M_(phong_make)(a)
