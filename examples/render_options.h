@@ -87,7 +87,7 @@ static void usage(void) {
         "The camera has the main light of the map behind it at the left.\n"
         "examples/product.png: render --strategy mis,product --lights 16 --seconds 2 --size 480x160 --threads 1\n"
         "    --out build/product --stack examples/product.png\n"
-        "examples/room.png: render --scene room --strategy mis,region --seconds 2 --size 432x120 --threads 1\n"
+        "examples/room.png: render --scene room --strategy mis,region --seconds 4 --size 344x158 --threads 1\n"
         "    --out build/room --beside examples/room.png\n"
         "Parts, by eight processes here, by Open MPI or by Slurm, and what joins them:\n"
         "    seq 8 | xargs -P 8 -I{} render --threads 1 --out s --part {}/8\n"

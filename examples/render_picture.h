@@ -43,11 +43,19 @@ static int hdr_write(const char *name, const pixel_sums *image, unsigned width, 
     return file_close(f, name);
 }
 
-/* Exposure, a filmic curve without hard clipping (Narkowicz, "ACES filmic tone mapping curve", 2015), sRGB coding, 8
- * bits. */
-static unsigned char display(float linear, float exposure) {
-    const float x = fminf(linear * exposure, 1e4f);
-    const float y = fminf(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1);
+/* How a picture gets onto a screen. */
+typedef struct {
+    float exposure;
+    int soft; /* for what has deep shadows beside sunshine: both keep their shape, at the cost of contrast */
+} tone;
+
+/* Exposure, a curve without hard clipping, sRGB coding, 8 bits. The curve is filmic (Narkowicz, "ACES filmic tone
+ * mapping curve", 2015), or the soft one of Reinhard et al. ("Photographic tone reproduction for digital images", 2002)
+ * whose white is 40. */
+static unsigned char display(float linear, tone t) {
+    const float x = fminf(linear * t.exposure, 1e4f);
+    const float filmic = x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f);
+    const float y = fminf(t.soft ? x * (1 + x / 1600) / (1 + x) : filmic, 1);
     return (unsigned char)(255 * (y <= 0.0031308f ? 12.92f * y : 1.055f * powf(y, 1 / 2.4f) - 0.055f) + 0.5f);
 }
 
@@ -62,16 +70,16 @@ static const pixel_sums *sheet_pixel(const sheet *all, size_t col, size_t row) {
     return all->image + (which * all->height + row % all->height) * all->width + col % all->width;
 }
 
-static int png_write(const char *name, const sheet *all, float exposure) {
+static int png_write(const char *name, const sheet *all, tone t) {
     const unsigned width = all->width * all->across;
     const unsigned height = all->height * all->down;
     unsigned char *rgb = malloc((size_t)width * height * 3);
     size_t size = 0;
     for (size_t i = 0; rgb && i < (size_t)width * height; i++) {
         const vec3 color = pixel_color(sheet_pixel(all, i % width, i / width));
-        rgb[3 * i] = display(color.x, exposure);
-        rgb[3 * i + 1] = display(color.y, exposure);
-        rgb[3 * i + 2] = display(color.z, exposure);
+        rgb[3 * i] = display(color.x, t);
+        rgb[3 * i + 1] = display(color.y, t);
+        rgb[3 * i + 2] = display(color.z, t);
     }
     unsigned char *png = rgb ? png_make(rgb, NULL, width, height, &size) : NULL;
     FILE *f = png ? fopen(name, "wb") : NULL;
@@ -85,10 +93,13 @@ static int png_write(const char *name, const sheet *all, float exposure) {
     return ok;
 }
 
-/* In the room, little light is left: three stops. */
-static float exposure_for(const options *o, const environment *e) {
+/* In the room, little light is left: six stops. */
+static tone tone_for(const options *o, const environment *e) {
     const float plain = e->irradiance > 0 ? 0.9f * PI / e->irradiance : 1;
-    return plain * exp2f(o->stops + (o->kind == ROOM ? 3 : 0));
+    tone t;
+    t.exposure = plain * exp2f(o->stops + (o->kind == ROOM ? 6 : 0));
+    t.soft = o->kind == ROOM;
+    return t;
 }
 
 /* The caller frees the name. Returns NULL after a complaint. */
@@ -104,7 +115,7 @@ static int write_pictures(const options *o, strategy how, const environment *e, 
     char *png = picture_name(o, how, ".png");
     char *hdr = picture_name(o, how, ".hdr");
     const sheet one = {image, o->width, o->height, 1, 1};
-    const int ok = png && hdr && png_write(png, &one, exposure_for(o, e)) && hdr_write(hdr, image, o->width, o->height);
+    const int ok = png && hdr && png_write(png, &one, tone_for(o, e)) && hdr_write(hdr, image, o->width, o->height);
     free(png);
     free(hdr);
     return ok;
@@ -114,8 +125,8 @@ static int write_pictures(const options *o, strategy how, const environment *e, 
 static int write_sheets(const options *o, const environment *e, const pixel_sums *image, unsigned count) {
     const sheet stack = {image, o->width, o->height, 1, count};
     const sheet beside = {image, o->width, o->height, count, 1};
-    if (o->stack && !png_write(o->stack, &stack, exposure_for(o, e))) return 0;
-    return !o->beside || png_write(o->beside, &beside, exposure_for(o, e));
+    if (o->stack && !png_write(o->stack, &stack, tone_for(o, e))) return 0;
+    return !o->beside || png_write(o->beside, &beside, tone_for(o, e));
 }
 
 /* Whether a file can be written, asked before the time is spent on what goes into it. What was in it stays for now. */

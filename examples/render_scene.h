@@ -196,7 +196,8 @@ static void surface_finish(const scene *s, surface *hit, int which) {
     if (hit->object == GROUND) {
         hit->p.z = 0;
         hit->frame = mcs_frame_make(vec(0, 0, 1));
-        hit->m = &s->tile[fmodf(floorf(0.5f * dot(hit->p, s->side)) + floorf(0.5f * dot(hit->p, s->ahead)), 2) != 0];
+        hit->m =
+            &s->tile[fmodf(floorf(0.5f * dot(hit->p, s->side) + 0.5f) + floorf(0.5f * dot(hit->p, s->ahead)), 2) != 0];
     } else if (hit->object == WALLS) {
         hit->frame = mcs_frame_make(scale(-1, s->walls[which].outwards));
         hit->m = &s->plaster;
