@@ -1,10 +1,11 @@
 /* render.c - the main example of mcsample.h: how a renderer uses it.
  *
  * A row of spheres, one per material, on a matte ground. Light comes from a latitude-longitude environment map, in the
- * open or through the window of a room, or at night from two lamps. A sample of the picture is a camera ray, what it
- * hits, and an estimate of the light that is reflected from there: the integral of f L V cos over the directions wi,
- * where f is the BRDF, L the radiance that comes from wi, V whether anything is in its way, and cos that of wi to the
- * normal. Each strategy draws wi in another way. All have the same mean; variance and cost differ, which is printed.
+ * open or through the window of a room, or at night from two lamps, in clear air or haze. A sample of the picture is a
+ * camera ray, what it hits, and an estimate of the light that is reflected from there: the integral of f L V cos over
+ * the directions wi, where f is the BRDF, L the radiance that comes from wi, V whether anything is in its way, and cos
+ * that of wi to the normal. Each strategy draws wi in another way. All have the same mean; variance and cost differ,
+ * which is printed.
  *
  *     cc -O2 -std=c99 -I. -fopenmp examples/render.c -o render -lm       (-fopenmp is optional: without it, one thread)
  *     ./render --strategy all sunrise.hdr
@@ -17,6 +18,7 @@
  *     render_material.h    materials made of the BRDFs of mcsample.h, and glass
  *     render_light.h       the environment map
  *     render_lamps.h       lamps: a rectangle and a ball
+ *     render_haze.h        haze between them
  *     render_scene.h       spheres, ground, room and camera: what rays meet
  *     render_options.h     the command line
  *     render_progress.h    how long to go on
@@ -29,6 +31,7 @@
  * of formats: s scene, e environment, o options, x a lit point, p a position, w a direction in the world, m a material.
  */
 #define _POSIX_C_SOURCE 200809L /* clock_gettime, fileno, isatty */
+#include "render_haze.h"
 #include "render_parts.h"
 #include "render_product.h"
 #include "render_progress.h"
@@ -69,9 +72,11 @@ static vec3 trace(const job *j, vec3 w, int *seen, pixel_sums *pixel, shadow_ray
     vec3 p = j->s->eye;
     vec3 weight = {1, 1, 1};
     surface hit = {NO_OBJECT, NULL, p, w, mcs_frame_make(w)};
+    surface droplet;
     for (int passed = 0; passed < 32; passed++) {
         const int met = intersect(j->s, p, w, hit.object, &hit);
         if (passed == 0) *seen = hit.object;
+        if (haze_meets(j->s, p, w, &hit, &pixel->rng, &droplet)) return mul(weight, shade(j, &droplet, pixel, rays));
         if (!met) return mul(weight, light_in_sight(j->s, j->e, p, w));
         if (!(hit.m->eta > 0)) return mul(weight, shade(j, &hit, pixel, rays));
         const float u_choice = mcs_pcg32_float(&pixel->rng);
@@ -86,7 +91,7 @@ static vec3 trace(const job *j, vec3 w, int *seen, pixel_sums *pixel, shadow_ray
     return black;
 }
 
-/* The light that a surface reflects to where the ray came from. */
+/* The light that a surface, or a droplet of haze, sends to where the ray came from. */
 static vec3 shade(const job *j, const surface *hit, pixel_sums *pixel, shadow_rays *rays) {
     lit_point x = {.s = j->s, .e = j->e, .hit = hit, .how = j->how, .rng = &pixel->rng, .regions = j->regions};
     lamps_view lamps;
@@ -98,9 +103,9 @@ static vec3 shade(const job *j, const surface *hit, pixel_sums *pixel, shadow_ra
         x.region = region_of(j->regions, j->s, hit);
         x.rays = rays;
     }
-    const vec3 reflected = reflect(&x, j->o->lights);
+    const vec3 sent = hit->m ? reflect(&x, j->o->lights) : haze_scatter(&x, j->o->lights);
     pixel->drawn += x.drawn;
-    return reflected;
+    return sent;
 }
 
 /* ---- estimates of the light that a surface reflects ---- */

@@ -9,6 +9,7 @@ typedef struct {
     vec3 center;                 /* of the bulb */
     float radius;
     vec3 panel_radiance, bulb_radiance;
+    float extinction; /* of the haze around them, per length; 0: the air is clear */
 } lamp_pair;
 
 /* The lamps as they are seen from a point. */
@@ -102,7 +103,10 @@ static float pdf_by_area(const lamps_view *view, vec3 w) {
 /* What comes from the direction w, if nothing but a lamp is in the way. */
 static incoming lamps_along(const lamps_view *view, vec3 w) {
     const float pdf = view->by_area ? pdf_by_area(view, w) : pdf_by_angle(view, w);
-    return incoming_make(w, pdf, lamps_radiance(view->both, view->p, w));
+    const vec3 sent = lamps_radiance(view->both, view->p, w);
+    if (!(view->both->extinction > 0)) return incoming_make(w, pdf, sent);
+    const float distance = lamps_distance(view->both, view->p, w);
+    return incoming_make(w, pdf, scale(expf(-view->both->extinction * distance), sent));
 }
 
 static incoming lamps_draw_angle(const lamps_view *view, int bulb, float u1, float u2) {

@@ -100,7 +100,7 @@ static int environment_make(environment *e, const options *o) {
     const char *name = o->map ? o->map : "built-in sky";
     memset(e, 0, sizeof *e);
     e->irradiance = LAMPS_IRRADIANCE;
-    if (o->kind == LAMPS) return 1;
+    if (has_lamps(o->kind)) return 1;
     if (!o->map && !map_sky(e, name)) return 0;
     if (o->map && !hdr_read(&e->map, o->map)) return complain(name, "%s", e->map.fault);
     const unsigned width = e->map.w;

@@ -11,17 +11,21 @@
 #define OMP(directive)
 #endif
 
-typedef enum { OPEN, ROOM, LAMPS, SCENES } scene_kind;
-static const char *const scene_name[SCENES] = {"spheres", "room", "lamps"};
+typedef enum { OPEN, ROOM, LAMPS, HAZE, SCENES } scene_kind;
+static const char *const scene_name[SCENES] = {"spheres", "room", "lamps", "haze"};
 
-/* Those from ANGLE on are for lamps alone, those that name an environment or its tables for the other scenes. */
+static int has_lamps(scene_kind kind) { return kind == LAMPS || kind == HAZE; }
+
+/* Those from ANGLE on are for lamps alone, those that name an environment or its tables for the other scenes. AREA is
+ * not for haze: next to a lamp its values have no bound, and their variance is infinite. */
 typedef enum { UNIFORM, COSINE, BRDF, ENVIRONMENT, MIS, PRODUCT, REGION, LEARNED, ANGLE, AREA, STRATEGIES } strategy;
 static const char *const strategy_name[STRATEGIES] = {"uniform", "cosine", "brdf",    "env",   "mis",
                                                       "product", "region", "learned", "angle", "area"};
 
 static int strategy_fits(strategy how, scene_kind kind) {
-    if (how == ANGLE || how == AREA) return kind == LAMPS;
-    return kind != LAMPS || how <= BRDF || how == MIS;
+    if (how == ANGLE) return has_lamps(kind);
+    if (how == AREA) return kind == LAMPS;
+    return !has_lamps(kind) || how <= BRDF || how == MIS;
 }
 
 typedef enum {
@@ -61,11 +65,12 @@ static void usage(void) {
     fputs(
         "usage: render [options] [map.hdr]     (--option value or --option=value)\n"
         "Spheres under a Radiance environment map (row 0 up), or under a built-in sky with a sun.\n"
-        "  --scene NAME       spheres, in the open, or room: the same in a room with one window, or lamps: at night "
-        "by\n"
-        "                     a rectangle and a ball, two of the spheres being of glass (spheres)\n"
+        "  --scene NAME       spheres: in the open; room: the same in a room with one window; lamps: at night by a\n"
+        "                     rectangle and a ball, two of the spheres being of glass; haze: lamps in haze, without\n"
+        "                     glass (spheres)\n"
         "  --strategy LIST    uniform, cosine, brdf, env, mis, product, region, learned, several with commas, or all\n"
-        "                     (mis); with lamps uniform, cosine, brdf, mis, angle or area: lamps evenly in either\n"
+        "                     (mis); with lamps uniform, cosine, brdf, mis, angle or area: lamps evenly in either;\n"
+        "                     in haze the same but area\n"
         "  --spp N            samples per pixel (64; with --error or --seconds: at most N, 16384); 1 leaves the "
         "error unknown\n"
         "  --lights N         estimates of the light at each point that a sample sees (1)\n"
@@ -134,7 +139,7 @@ static int parse_scene_kind(const char *text, scene_kind *kind) {
 
 static int parse_scene(const char *text, options *o) {
     if (parse_scene_kind(text, &o->kind)) return 1;
-    return complain("--scene", "'%s' is none of spheres, room, lamps", text);
+    return complain("--scene", "'%s' is none of spheres, room, lamps, haze", text);
 }
 
 static int parse_strategies(const char *list, options *o) {
@@ -221,7 +226,7 @@ static option find_option(const char *argument) {
 
 /* Whether options go together. Returns 0 after a complaint. */
 static int check_scene(options *o) {
-    if (o->kind == LAMPS && o->files > 0) return complain(o->file[0], "--scene lamps takes no map");
+    if (has_lamps(o->kind) && o->files > 0) return complain(o->file[0], "--scene %s takes no map", scene_name[o->kind]);
     for (int i = 0; i < STRATEGIES; i++) {
         if (o->all && strategy_fits((strategy)i, o->kind)) o->wanted[i] = 1;
         if (o->wanted[i] && !strategy_fits((strategy)i, o->kind))

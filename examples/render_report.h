@@ -49,7 +49,7 @@ static int flush_output(void) {
 }
 
 static void print_title(const options *o, const environment *e) {
-    if (o->kind == LAMPS) printf("two lamps, ");
+    if (has_lamps(o->kind)) printf("two lamps, ");
     else printf("%s %u x %u, ", o->map ? o->map : "built-in sky", e->map.w, e->map.h);
     printf("picture %u x %u, ", o->width, o->height);
     if (o->given[O_PART]) printf("part %u of %u, ", o->part, o->parts);

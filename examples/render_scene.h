@@ -18,8 +18,8 @@ typedef struct {
 } wall;
 enum { LEFT, RIGHT, FRONT, BACK, CEILING, WALL_COUNT };
 
-/* Spheres on the ground z = 0, in the open, in a room or by lamps. The room has a window in its front wall, at the
- * camera's back. */
+/* Spheres on the ground z = 0, in the open, in a room or by lamps, in clear air or haze. The room has a window in its
+ * front wall, at the camera's back. */
 typedef struct {
     vec3 center[SPHERES]; /* radius 1, resting on the ground */
     material of[SPHERES], tile[2], plaster;
@@ -69,8 +69,6 @@ static void scene_materials(scene *s) {
 
 /* The bulb hangs in front of the spheres, the panel above the upper edge of the picture. */
 static void scene_lamps(scene *s) {
-    s->of[SMOOTH_SPHERE] = glass_make(1.5f, 0);
-    s->of[FROSTED_SPHERE] = glass_make(1.5f, 0.15f);
     s->lamps.corner = add(scale(-6, s->side), add(scale(-3, s->ahead), vec(0, 0, 5)));
     s->lamps.edge_x = scale(8, s->side);
     s->lamps.edge_y = add(scale(2, s->ahead), vec(0, 0, 1));
@@ -78,6 +76,12 @@ static void scene_lamps(scene *s) {
     s->lamps.center = add(scale(0.2f, s->side), add(scale(-2.6f, s->ahead), vec(0, 0, 0.6f)));
     s->lamps.radius = 0.3f;
     s->lamps.bulb_radiance = vec(30, 18, 8);
+    s->lamps.extinction = 0;
+}
+
+static void scene_glass(scene *s) {
+    s->of[SMOOTH_SPHERE] = glass_make(1.5f, 0);
+    s->of[FROSTED_SPHERE] = glass_make(1.5f, 0.15f);
 }
 
 static wall wall_make(vec3 outwards, float distance) {
@@ -102,8 +106,10 @@ static scene scene_make(scene_kind kind, float height_per_width, float main_ligh
             add(vec(0, 0, 1), add(scale(1.82f * (float)i - 6.24f, s.side), scale(i % 2 ? 0.75f : -0.75f, s.ahead)));
     scene_materials(&s);
     s.in_room = kind == ROOM;
-    s.by_lamps = kind == LAMPS;
-    if (s.by_lamps) scene_lamps(&s);
+    s.by_lamps = has_lamps(kind);
+    scene_lamps(&s);
+    if (kind == LAMPS) scene_glass(&s);
+    if (kind == HAZE) s.lamps.extinction = 0.02f;
     s.walls[LEFT] = wall_make(scale(-1, s.side), 9);
     s.walls[RIGHT] = wall_make(s.side, 9);
     s.walls[FRONT] = wall_make(scale(-1, s.ahead), 6);

@@ -23,6 +23,9 @@ same_means "$dir/all.txt" 8
 "$render" --scene lamps --strategy all --size 240x80 --spp 256 --out "$dir/lamps" >"$dir/lamps.txt"
 check $? "render: every strategy that fits lamps"
 same_means "$dir/lamps.txt" 6
+"$render" --scene haze --strategy all --size 240x80 --spp 256 --out "$dir/haze" >"$dir/haze.txt"
+check $? "render: every strategy that fits haze"
+same_means "$dir/haze.txt" 5
 [ "$(grep -c '^strategy' "$dir/all.txt")" = 3 ]
 check $? "render: three tables"
 "$render" --scene room --strategy mis,region,learned --size 240x80 --spp 64 --out "$dir/room" >"$dir/room.txt"
@@ -45,11 +48,20 @@ for scene in spheres room; do
     done
 done
 
+for threads in 1 4; do
+    "$render" --scene haze --size 120x40 --spp 8 --threads $threads --out "$dir/by$threads" >"$dir/out.txt"
+    check $? "render: $threads threads in haze"
+done
+cmp -s "$dir/by1-mis.hdr" "$dir/by4-mis.hdr"
+check $? "render: the picture depends on the number of threads in haze"
+
 # --- parts by several processes: joined they are a single run, to the bit; 21 rows are not as many in each of 4 parts
 
-for scene in spheres room lamps; do
+for scene in spheres room lamps haze; do
     many=uniform,cosine,brdf,env,mis,product
+    rows=6
     [ $scene != lamps ] || many=uniform,cosine,brdf,mis,angle,area
+    [ $scene != haze ] || { many=uniform,cosine,brdf,mis,angle && rows=5; }
     set -- --scene $scene --strategy $many --size 60x21 --spp 5 --lights 2
     "$render" "$@" --stops 1 --out "$dir/whole" --stack "$dir/whole.png" >"$dir/whole.txt"
     check $? "render: a whole picture of $scene"
@@ -65,7 +77,7 @@ for scene in spheres room lamps; do
     for run in whole joined; do # all columns but times and what comes of them
         awk '/^(uniform|cosine|brdf|env|mis|product|angle|area) / && NF == 8 { print $1, $2, $3, $6, $7 }' "$dir/$run.txt" >"$dir/$run.rows"
     done
-    [ "$(wc -l <"$dir/whole.rows")" = 6 ] && cmp -s "$dir/whole.rows" "$dir/joined.rows" && [ "$(grep -c '^strategy' "$dir/joined.txt")" = 3 ]
+    [ "$(wc -l <"$dir/whole.rows")" = $rows ] && cmp -s "$dir/whole.rows" "$dir/joined.rows" && [ "$(grep -c '^strategy' "$dir/joined.txt")" = 3 ]
     check $? "render: parts of $scene print other figures: $(cat "$dir/joined.txt")"
 done
 apart() { # part of the message, files: not joined, status 1 and one line before anything is written
@@ -114,9 +126,11 @@ wrong 'from 1 to 1024' --threads=
 wrong 'from 0 to 9000000000000000' --seed -1
 wrong 'at most 33554432' --size 16384x16384
 wrong 'WIDTHxHEIGHT' --size=60
-wrong 'none of spheres, room, lamps' --scene hall
+wrong 'none of spheres, room, lamps, haze' --scene hall
 wrong 'takes no map' --scene lamps a.hdr
+wrong '--scene haze takes no map' --scene haze a.hdr
 wrong "'env' is not for --scene lamps" --strategy env --scene lamps
+wrong "'area' is not for --scene haze" --strategy area --scene haze
 wrong "'area' is not for --scene room" --scene room --strategy mis,area
 wrong 'is none of' --strategy mis,
 wrong 'name is empty' --out ''
