@@ -189,7 +189,7 @@ static void moved_together(mcs_pcg32 *r) {
     }
 }
 /* Where centre - p is no float, it is not rounded to one: density and distance are rounded once, which moves them by
- * 2^-24 of themselves. */
+ * 2^-24 of themselves, and are good to 1e-8 before. */
 static void away_from_origin(mcs_pcg32 *r) {
     for (int i = 0; i < 20000; i++) {
         const mcs_vec3 p = any_place(r, 1);
@@ -201,9 +201,11 @@ static void away_from_origin(mcs_pcg32 *r) {
         const float u2 = mcs_pcg32_float(r);
         const mcs_light ball = mcs_ball_sample(p, centre, radius, u1, u2);
         const o_vec3 w = o_ball_map(to_centre, (ld)radius, (ld)u1, (ld)u2);
-        CHECK(fabsl((ld)ball.pdf / o_ball_pdf_u(to_centre, (ld)radius, (ld)u1, (ld)u2) - 1) <= 7e-8L &&
+        const ld pdf = o_ball_pdf_u(to_centre, (ld)radius, (ld)u1, (ld)u2);
+        CHECK(fabsl((ld)ball.pdf / pdf - 1) <= 7e-8L &&
+                  fabsl((ld)mcs_ball_pdf(p, centre, radius, ball.w) / pdf - 1) <= 7e-8L &&
                   fabsl((ld)ball.distance / o_ball_distance(to_centre, (ld)radius, w) - 1) <= 7e-8L &&
-                  off(w, ball.w) <= 2.5 * eps && mcs_ball_pdf(p, centre, radius, ball.w) == ball.pdf,
+                  off(w, ball.w) <= 2.5 * eps,
               "a ball, u %a %a: %.9g %.9g", (double)u1, (double)u2, (double)ball.pdf, (double)ball.distance);
         const o_vec3 place = o_disk_light_point(to_centre, wide(n), (ld)radius, (ld)u1, (ld)u2);
         if (fabsl(o_dot(o_unit(place), wide(n))) < 1e-3L) continue;
@@ -421,7 +423,8 @@ int main(int argc, char **argv) {
         if (mcst_case("triangle, %s", kinds[i].name)) triangles(&r, &kinds[i]);
     }
     if (mcst_case("half of all directions")) half_of_all();
-    if (mcst_case("balls and disks, moved with p")) moved_together(&r);
+    if (mcst_contracts()) puts("SKIPPED: the bits of balls and disks that are moved, as this build contracts a*b + c");
+    else if (mcst_case("balls and disks, moved with p")) moved_together(&r);
     if (mcst_case("balls and disks, away from the origin")) away_from_origin(&r);
     if (mcst_case("no light")) no_lights();
     if (mcst_case("a disk too faint")) faint_disk();
