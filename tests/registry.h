@@ -32,13 +32,11 @@
     M(X, LINE, power, power, 1, -, POWER, power, line, 1, 0)                      \
     M(X, LINE, evenpower, evenpower, 1, -, EVENPOWER, power, line, 1, 0)          \
     M(X, LINE, smoothstep, smoothstep, 2, -, BETWEEN, ends, line, 1, 0)
-#define MCST_LIGHTS(M, X)                                                                                              \
-    M(X, LIGHT, ball, ball, ball, -, BY_TRUTH, ball, ball, 0, MCST_WHOLE | MCST_DISTANCE)                              \
-    M(X, LIGHT, disk_light, disk_light, disk_light, -, BY_TRUTH, disk_light, disk_light, 0, MCST_FREE | MCST_DISTANCE) \
-    M(X, POLYGON, spherical_rectangle, spherical_rectangle, rectangle, -, BY_TRUTH, light, direction, 0,               \
-      MCST_FREE | MCST_DISTANCE)                                                                                       \
-    M(X, POLYGON, spherical_triangle, spherical_triangle, triangle, -, BY_TRUTH, light, direction, 0,                  \
-      MCST_FREE | MCST_DISTANCE)
+#define MCST_LIGHTS(M, X)                                                                                          \
+    M(X, LIGHT, ball, ball, ball, -, BY_TRUTH, ball, ball, 0, MCST_WHOLE | MCST_DISTANCE)                          \
+    M(X, LIGHT, disk_light, disk_light, disk_light, -, BY_TRUTH, disk_light, disk_light, 0, MCST_LIT)              \
+    M(X, POLYGON, spherical_rectangle, spherical_rectangle, rectangle, -, BY_TRUTH, light, direction, 0, MCST_LIT) \
+    M(X, POLYGON, spherical_triangle, spherical_triangle, triangle, -, BY_TRUTH, light, direction, 0, MCST_LIT)
 #define MCST_MEDIA(M, X)                                                                                 \
     M(X, DIR, henyey_greenstein, henyey_greenstein, 1, -, BY_TRUTH, asymmetry, asymmetry, 1, MCST_WHOLE) \
     M(X, DIR, rayleigh, rayleigh, 0, -, SPHERE, none, direction, 0, MCST_WHOLE)                          \
@@ -152,7 +150,8 @@ enum {
     MCST_VISIBLE = 16,  /* visible normals */
     MCST_WHOLE = 32,    /* directions of the whole sphere: one below the horizon is as good */
     MCST_DISTANCE = 64, /* the distance of a light, where others have a weight */
-    MCST_FREE = MCST_WHOLE | MCST_SQUARE
+    MCST_FREE = MCST_WHOLE | MCST_SQUARE,
+    MCST_LIT = MCST_FREE | MCST_DISTANCE
 };
 
 /* The figures of accuracy that mcsample.h states, as numbers: test_oracle.c holds the header to them on its grids, and
