@@ -285,7 +285,8 @@ $(GALLERY): $(wildcard examples/gallery_*.h) examples/render_png.h tests/bench/s
 $(TEST_BINS) $(STRESS_BINS): CONTRACT = $(EXACT) -DMCST_LINKED
 # Headers define functions that one object or another does not call.
 SHARED_FLAGS = -DMCST_LINKED -DMCST_SHARED -Wno-unused-function -Wno-unused-variable
-$(STRESS_BINS) $(patsubst %,$(BUILD)/tests/test_%,bits chi2_lobes chi2_rest fenv lines mutants values width): $(ROWS)
+$(STRESS_BINS) $(filter $(BUILD)/tests/test_values%,$(TEST_BINS)): $(ROWS)
+$(patsubst %,$(BUILD)/tests/test_%,bits chi2_lobes chi2_rest fenv lines mutants width): $(ROWS)
 $(patsubst %,$(BUILD)/tests/test_%,mistakes oracle): $(SHARED)/asserting.o
 $(patsubst %,$(BUILD)/tests/%,test_bits test_fenv test_lines test_width stress/floats stress/hostile): $(WIDE)
 $(patsubst %,$(BUILD)/tests/test_%,bits fenv): $(SHARED)/functions.o
