@@ -7384,75 +7384,89 @@ typedef struct {
     uint32_t n, shift, guide_bytes;
 } mcsi_cdf;
 
-/* A run over a quarter of a list: the sum of all quarters before it, its own so far, and how many entries so far, from
- * the start of the list, are not zero. */
+/* Runs over the quarters of a list: for each, the sum of all quarters before it, its own so far, and how many entries
+ * so far, from the start of the list, are not zero. */
 typedef struct {
-    double before, sum;
-    uint32_t seen;
-} mcsi_run;
-MCSI_CORE void mcsi_run_add(mcsi_run *r, const uint32_t *words, uint32_t i) {
-    const float w = mcsi_word_weight(words + i);
-    r->sum += (double)w;
-    r->seen += w > 0.0f;
+    double before[4], sum[4];
+    uint32_t seen[4];
+} mcsi_runs;
+/* The weights that the runs are at. */
+MCSI_CORE void mcsi_runs_get(float *w, const uint32_t *words, size_t quarter) {
+    MCSI_UNROLL
+    for (size_t k = 0; k < 4; k++) w[k] = mcsi_word_weight(words + k * quarter);
 }
-/* Turns a run that has added up its quarter into one that writes it. */
-MCSI_CORE void mcsi_run_restart(mcsi_run *r, double *total, uint32_t *some) {
-    const double sum = r->sum;
-    const uint32_t seen = r->seen;
-    r->before = *total;
-    r->sum = 0.0;
-    r->seen = *some;
-    *total += sum;
-    *some += seen;
+MCSI_CORE void mcsi_runs_add(mcsi_runs *r, const float *w) {
+    MCSI_UNROLL
+    for (int k = 0; k < 4; k++) r->sum[k] += (double)w[k];
+    MCSI_UNROLL
+    for (int k = 0; k < 4; k++) r->seen[k] += w[k] > 0.0f;
 }
-/* Replaces weight i by its cumulative sum. Each of the `some` entries that are not zero gets a share of 1 beforehand,
- * the others share what is left of 2^31: scale of it per weight. */
-MCSI_CORE void mcsi_run_put(mcsi_run *r, uint32_t *words, uint32_t i, double scale, uint32_t some) {
-    const double w = (double)mcsi_word_weight(words + i);
-    const double below = (r->before + r->sum) * scale;
-    const double top = (double)(MCSI_ONE - some);
-    words[i] = r->seen == some ? MCSI_ONE : r->seen + (uint32_t)(below < top ? below : top);
-    r->sum += w;
-    r->seen += w > 0.0;
+/* Turns runs that have added up their quarters into runs that write them. Returns the sum of the list. */
+MCSI_CORE double mcsi_runs_restart(mcsi_runs *r, uint32_t *some) {
+    double total = 0.0;
+    for (int k = 0; k < 4; k++) {
+        const uint32_t seen = r->seen[k];
+        r->before[k] = total;
+        r->seen[k] = *some;
+        total += r->sum[k];
+        *some += seen;
+        r->sum[k] = 0.0;
+    }
+    return total;
+}
+/* The cumulative sum where run k is: scale for the weights, and 1 for each that is not zero. No sum is above the total,
+ * as rounding keeps the order, so that the product is below 2^31. */
+MCSI_CORE uint32_t mcsi_runs_sum(const mcsi_runs *r, int k, double scale) {
+    return r->seen[k] + (uint32_t)(int32_t)((r->before[k] + r->sum[k]) * scale);
+}
+/* Replaces the weights that the runs are at by cumulative sums. */
+MCSI_CORE void mcsi_runs_put(mcsi_runs *r, uint32_t *words, size_t quarter, double scale) {
+    float w[4];
+    uint32_t sum[4];
+    mcsi_runs_get(w, words, quarter);
+    MCSI_UNROLL
+    for (int k = 0; k < 4; k++) sum[k] = mcsi_runs_sum(r, k, scale);
+    MCSI_UNROLL
+    for (size_t k = 0; k < 4; k++) words[k * quarter] = sum[k];
+    mcsi_runs_add(r, w);
 }
 MCS_FN void mcsi_sums_even(uint32_t *sums, uint32_t n) {
-    for (uint32_t i = 0; i < n; i++) sums[i] = (uint32_t)((uint64_t)i * MCSI_ONE / n);
+    for (uint32_t i = 0; i <= n; i++) sums[i] = (uint32_t)((uint64_t)i * MCSI_ONE / n);
 }
 /* Turns n weights (finite, not negative) into n + 1 cumulative sums, 0 to 2^31, in their place. An entry that is not
- * zero has a share of at least 1. Returns the sum of the weights; when it is 0, all shares are alike. The quarters of
- * the list take turns, as each sum has to wait for the one before it. */
+ * zero gets a share of 1 beforehand, and all share what is left. Returns the sum of the weights; when it is 0, all
+ * shares are alike. The quarters of the list go side by side, as each sum has to wait for the one before it; what is
+ * left behind them belongs to the last. */
 MCS_FN double mcsi_sums_build(uint32_t *sums, uint32_t n) {
-    mcsi_run a = {0.0, 0.0, 0};
-    mcsi_run b = a;
-    mcsi_run c = a;
-    mcsi_run d = a;
     const uint32_t quarter = n / 4;
+    float w[4];
+    mcsi_runs r;
+    MCSI_FILL(&r, 0, sizeof r);
     for (uint32_t i = 0; i < quarter; i++) {
-        mcsi_run_add(&a, sums, i);
-        mcsi_run_add(&b, sums, quarter + i);
-        mcsi_run_add(&c, sums, 2 * quarter + i);
-        mcsi_run_add(&d, sums, 3 * quarter + i);
+        mcsi_runs_get(w, sums + i, quarter);
+        mcsi_runs_add(&r, w);
     }
-    for (uint32_t i = 4 * quarter; i < n; i++) mcsi_run_add(&d, sums, i);
-    double total = 0.0;
+    MCSI_FILL(w, 0, sizeof w);
+    for (uint32_t i = 4 * quarter; i < n; i++) {
+        w[3] = mcsi_word_weight(sums + i);
+        mcsi_runs_add(&r, w);
+    }
     uint32_t some = 0;
-    mcsi_run_restart(&a, &total, &some);
-    mcsi_run_restart(&b, &total, &some);
-    mcsi_run_restart(&c, &total, &some);
-    mcsi_run_restart(&d, &total, &some);
-    sums[n] = MCSI_ONE;
+    const double total = mcsi_runs_restart(&r, &some);
     if (some == 0) {
         mcsi_sums_even(sums, n);
         return 0.0;
     }
+    uint32_t end = n; /* of the entries that are not zero */
+    while (!(mcsi_word_weight(sums + end - 1) > 0.0f)) end--;
     const double scale = (double)(MCSI_ONE - some) / total;
-    for (uint32_t i = 0; i < quarter; i++) {
-        mcsi_run_put(&a, sums, i, scale, some);
-        mcsi_run_put(&b, sums, quarter + i, scale, some);
-        mcsi_run_put(&c, sums, 2 * quarter + i, scale, some);
-        mcsi_run_put(&d, sums, 3 * quarter + i, scale, some);
+    for (uint32_t i = 0; i < quarter; i++) mcsi_runs_put(&r, sums + i, quarter, scale);
+    for (uint32_t i = 4 * quarter; i < n; i++) {
+        w[3] = mcsi_word_weight(sums + i);
+        sums[i] = mcsi_runs_sum(&r, 3, scale);
+        mcsi_runs_add(&r, w);
     }
-    for (uint32_t i = 4 * quarter; i < n; i++) mcsi_run_put(&d, sums, i, scale, some);
+    for (uint32_t i = end; i <= n; i++) sums[i] = MCSI_ONE;
     return total;
 }
 
@@ -8151,7 +8165,7 @@ MCS_FN void mcsi_env_angles_n(const mcs_frame *f, size_t n, const float *x, cons
 /* ---- image: the weights of its texels ---- */
 
 /* Weights are read in chunks. The largest map has 2^16 columns and rows: guides of rows have 16 bits. */
-enum { MCSI_ENV_CHUNK = 64, MCSI_ENV_MAX = 1 << 16 };
+enum { MCSI_ENV_CHUNK = 128, MCSI_ENV_MAX = 1 << 16 };
 
 MCS_API mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels) {
     mcs_image im;
@@ -8186,31 +8200,49 @@ MCSI_CORE float mcsi_pixel(const float *p, uint32_t *bad) {
     *bad += channels != 0;
     return mcsi_luminance(r, g, b);
 }
+/* Four of them. The picture is fetched 4 kB ahead: it is mostly larger than the caches. */
+MCSI_CORE void mcsi_pixels(const float *p, ptrdiff_t step, float *v, uint32_t *bad) {
+    MCSI_PREFETCH((const void *)((uintptr_t)p + 4096));
+#ifndef MCS_NO_WIDE
+    const mcsi4_f r = {p[0], p[step], p[2 * step], p[3 * step]};
+    const mcsi4_f g = {p[1], p[step + 1], p[2 * step + 1], p[3 * step + 1]};
+    const mcsi4_f b = {p[2], p[step + 2], p[2 * step + 2], p[3 * step + 2]};
+    const mcsi4_f plain = 0.2126f * r + 0.7152f * g + 0.0722f * b;
+    const mcsi4_i good = (r >= 0.0f) & (g >= 0.0f) & (b >= 0.0f) & (plain <= FLT_MAX);
+    uint64_t both[2];
+    MCSI_COPY(both, &good, sizeof both);
+    MCSI_COPY(v, &plain, sizeof plain);
+    if (!~(both[0] & both[1])) return;
+#endif
+    for (int k = 0; k < 4; k++) v[k] = mcsi_pixel(p + k * step, bad);
+}
 /* Texels [x, x + n) of row y; adds the number of bad ones to *bad. */
 MCS_FN void mcsi_image_texels(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
     const ptrdiff_t step = im->pixel_stride ? im->pixel_stride : (ptrdiff_t)im->channels;
     const ptrdiff_t row = im->row_stride ? im->row_stride : step * (ptrdiff_t)im->w;
     const float *p = im->pixels + (ptrdiff_t)y * row + (ptrdiff_t)x * step;
-    if (im->channels >= 3)
-        for (uint32_t k = 0; k < n; k++, p += step) v[k] = mcsi_pixel(p, bad);
-    else
-        for (uint32_t k = 0; k < n; k++, p += step) v[k] = mcsi_clean(*p, bad);
+    uint32_t k = 0;
+    if (im->channels < 3)
+        for (; k < n; k++, p += step) v[k] = mcsi_clean(*p, bad);
+    for (; k + 4 <= n; k += 4, p += 4 * step) mcsi_pixels(p, step, v + k, bad);
+    for (; k < n; k++, p += step) v[k] = mcsi_pixel(p, bad);
 }
-/* The same, filtered by (1 2 1)/4 both ways, n <= MCSI_ENV_CHUNK. Columns go round, the first and last row repeat. */
+/* The same, filtered by (1 2 1)/4 both ways, n <= MCSI_ENV_CHUNK. Columns go round, the first and last row repeat.
+ * Whole chunks are filtered, because compilers vectorise loops of constant length. */
 MCS_FN void mcsi_image_filtered(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
-    float sum[MCSI_ENV_CHUNK + 2] = {0.0f};
+    float sum[MCSI_ENV_CHUNK + 4] = {0.0f};
+    float texel[MCSI_ENV_CHUNK + 4] = {0.0f};
     for (int r = -1; r <= 1; r++) {
         const uint32_t row = r < 0 && y > 0 ? y - 1 : r > 0 && y + 1 < im->h ? y + 1 : y;
         uint32_t uncounted = 0;
-        float texel[MCSI_ENV_CHUNK + 2];
         mcsi_image_texels(im, row, (x + im->w - 1) % im->w, 1, texel, &uncounted);
         mcsi_image_texels(im, row, x, n, texel + 1, r ? &uncounted : bad);
         mcsi_image_texels(im, row, (x + n) % im->w, 1, texel + n + 1, &uncounted);
-        for (uint32_t k = 0; k < n + 2; k++) sum[k] += (r ? 0.25f : 0.5f) * texel[k];
+        for (int k = 0; k < MCSI_ENV_CHUNK + 4; k++) sum[k] += (r ? 0.25f : 0.5f) * texel[k];
     }
-    for (uint32_t k = 0; k < n; k++) v[k] = 0.25f * sum[k] + 0.5f * sum[k + 1] + 0.25f * sum[k + 2];
+    for (int k = 0; k < MCSI_ENV_CHUNK; k++) v[k] = 0.25f * sum[k] + 0.5f * sum[k + 1] + 0.25f * sum[k + 2];
 }
-/* The weights of texels [x, x + n) of row y, n <= MCSI_ENV_CHUNK. */
+/* The weights of texels [x, x + n) of row y, n <= MCSI_ENV_CHUNK. v has room for a whole chunk. */
 MCS_FN void mcsi_image_weights(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
     if (im->bilinear) mcsi_image_filtered(im, y, x, n, v, bad);
     else mcsi_image_texels(im, y, x, n, v, bad);
