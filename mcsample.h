@@ -9275,6 +9275,7 @@ MCSI_CORE void mcsi_tile_light_store(const mcsi_tile_light *l, float *first, siz
 
 enum {
     MCSI_TILE_ROWS_MAX = 64,
+    MCSI_TILE_BLOCK = 64,                /* rows and columns of texels that are added up together */
     MCSI_TILE_MEMBERS = 9,               /* floats of a mcsi_tile_light */
     MCSI_NODES = 8,                      /* of a grid on the light of a tile, along a side */
     MCSI_GRID = MCSI_NODES * MCSI_NODES, /* and all of them */
@@ -9364,38 +9365,66 @@ MCS_FN mcs_vec3 mcsi_texel_corner(const mcs_env *e, uint32_t row, uint32_t col) 
 MCSI_CORE mcs_vec3 mcsi_tile_texels_corner(const mcs_env *e, const mcsi_tile_texels *p, uint32_t k) {
     return mcsi_texel_corner(e, k & 1 ? p->row1 : p->row0, k & 2 ? p->col1 : p->col0);
 }
-/* Adds a row of texels, those of the tile's columns. */
-MCS_FN void mcsi_tile_texels_add_row(const mcs_env *e, uint32_t row, mcsi_tile_texels *p) {
+/* Sums over a row's texels in a tile: of light, and of light times cosine and sine of its azimuth. */
+typedef struct {
+    double light, x, y;
+} mcsi_tile_row;
+/* Adds columns [col, col + n) of rows from `row` on, n <= MCSI_TILE_BLOCK. */
+MCS_FN void mcsi_tile_rows_add(const mcs_env *e, uint32_t row, uint32_t rows, uint32_t col, uint32_t n,
+                               mcsi_tile_row *sum) {
+    double sine[MCSI_TILE_BLOCK], cosine[MCSI_TILE_BLOCK];
+    const mcsi_cdf map_rows = mcsi_env_rows(e);
+    for (uint32_t k = 0; k < n; k++) {
+        float s, c;
+        mcsi_sincos_turns((float)((col + k + 0.5) / e->w), &s, &c);
+        sine[k] = (double)s;
+        cosine[k] = (double)c;
+    }
+    for (uint32_t i = 0; i < rows; i++) {
+        if (!e->uniform && mcsi_cdf_mass(&map_rows, row + i) == 0) continue;
+        const uint32_t *sums = mcsi_env_sums(e, row + i) + col;
+        mcsi_tile_row r = sum[i];
+        for (uint32_t k = 0; k < n; k++) {
+            const double w = e->uniform ? (double)MCSI_ONE / e->w : sums[k + 1] - sums[k];
+            r.light += w;
+            r.x += w * cosine[k];
+            r.y += w * sine[k];
+        }
+        sum[i] = r;
+    }
+}
+MCS_FN void mcsi_tile_texels_add_row(const mcs_env *e, uint32_t row, const mcsi_tile_row *r, mcsi_tile_texels *p) {
+    const double *edge = mcsi_env_edge(e) + mcsi_env_from_pole(row, e->h);
+    const double height = edge[1] - edge[0];
     const double t = 0.5 * (mcsi_env_top(e, row) + mcsi_env_top(e, row + 1));
     const double sine = mcsi_sqrt_d(t * (2.0 - t));
-    const double height = mcsi_env_height(row, e->h);
     p->area += height;
     p->across += height * sine;
     p->up += height * (1.0 - t);
     const mcsi_cdf rows = mcsi_env_rows(e);
-    const uint32_t mass = mcsi_cdf_mass(&rows, row);
-    if (!e->uniform && mass == 0) return;
-    const uint32_t *sums = mcsi_env_sums(e, row);
-    double light = 0.0;
-    double x = 0.0;
-    double y = 0.0;
-    for (uint32_t col = p->col0; col < p->col1; col++) {
-        const double w = e->uniform ? (double)MCSI_ONE / e->w : sums[col + 1] - sums[col];
-        if (!(w > 0.0)) continue;
-        float s, c;
-        mcsi_sincos_turns((float)((col + 0.5) / e->w), &s, &c);
-        light += w;
-        x += w * (double)c;
-        y += w * (double)s;
-    }
-    const double scale = (e->uniform ? 0.5 * height : mass / (double)MCSI_ONE) / MCSI_ONE;
+    const double share = e->uniform ? 0.5 * height : mcsi_cdf_mass(&rows, row) / (double)MCSI_ONE;
+    const double scale = share / MCSI_ONE;
     /* Within a texel, light spreads by (pi/h)^2/12 along its height and by (2 pi sin(theta)/w)^2/12 along its width. */
     const double texel = 1.0 / ((double)e->h * e->h) + 4.0 * sine * sine / ((double)e->w * e->w);
-    p->light += scale * light;
-    p->x += scale * sine * x;
-    p->y += scale * sine * y;
-    p->z += scale * light * (1.0 - t);
-    p->within += scale * light * 0.82246703342411322 * texel;
+    p->light += scale * r->light;
+    p->x += scale * sine * r->x;
+    p->y += scale * sine * r->y;
+    p->z += scale * r->light * (1.0 - t);
+    p->within += scale * r->light * 0.82246703342411322 * texel;
+}
+/* Adds the texels of the tile, in blocks: a block's rows share its azimuths. */
+MCS_FN void mcsi_tile_texels_add(const mcs_env *e, mcsi_tile_texels *p) {
+    uint32_t rows, cols;
+    for (uint32_t row = p->row0; row < p->row1; row += rows) {
+        mcsi_tile_row sum[MCSI_TILE_BLOCK];
+        MCSI_FILL(sum, 0, sizeof sum);
+        rows = p->row1 - row < MCSI_TILE_BLOCK ? p->row1 - row : (uint32_t)MCSI_TILE_BLOCK;
+        for (uint32_t col = p->col0; col < p->col1; col += cols) {
+            cols = p->col1 - col < MCSI_TILE_BLOCK ? p->col1 - col : (uint32_t)MCSI_TILE_BLOCK;
+            mcsi_tile_rows_add(e, row, rows, col, cols, sum);
+        }
+        for (uint32_t i = 0; i < rows; i++) mcsi_tile_texels_add_row(e, row + i, &sum[i], p);
+    }
 }
 /* The spread of even light, as evenness is relative to it. A column's mean direction lies sin(x)/x from the axis, x
  * half its width. */
@@ -9475,7 +9504,7 @@ MCS_FN void mcsi_tile_build(const mcs_env *e, mcs_tiles *t, mcsi_tile tile) {
     sum.row1 = mcsi_tile_begin(tile.row + 1, t->rows, e->h);
     sum.col0 = mcsi_tile_begin(tile.col, t->cols, e->w);
     sum.col1 = mcsi_tile_begin(tile.col + 1, t->cols, e->w);
-    for (uint32_t row = sum.row0; row < sum.row1; row++) mcsi_tile_texels_add_row(e, row, &sum);
+    mcsi_tile_texels_add(e, &sum);
     const mcsi_tile_light light = mcsi_tile_texels_light(e, &sum);
     mcsi_tile_light_store(&light, MCSI_WRITE(float, t, o.light) + k, n);
     /* Window and nodes of a tile without light are zeros, which nothing reads. So is what a window leaves of its
