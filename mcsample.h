@@ -8894,9 +8894,11 @@ MCSI_CORE uint32_t mcsi_env_row_at(const mcs_env *e, float off_pole, float polar
     const double t = (double)mcsi_abs(off_pole);
     const uint32_t expected = (uint32_t)(2.0f * polar * (float)e->h);
     uint32_t m = expected < last ? expected : last;
-    while (m > 0 && t < edge[m]) m--;
+    while (t < edge[m]) m--; /* at the pole edge is 0 */
     while (m < last && t >= edge[m + 1]) m++;
-    return mcsi_bits(off_pole) < 0 ? e->h - 1 - m : m;
+    /* In the south h - 1 - m, as ~m is -1 - m. A branch would be guessed wrong half of the time. */
+    const uint32_t south = 0u - ((uint32_t)mcsi_bits(off_pole) >> 31);
+    return (m ^ south) + (e->h & south);
 }
 MCSI_CORE uint32_t mcsi_env_col_at(const mcs_env *e, float azimuth) {
     const uint32_t col = (uint32_t)((double)azimuth * e->w);
