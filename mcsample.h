@@ -1727,7 +1727,7 @@ MCS_FN float mcs_mix_pdf(float c, float pf, float pg);
  *
  * memory         The caller's, 8-byte aligned, mcs_x_bytes(n) bytes. A table holds no pointers: it may be copied,
  *                written to a file or shared by threads. Once built it is constant. The same list makes the same bytes.
- * size           24 bytes and per entry: pwc and discrete 6 to 8 bytes, pwl 10 to 12, alias 16. pwc2: as h + 1 pwc.
+ * size           24 bytes and per entry: pwc and discrete 6 to 8 bytes, pwl 10 to 12, alias 12. pwc2: as h + 1 pwc.
  * n              1 to 2^28 entries. The x of pwc and pwl is a float: beyond 2^24 cells it cannot tell them apart.
  * probabilities  Integers that add up to exactly 2^31: sample, pdf and pmf agree exactly. Every entry that is not zero
  *                has a share (a u of 24 bits may miss it below 2^-24), and zero entries are never drawn.
@@ -7934,11 +7934,11 @@ MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float 
 
 /* ---- [tables] alias ---- */
 
-/* weight: an entry's share of n 2^31, exact. Column i keeps `cut` of its 2^31 for entry i; the rest is entry `alias`.
- */
+/* Column i keeps `cut` of its 2^31 for entry i; the rest is entry `alias`. pmf: the probability of entry i. While the
+ * table is built, it is negative where the entry has 2^31 or more of all n 2^31. */
 typedef struct {
-    uint64_t weight;
     uint32_t cut, alias;
+    float pmf;
 } mcsi_column;
 MCSI_CORE const mcsi_column *mcsi_columns(const mcs_alias *t) { return MCSI_READ(mcsi_column, t, sizeof *t); }
 MCS_API size_t mcs_alias_bytes(uint32_t n) { /* the largest do not fit the size_t of a 32-bit machine */
@@ -7968,16 +7968,18 @@ MCS_FN void mcsi_alias_weights(mcsi_column *c, const float *w, uint32_t n, doubl
         uint64_t upto = (uint64_t)share;
         upto = upto < all - some ? upto : all - some; /* their difference as double rounds, up to 2^54 */
         upto = seen == last ? all : (some ? seen : 0) + upto;
-        c[i].weight = upto - given;
+        const uint64_t weight = upto - given;
+        const float pmf = (float)((double)weight / (double)all);
         given = upto;
-        mcsi_column_leave(&c[i], c[i].weight);
+        c[i].pmf = mcsi_with_sign(pmf, (float)-(int)(weight >= MCSI_ONE));
+        mcsi_column_leave(&c[i], weight);
     }
 }
 /* Fills columns short of 2^31 from the current donor. A donor that falls short thereby is filled by the next one: at
  * once if the scan has passed it, else when the scan comes to it. */
 MCS_FN void mcsi_alias_fill(mcsi_column *c, uint32_t n) {
     uint32_t donor = 0;
-    while (donor < n && c[donor].weight < MCSI_ONE) donor++;
+    while (donor < n && c[donor].pmf >= 0.0f) donor++;
     for (uint32_t i = 0; i < n; i++) {
         uint32_t k = i;
         while (k <= i && mcsi_column_left(&c[k]) < MCSI_ONE) {
@@ -7986,11 +7988,13 @@ MCS_FN void mcsi_alias_fill(mcsi_column *c, uint32_t n) {
             k = donor;
             mcsi_column_leave(&c[k], left);
             if (left < MCSI_ONE)
-                for (donor++; donor < n && c[donor].weight < MCSI_ONE;) donor++;
+                for (donor++; donor < n && c[donor].pmf >= 0.0f;) donor++;
         }
     }
-    for (uint32_t i = 0; i < n; i++)
+    for (uint32_t i = 0; i < n; i++) {
+        c[i].pmf = mcsi_abs(c[i].pmf);
         if (c[i].cut == MCSI_ONE) c[i].alias = i;
+    }
 }
 MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n) {
     const mcs_status status = mcsi_table_check(t, bytes, w, mcs_alias_bytes(n));
@@ -8013,16 +8017,17 @@ MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, u
     mcsi_alias_fill(c, n);
     return MCS_OK;
 }
-MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i) {
-    return i < t->n ? (float)((double)mcsi_columns(t)[i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
-}
-/* U in [0, 2^31) is the position in column i. */
+MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i) { return i < t->n ? mcsi_columns(t)[i].pmf : 0.0f; }
+/* U in [0, 2^31) is the position in column i. Which part of it is hit is no branch, as none could be predicted. */
 MCSI_CORE mcs_pick mcsi_alias_pick(const mcs_alias *t, uint32_t i, double U, int ok) {
     const mcsi_column *k = mcsi_columns(t) + i;
+    const uint32_t rest = 0u - (uint32_t)(U >= k->cut); /* all bits where it is the rest */
+    const uint32_t begin = k->cut & rest;
+    const uint32_t end = k->cut + ((MCSI_ONE - k->cut) & rest);
     mcs_pick c;
-    c.i = U < k->cut ? i : k->alias;
-    c.u = mcsi_below_one(U < k->cut ? U / k->cut : (U - k->cut) / (MCSI_ONE - k->cut));
-    c.pmf = ok ? (float)((double)mcsi_columns(t)[c.i].weight / ((double)t->n * MCSI_ONE)) : 0.0f;
+    c.i = i ^ ((i ^ k->alias) & rest);
+    c.u = mcsi_below_one((U - begin) / (end - begin));
+    c.pmf = ok ? mcsi_columns(t)[c.i].pmf : 0.0f;
     return c;
 }
 MCS_API mcs_pick mcs_alias_sample(const mcs_alias *t, float u) {
@@ -8045,7 +8050,7 @@ MCSI_CORE size_t mcsi_alias_fetch(const mcs_alias *t, size_t k, size_t n, const 
     const size_t end = t->n < MCSI_FETCH_CELLS ? 0 : n;
     for (size_t i = k ? k + 2 * block : 0; i < end && i < k + 3 * block; i++) MCSI_PREFETCH(mcsi_alias_column(t, u[i]));
     for (size_t i = k ? k + block : 0; i < end && i < k + 2 * block; i++)
-        MCSI_PREFETCH(mcsi_columns(t) + mcsi_alias_column(t, u[i])->alias);
+        MCSI_PREFETCH(&mcsi_columns(t)[mcsi_alias_column(t, u[i])->alias].pmf);
     return n - k < block ? n : k + block;
 }
 MCS_API void mcs_alias_sample_n(const mcs_alias *t, size_t n, const float *u, uint32_t *i, float *pmf, float *rest) {
