@@ -9061,6 +9061,13 @@ MCS_FN void mcsi_block_search(const mcs_env *e, mcsi_env_block *b, size_t n) {
         mcsi_block_column(b, k, &p, b->draw[k].density);
     }
 }
+/* Full blocks have a constant size, which compilers copy by vectors: gcc copies so few bytes of another by `rep movs`,
+ * which takes longer to start than to copy. */
+MCSI_CORE void mcsi_block_put(float *out, size_t first, const float *in, size_t n) {
+    if (!out) return;
+    if (n == MCSI_ENV_BLOCK) MCSI_COPY(out + first, in, MCSI_ENV_BLOCK * sizeof *out);
+    else MCSI_COPY(out + first, in, n * sizeof *out);
+}
 /* The other stage, of n draws; results go to out->x[first] and so on. */
 MCS_FN void mcsi_block_columns(const mcs_env *e, mcsi_env_block *b, size_t n, const mcsi_texels *out, size_t first) {
     mcsi_block_search(e, b, n);
@@ -9071,10 +9078,10 @@ MCS_FN void mcsi_block_columns(const mcs_env *e, mcsi_env_block *b, size_t n, co
         b->in_row[k] = mcsi_env_row_at(e, a.off_pole, a.polar);
         b->in_col[k] = mcsi_env_col_at(e, a.azimuth);
     }
-    if (out->x) MCSI_COPY(out->x + first, b->x, n * sizeof *out->x);
-    if (out->y) MCSI_COPY(out->y + first, b->y, n * sizeof *out->y);
-    if (out->z) MCSI_COPY(out->z + first, b->z, n * sizeof *out->z);
-    if (out->pdf) MCSI_COPY(out->pdf + first, b->pdf, n * sizeof *out->pdf);
+    mcsi_block_put(out->x, first, b->x, n);
+    mcsi_block_put(out->y, first, b->y, n);
+    mcsi_block_put(out->z, first, b->z, n);
+    mcsi_block_put(out->pdf, first, b->pdf, n);
     if (out->col) MCSI_COPY(out->col + first, b->in_col, n * sizeof *out->col);
     if (out->row) MCSI_COPY(out->row + first, b->in_row, n * sizeof *out->row);
 }
