@@ -8237,6 +8237,7 @@ MCS_FN void mcsi_image_texels(const mcs_image *im, uint32_t y, uint32_t x, uint3
 MCS_FN void mcsi_image_filtered(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
     float sum[MCSI_ENV_CHUNK + 4] = {0.0f};
     float texel[MCSI_ENV_CHUNK + 4] = {0.0f};
+    float filtered[MCSI_ENV_CHUNK];
     for (int r = -1; r <= 1; r++) {
         const uint32_t row = r < 0 && y > 0 ? y - 1 : r > 0 && y + 1 < im->h ? y + 1 : y;
         uint32_t uncounted = 0;
@@ -8245,9 +8246,10 @@ MCS_FN void mcsi_image_filtered(const mcs_image *im, uint32_t y, uint32_t x, uin
         mcsi_image_texels(im, row, (x + n) % im->w, 1, texel + n + 1, &uncounted);
         for (int k = 0; k < MCSI_ENV_CHUNK + 4; k++) sum[k] += (r ? 0.25f : 0.5f) * texel[k];
     }
-    for (int k = 0; k < MCSI_ENV_CHUNK; k++) v[k] = 0.25f * sum[k] + 0.5f * sum[k + 1] + 0.25f * sum[k + 2];
+    for (int k = 0; k < MCSI_ENV_CHUNK; k++) filtered[k] = 0.25f * sum[k] + 0.5f * sum[k + 1] + 0.25f * sum[k + 2];
+    MCSI_COPY(v, filtered, n * sizeof *v);
 }
-/* The weights of texels [x, x + n) of row y, n <= MCSI_ENV_CHUNK. v has room for a whole chunk. */
+/* The weights of texels [x, x + n) of row y, n <= MCSI_ENV_CHUNK. */
 MCS_FN void mcsi_image_weights(const mcs_image *im, uint32_t y, uint32_t x, uint32_t n, float *v, uint32_t *bad) {
     if (im->bilinear) mcsi_image_filtered(im, y, x, n, v, bad);
     else mcsi_image_texels(im, y, x, n, v, bad);
@@ -8447,9 +8449,8 @@ MCS_API float mcs_env_mean(const mcs_image *im) {
 /* ---- map: build, by rows and then the whole ---- */
 
 /* A run over the texels of a row. level: the weight of its first texel, which the first `alike` texels have. first,
- * last: its light. Weights are kept in words[] from the first light on. */
+ * last: its light. */
 typedef struct {
-    uint32_t *words;
     float level;
     uint32_t alike, first, last;
 } mcsi_row_scan;
@@ -8460,25 +8461,21 @@ MCSI_CORE void mcsi_row_scan_add(mcsi_row_scan *s, const float *weight, uint32_t
     const int black = s->alike == x + n && !(s->level > 0.0f);
     uint32_t end = black ? 0 : n;
     while (end > 0 && !(weight[end - 1] > 0.0f)) end--;
-    if (end > 0 && s->last == 0) {
-        MCSI_FILL(s->words, 0, x * sizeof *s->words);
+    if (end > 0 && s->last == 0)
         for (s->first = x; !(weight[s->first - x] > 0.0f);) s->first++;
-    }
     if (end > 0) s->last = x + end;
-    if (s->last) MCSI_COPY(s->words + x, weight, n * sizeof *weight);
 }
 MCS_FN void mcsi_env_build_row(const mcs_image *im, uint32_t y, uint32_t *sums, uint16_t *guide, uint32_t shift,
                                mcsi_row_light *light) {
-    mcsi_row_scan scan = {NULL, 0.0f, 0, 0, 0};
-    scan.words = sums;
+    mcsi_row_scan scan = {0.0f, 0, 0, 0};
     scan.first = im->w;
     uint32_t bad = 0;
     uint32_t n;
     for (uint32_t x = 0; x < im->w; x += n) {
         n = mcsi_chunk(im, x);
-        float v[MCSI_ENV_CHUNK];
-        mcsi_image_weights(im, y, x, n, v, &bad);
-        mcsi_row_scan_add(&scan, v, x, n);
+        float *weight = MCSI_WRITE(float, sums, x * sizeof *weight);
+        mcsi_image_weights(im, y, x, n, weight, &bad);
+        mcsi_row_scan_add(&scan, weight, x, n);
     }
     light->weight = 0.0;
     light->checksum = 0;
