@@ -114,7 +114,7 @@
  *   [types]       points, directions, samples, lanes, status codes
  *   [rng]         random numbers, and a generator for every pixel          independent samples
  *   [points]      scrambled Sobol, strata, Latin hypercubes, R2            less noise for as many samples, blue noise
- *   [1d]          nine densities on a line                                 distances, filters
+ *   [1d]          eleven densities on a line                               distances, filters
  *   [square]      a bilinear density on the unit square                    cosines over a light of four corners
  *   [disk]        points on a disk                                         lenses, round lights
  *   [triangle]    points on a triangle                                     lights made of triangles
@@ -517,7 +517,7 @@ MCS_FN mcs_vec2 mcs_r2(uint32_t index, uint32_t seed);
 MCS_FN uint32_t mcs_hash(uint32_t a, uint32_t b);
 
 /* ==== [1d] densities on a line ====================================================================================
- * Nine densities, each by inversion from one number u in [0,1). Every map increases with u: over the 2^24 multiples of
+ * Eleven densities, each by inversion from one number u in [0,1). Every map increases with u: over the multiples of
  * 2^-24 none ever falls, by as little as an ulp. Stratified u therefore give stratified x.
  *
  *   X_sample  draws x; its pdf is per length
@@ -593,6 +593,24 @@ MCS_FN mcs_sample1 mcs_logistic_sample(float mean, float scale, float u);
 MCS_FN float mcs_logistic_pdf(float mean, float scale, float x);
 MCS_FN float mcs_logistic_invert(float mean, float scale, float x);
 
+/* ---- truncnormal, trunclogistic: the parts of both bells between two ends ----
+ * density    e^(-z^2/2) or e^-z / (1 + e^-z)^2 on [a, b], over its integral
+ * a, b       the ends in standard deviations, or scales, from the mean: a < 1e18, b > -1e18, b - a at least 1e-18.
+ *            -infinity and infinity are good. With (first - mean)/sd and (last - mean)/sd, mean + sd x is the sample
+ *            between first and last, and pdf/sd its density.
+ * cost       truncnormal: 5 divisions, 2 logarithms, 1 exponential, 1 root, and for the ends 9 divisions, 2
+ *            exponentials, 1 root. trunclogistic: 2 divisions, 1 logarithm, and for the ends 4 divisions, 3
+ *            exponentials. Arrays look at the ends once.
+ * tail       u below 2^-25 counts as 2^-25, as above. Ends far in a tail keep all digits: [30, 31], [1e6, infinity].
+ * functions  mcs_truncnormal_sample, mcs_truncnormal_pdf, mcs_truncnormal_invert, mcs_trunclogistic_sample,
+ *            mcs_trunclogistic_pdf, mcs_trunclogistic_invert */
+MCS_FN mcs_sample1 mcs_truncnormal_sample(float a, float b, float u);
+MCS_FN float mcs_truncnormal_pdf(float a, float b, float x);
+MCS_FN float mcs_truncnormal_invert(float a, float b, float x);
+MCS_FN mcs_sample1 mcs_trunclogistic_sample(float a, float b, float u);
+MCS_FN float mcs_trunclogistic_pdf(float a, float b, float x);
+MCS_FN float mcs_trunclogistic_invert(float a, float b, float x);
+
 /* ---- power: a power of x ----
  * density    (e + 1) x^e on [0,1]
  * e          the exponent; in [0, 1e9]
@@ -623,8 +641,8 @@ MCS_FN float mcs_smoothstep_invert(float a, float b, float x);
 
 /* ---- arrays: the parameters of one density, n numbers u ----
  * Each is X_sample for n numbers: mcs_linear_sample_n, mcs_tent_sample_n, mcs_exponential_sample_n,
- * mcs_truncexp_sample_n, mcs_normal_sample_n, mcs_logistic_sample_n, mcs_power_sample_n, mcs_evenpower_sample_n,
- * mcs_smoothstep_sample_n. */
+ * mcs_truncexp_sample_n, mcs_normal_sample_n, mcs_logistic_sample_n, mcs_truncnormal_sample_n,
+ * mcs_trunclogistic_sample_n, mcs_power_sample_n, mcs_evenpower_sample_n, mcs_smoothstep_sample_n. */
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_linear_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_tent_sample_n(float r, size_t n, const float *u, float *x, float *pdf);
@@ -632,6 +650,8 @@ MCS_API void mcs_exponential_sample_n(float rate, size_t n, const float *u, floa
 MCS_API void mcs_truncexp_sample_n(float rate, float m, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_normal_sample_n(float mean, float sd, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_logistic_sample_n(float mean, float scale, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_truncnormal_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf);
+MCS_API void mcs_trunclogistic_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_power_sample_n(float e, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_evenpower_sample_n(float e, size_t n, const float *u, float *x, float *pdf);
 MCS_API void mcs_smoothstep_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf);
@@ -3031,14 +3051,28 @@ MCSI_CORE mcs_f mcsi_exp_both(mcs_f x, mcs_f *minus_one) {
 
 /* ---- powers ---- */
 
+/* *sum + log2((1 + s) / (1 - s)), |s| < 0.172; 4e-12 of the logarithm. */
+MCSI_CORE void mcsi_add_log2(mcsi_d *sum, const mcsi_d *s) {
+    const mcsi_d x = *s;
+    const mcsi_d xx = x * x;
+    *sum = (*sum + x * 2.885390081790086) + x * xx *
+                                                ((0.9617966733414772 + xx * 0.577083585037472) +
+                                                 xx * xx * (0.4116727148603131 + xx * 0.3407301768542072));
+}
+/* The even and the odd part of 2^r (cosh and sinh), |r| <= 1/2; 1e-10 of 2^r, and 5e-10 of 2^r - 1. */
+MCSI_CORE void mcsi_exp2_parts(const mcsi_d *r, mcsi_d *even, mcsi_d *odd) {
+    const mcsi_d rr = *r * *r;
+    *even = (1.0 + rr * 0.24022651084099645) + rr * rr * (0.009618030784745157 + rr * 0.0001546973134150267);
+    *odd = *r * ((0.6931471805350843 + rr * 0.05550410975949026) +
+                 rr * rr * (0.001333342276368949 + rr * 1.531643601070646e-05));
+}
 /* x^e, or x^(1/e) where `root` is set, for x in [0,1] and e = n + plus in [0, 1e9 + 1], plus 0 or 1; 1 ulp. Powers
  * below 2^-125.5 are 0, as above. For roots, *quotient becomes x over the result, with its relative accuracy even where
  * both are subnormal.
  *
  * x = 2^k m, where x 2^24 is a normal float in any case. log2(m) is a series in s = (m - 1)/(m + 1). All is in double,
  * so that the product of exponent and logarithm loses nothing. With the integer and the fractional part of that
- * product, the result is 2^j 2^r. 2^r is the sum of its even and its odd part (cosh and sinh), and their difference is
- * 2^-r. */
+ * product, the result is 2^j 2^r. 2^r is the sum of its even and its odd part, and their difference is 2^-r. */
 MCSI_CORE mcs_f mcsi_pow_unit(mcs_f x, mcs_f n, double plus, int root, mcs_f *quotient) {
     const mcs_i i = mcsi_bits(x * 16777216.0f);
     const mcs_i k_bits = mcsi_exponent_bits(i);
@@ -3048,20 +3082,14 @@ MCSI_CORE mcs_f mcsi_pow_unit(mcs_f x, mcs_f n, double plus, int root, mcs_f *qu
     const mcsi_d m = MCSI_WIDEN(significand);
     const mcsi_d e = MCSI_WIDEN(n) + plus;
     const mcsi_d s = (m - 1.0) / (m + 1.0);
-    const mcsi_d ss = s * s;
-    const mcsi_d log2_x =
-        (MCSI_INT_WIDEN(k) + s * 2.885390081790086) +
-        s * ss *
-            ((0.9617966733414772 + ss * 0.577083585037472) + ss * ss * (0.4116727148603131 + ss * 0.3407301768542072));
+    mcsi_d log2_x = MCSI_INT_WIDEN(k);
+    mcsi_add_log2(&log2_x, &s);
     const mcsi_d y = root ? log2_x * (1.0 / e) : log2_x * e;
     const mcsi_d whole = MCSI_ROUND_D(y);
     const mcs_i j = MCSI_TRUNC_D(root ? whole : MCSI_MAX_D(whole, -126.0));
     const mcsi_d r = y - whole;
-    const mcsi_d rr = r * r;
-    const mcsi_d even =
-        (1.0 + rr * 0.24022651084099645) + rr * rr * (0.009618030784745157 + rr * 0.0001546973134150267);
-    const mcsi_d odd = r * ((0.6931471805350843 + rr * 0.05550410975949026) +
-                            rr * rr * (0.001333342276368949 + rr * 1.531643601070646e-05));
+    mcsi_d even, odd;
+    mcsi_exp2_parts(&r, &even, &odd);
     const mcs_f two_to_r = MCSI_NARROW(even + odd);
     mcs_f power;
     if (root) {
@@ -4023,6 +4051,259 @@ MCSI_FN mcs_f mcs_logistic_invert(mcs_f mean, mcs_f scale, mcs_f x) {
 }
 #endif
 
+/* ---- truncnormal and trunclogistic ----
+ * Both bells are even, so that distances from 0 tell all. The base is the distance of the end nearer to 0, and 0 where
+ * 0 lies between the ends. What lies beyond the base, on one side, is a tail. The part of it up to x is
+ * 1 - tail(x)/tail(base), of which nothing cancels and nothing underflows far out, as differences of P do. Parts to the
+ * left of the base count below 0, and u is mapped to the part u (left + right) - left. All is in double, so that
+ * rounding cannot bring x below that of the last u. */
+
+typedef struct {
+    mcs_i ok;
+    mcs_i bent; /* elsewhere the density is uniform within 1e-7, and what is below is that of [0,1] */
+    mcs_f a, b;
+    mcs_f even;                      /* the density where it is not bent */
+    mcs_f base, left_end, right_end; /* distances, none below the base */
+    mcsi_d tail;                     /* normal: Mills' ratio R at the base; logistic: e^-base */
+    mcsi_d left, total;              /* the parts up to the ends: to the left, of both sides */
+    mcsi_d scale;                    /* of the density */
+    mcsi_d per_tail;                 /* normal: 1 / tail */
+    mcs_f lacks;                     /* normal: what the slope of 1/R is short of 1 at the base */
+} mcsi_cut;
+
+/* The logarithm of either density varies by (b - a) max(|a|, |b|) at most. Where that is above 1e-7, the parts are 3e-8
+ * and more together, as b - a is 2^-24 of the further end and more: 1 - tail(x)/tail(base) has 8 digits. */
+MCSI_CORE mcsi_cut mcsi_cut_make(mcs_f a, mcs_f b) {
+    const mcs_f zero = mcs_set(0.0f);
+    mcsi_cut d;
+    d.a = mcsi_max(mcs_set(-1e18f), a);
+    d.b = mcsi_min(mcs_set(1e18f), b);
+    d.ok = d.b - d.a >= 1e-18f;
+    MCSI_REQUIRE(d.ok);
+    d.bent = d.ok & ((d.b - d.a) * mcsi_max(mcsi_abs(d.a), mcsi_abs(d.b)) > 1e-7f);
+    const mcs_f right = mcsi_sel(d.bent, d.b, mcs_set(1.0f));
+    const mcs_f left = mcsi_sel(d.bent, -d.a, zero);
+    d.base = mcsi_max(mcsi_max(-left, -right), zero);
+    d.left_end = mcsi_max(left, d.base);
+    d.right_end = mcsi_max(right, d.base);
+    const mcsi_d width = MCSI_WIDEN(d.b) - MCSI_WIDEN(d.a);
+    d.even = MCSI_NARROW(1.0 / width);
+    return d;
+}
+/* How far x, a distance from 0, is from the base: exact, but at most `reach`, beyond which no tail is left. */
+MCSI_CORE void mcsi_cut_from_base(mcs_f base, mcs_f x, mcs_f reach, mcsi_d *distance) {
+    const mcs_i beyond = x - base > reach;
+    const mcs_f step = mcsi_sel(beyond, reach, mcs_set(0.0f));
+    const mcs_f end = mcsi_sel(beyond, base, x);
+    *distance = (MCSI_WIDEN(end) - MCSI_WIDEN(base)) + MCSI_WIDEN(step);
+}
+/* The part that u is mapped to, without its sign, which is returned. */
+MCSI_CORE mcs_f mcsi_cut_part(const mcsi_cut *d, mcs_f u, mcsi_d *part) {
+    *part = MCSI_WIDEN(u) * d->total - d->left;
+    const mcs_f sign = mcsi_with_sign(mcs_set(1.0f), MCSI_NARROW(*part));
+    *part = *part * MCSI_WIDEN(sign);
+    return sign;
+}
+/* What is at `distance` from the base, on the side of `sign`, with the density pdf; elsewhere than in bent ones what is
+ * at u. */
+MCSI_CORE mcs_sample1 mcsi_cut_sample(const mcsi_cut *d, mcs_i ok, mcs_f u, mcs_f sign, const mcsi_d *distance,
+                                      mcs_f pdf) {
+    const mcsi_d a = MCSI_WIDEN(d->a);
+    const mcsi_d width = MCSI_WIDEN(d->b) - a;
+    const mcs_f x =
+        mcsi_sel(d->bent, sign * MCSI_NARROW(MCSI_WIDEN(d->base) + *distance), MCSI_NARROW(a + MCSI_WIDEN(u) * width));
+    return mcsi_sample1(ok, mcsi_min(mcsi_max(x, d->a), d->b), mcsi_sel(d->bent, pdf, d->even));
+}
+#ifdef MCSI_PUBLIC
+/* The density at x, of which pdf is that of bent ones. */
+MCSI_CORE mcs_f mcsi_cut_pdf(const mcsi_cut *d, mcs_f x, mcs_f pdf) {
+    return mcsi_sane_result(d->ok & (x >= d->a) & (x <= d->b), mcsi_sel(d->bent, pdf, d->even));
+}
+/* The u of x, with the part up to x. */
+MCSI_CORE mcs_f mcsi_cut_invert(const mcsi_cut *d, mcs_f x, const mcsi_d *part) {
+    const mcsi_d a = MCSI_WIDEN(d->a);
+    const mcs_f inside = mcsi_min(mcsi_max(x, d->a), d->b);
+    const mcs_f sign = mcsi_with_sign(mcs_set(1.0f), inside);
+    const mcs_f even = MCSI_NARROW((MCSI_WIDEN(inside) - a) / (MCSI_WIDEN(d->b) - a));
+    const mcs_f bent = MCSI_NARROW((d->left + MCSI_WIDEN(sign) * *part) / d->total);
+    return mcsi_inverted(d->ok & (x == x), mcsi_sel(d->bent, bent, even));
+}
+/* The distance of x, moved between the ends, from 0; the base where the density is not bent. */
+MCSI_CORE mcs_f mcsi_cut_place(const mcsi_cut *d, mcs_f x) {
+    return mcsi_sel(d->bent, mcsi_abs(mcsi_min(mcsi_max(x, d->a), d->b)), d->base);
+}
+#endif
+
+/* *x becomes its exponential, in [-80, 0]; 1e-10 of it. */
+MCSI_CORE void mcsi_exp_d(mcsi_d *x) {
+    const mcsi_d y = *x * 1.4426950408889634;
+    const mcsi_d whole = MCSI_ROUND_D(y);
+    const mcsi_d r = y - whole;
+    const mcs_f scale = mcsi_from_bits((MCSI_TRUNC_D(whole) + 127) << 23);
+    mcsi_d even, odd;
+    mcsi_exp2_parts(&r, &even, &odd);
+    *x = (even + odd) * MCSI_WIDEN(scale);
+}
+/* *x becomes ln(1 + *x), 1 + *x in [2^-26, 2^27]; 1e-11 of it. 1 + f is 1 + *x over a power of 2, in [sqrt(1/2),
+ * sqrt(2)). */
+MCSI_CORE void mcsi_log1p_d(mcsi_d *x) {
+    const mcs_i k_bits = mcsi_exponent_bits(mcsi_bits(MCSI_NARROW(1.0 + *x)));
+    const mcs_f inverse = mcsi_from_bits(0x3f800000 - k_bits);
+    const mcsi_d scale = MCSI_WIDEN(inverse);
+    const mcsi_d f = *x * scale + (scale - 1.0);
+    const mcsi_d s = f / (f + 2.0);
+    *x = MCSI_INT_WIDEN(k_bits >> 23);
+    mcsi_add_log2(x, &s);
+    *x = *x * 0.6931471805599453;
+}
+/* *x, not below 0, becomes Mills' ratio R, the tail beyond it over the bell e^(-x^2/2); 6e-11 of it. R is a polynomial
+ * in v = 1/(1 + x/4), without a constant as R falls with 1/x. The slope of the fit is x R - 1 within 3e-9: that makes
+ * narrow parts exact. */
+MCSI_CORE void mcsi_mills(mcsi_d *x) {
+    const mcsi_d v = 1.0 / (1.0 + 0.25 * *x);
+    const mcsi_d vv = v * v;
+    const mcsi_d v_0_3 =
+        (0.249999999987165 + v * 0.2500000060768445) + vv * (0.2343745263396476 + v * 0.20313943582475233);
+    const mcsi_d v_4_7 =
+        (0.15895170150349439 + v * 0.11053983821751054) + vv * (0.04573127319360977 + v * 0.07037802029227831);
+    const mcsi_d v_8_13 = (-0.1532174899313266 + v * 0.2608812061003544) +
+                          vv * (-0.3660217088616478 + v * 0.2777748232405859) +
+                          vv * vv * (-0.10530924111569623 + v * 0.01609174638363985);
+    *x = v * (v_0_3 + vv * vv * (v_4_7 + vv * vv * v_8_13));
+}
+
+/* The part of the tail up to x, a distance from 0. The bell falls by e^-40 within the reach. */
+MCSI_CORE void mcsi_normal_part(const mcsi_cut *d, mcs_f x, mcsi_d *part) {
+    const mcs_f reach = 80.0f / (d->base + mcsi_sqrt(d->base * d->base + 80.0f));
+    mcsi_d distance;
+    mcsi_cut_from_base(d->base, x, reach, &distance);
+    const mcsi_d base = MCSI_WIDEN(d->base);
+    mcsi_d ratio = base + distance;
+    mcsi_d bell = -distance * (base + 0.5 * distance);
+    mcsi_mills(&ratio);
+    mcsi_exp_d(&bell);
+    *part = 1.0 - bell * (ratio / d->tail);
+}
+MCSI_CORE mcsi_cut mcsi_truncnormal_make(mcs_f a, mcs_f b) {
+    mcsi_cut d = mcsi_cut_make(a, b);
+    mcsi_d right;
+    d.tail = MCSI_WIDEN(d.base);
+    mcsi_mills(&d.tail);
+    mcsi_normal_part(&d, d.left_end, &d.left);
+    mcsi_normal_part(&d, d.right_end, &right);
+    d.total = d.left + right;
+    d.scale = 1.0 / (d.tail * d.total);
+    d.per_tail = 1.0 / d.tail;
+    const mcsi_d slope = (1.0 - MCSI_WIDEN(d.base) * d.tail) * d.per_tail * d.per_tail;
+    d.lacks = mcsi_min(mcsi_max(1.0f - MCSI_NARROW(slope), mcs_set(0.0f)), mcs_set(0.364f));
+    return d;
+}
+/* The start for the distance y from the base c where ln(1 - part) is -e, within 0.035. dy/de is Mills' ratio R; with a
+ * constant k in place of the slope of 1/R, y/R(c) + k y^2 / 2 = e. That slope is (1 - c R) / R^2 at the base, and what
+ * it is short of 1 falls with t = e R(c)^2 as in a fit. */
+MCSI_CORE mcs_f mcsi_normal_start(const mcsi_cut *d, mcs_f e) {
+    const mcs_f r = MCSI_NARROW(d->tail);
+    const mcs_f t = e * r * r;
+    const mcs_f k = 1.0f - d->lacks * ((1.0f + 0.1f * t) / (1.0f + 0.26f * t));
+    return 2.0f * e * r / (1.0f + mcsi_sqrt(1.0f + 2.0f * k * t));
+}
+/* The equation is h = s - ln(R(c + y)/R(c)) - e = 0 with s = y (c + y/2). Its slopes follow from R' = x R - 1: with
+ * q = 1 - x R they are 1/R, q/R^2 and (q^2 + q - R^2)/R^3. The step is the inverse series up to h^3, which leaves
+ * 0.012 x 2^-24 of x. */
+MCSI_CORE mcs_sample1 mcsi_truncnormal_draw(const mcsi_cut *d, mcs_f u) {
+    mcs_i ok = d->ok;
+    u = mcsi_off_zero(mcsi_sane_u(u, &ok));
+    mcsi_d part;
+    const mcs_f sign = mcsi_cut_part(d, u, &part);
+    mcsi_d minus_e = -part;
+    mcsi_log1p_d(&minus_e);
+    const mcs_f start = mcsi_normal_start(d, -MCSI_NARROW(minus_e));
+    const mcsi_d base = MCSI_WIDEN(d->base);
+    mcsi_d y = MCSI_WIDEN(start);
+    mcsi_d ratio = base + y;
+    mcsi_mills(&ratio);
+    mcsi_d log_ratio = ratio * d->per_tail - 1.0;
+    mcsi_log1p_d(&log_ratio);
+    const mcsi_d q = 1.0 - (base + y) * ratio;
+    const mcsi_d h = y * (base + 0.5 * y) - log_ratio + minus_e;
+    y = y - h * ratio * (1.0 + h * (0.5 * q + h * (1.0 / 6) * (2.0 * q * q - q + ratio * ratio)));
+    const mcsi_d s = y * (base + 0.5 * y);
+    return mcsi_cut_sample(d, ok, u, sign, &y, mcsi_exp_neg(-MCSI_NARROW(s)) * MCSI_NARROW(d->scale));
+}
+MCSI_SAMPLE mcs_sample1 mcs_truncnormal_sample(mcs_f a, mcs_f b, mcs_f u) {
+    const mcsi_cut d = mcsi_truncnormal_make(a, b);
+    return mcsi_truncnormal_draw(&d, u);
+}
+#ifdef MCSI_PUBLIC
+MCSI_FN mcs_f mcs_truncnormal_pdf(mcs_f a, mcs_f b, mcs_f x) {
+    const mcsi_cut d = mcsi_truncnormal_make(a, b);
+    const mcs_f place = mcsi_cut_place(&d, x);
+    const mcsi_d base = MCSI_WIDEN(d.base);
+    const mcsi_d s = 0.5 * (MCSI_WIDEN(place) - base) * (MCSI_WIDEN(place) + base);
+    return mcsi_cut_pdf(&d, x, mcsi_exp_neg(-MCSI_NARROW(s)) * MCSI_NARROW(d.scale));
+}
+MCSI_FN mcs_f mcs_truncnormal_invert(mcs_f a, mcs_f b, mcs_f x) {
+    const mcsi_cut d = mcsi_truncnormal_make(a, b);
+    mcsi_d part;
+    mcsi_normal_part(&d, mcsi_cut_place(&d, x), &part);
+    return mcsi_cut_invert(&d, x, &part);
+}
+#endif
+
+/* With k = e^-base and y the distance from the base, tail(x)/tail(base) is e^-y (1 + k) / (1 + k e^-y). */
+MCSI_CORE void mcsi_logistic_part(const mcsi_cut *d, mcs_f x, mcsi_d *part) {
+    mcsi_d distance;
+    mcsi_cut_from_base(d->base, x, mcs_set(40.0f), &distance);
+    mcsi_d e = -distance;
+    mcsi_exp_d(&e);
+    *part = (1.0 - e) / (1.0 + d->tail * e);
+}
+MCSI_CORE mcsi_cut mcsi_trunclogistic_make(mcs_f a, mcs_f b) {
+    mcsi_cut d = mcsi_cut_make(a, b);
+    const mcs_f k = mcsi_exp_neg(-d.base);
+    mcsi_d right;
+    d.tail = MCSI_WIDEN(k);
+    mcsi_logistic_part(&d, d.left_end, &d.left);
+    mcsi_logistic_part(&d, d.right_end, &right);
+    d.total = d.left + right;
+    d.scale = 1.0 / ((1.0 + d.tail) * d.total);
+    return d;
+}
+/* The part m gives e^y = 1 + (1 + k) m / (1 - m), and e^-y (1 + k) / (1 + k e^-y)^2, the density over that of the tail
+ * at the base, is (1 - m) (1 + k m) / (1 + k). */
+MCSI_CORE mcs_sample1 mcsi_trunclogistic_draw(const mcsi_cut *d, mcs_f u) {
+    mcs_i ok = d->ok;
+    u = mcsi_off_zero(mcsi_sane_u(u, &ok));
+    mcsi_d m;
+    const mcs_f sign = mcsi_cut_part(d, u, &m);
+    mcsi_d y = (1.0 + d->tail) * m / (1.0 - m);
+    mcsi_log1p_d(&y);
+    const mcsi_d pdf = (1.0 - m) * (1.0 + d->tail * m) * d->scale;
+    return mcsi_cut_sample(d, ok, u, sign, &y, MCSI_NARROW(pdf));
+}
+MCSI_SAMPLE mcs_sample1 mcs_trunclogistic_sample(mcs_f a, mcs_f b, mcs_f u) {
+    const mcsi_cut d = mcsi_trunclogistic_make(a, b);
+    return mcsi_trunclogistic_draw(&d, u);
+}
+#ifdef MCSI_PUBLIC
+MCSI_FN mcs_f mcs_trunclogistic_pdf(mcs_f a, mcs_f b, mcs_f x) {
+    const mcsi_cut d = mcsi_trunclogistic_make(a, b);
+    const mcs_f place = mcsi_cut_place(&d, x);
+    const mcsi_d y = MCSI_WIDEN(place) - MCSI_WIDEN(d.base);
+    const mcs_f fall = mcsi_exp_neg(-MCSI_NARROW(y));
+    const mcsi_d e = MCSI_WIDEN(fall);
+    const mcsi_d root = 1.0 + d.tail * e;
+    const mcsi_d pdf = e * (1.0 + d.tail) / (root * root * d.total);
+    return mcsi_cut_pdf(&d, x, MCSI_NARROW(pdf));
+}
+MCSI_FN mcs_f mcs_trunclogistic_invert(mcs_f a, mcs_f b, mcs_f x) {
+    const mcsi_cut d = mcsi_trunclogistic_make(a, b);
+    mcsi_d part;
+    mcsi_logistic_part(&d, mcsi_cut_place(&d, x), &part);
+    return mcsi_cut_invert(&d, x, &part);
+}
+#endif
+
 /* ---- power and evenpower ---- */
 
 MCSI_CORE mcs_i mcsi_exponent_ok(mcs_f e) { return (e >= 0.0f) & (e <= 1e9f); }
@@ -4145,17 +4426,26 @@ MCSI_FN mcs_f mcs_smoothstep_invert(mcs_f a, mcs_f b, mcs_f x) {
     MCSI_LOOP void mcsi_##NAME##_loop(float a1, float a2, const mcsi_batch *call) {                                 \
         MCSI_EACH(b, call) { mcsi_out_sample1(&b, mcs_##NAME##_sample(mcs_set(a1), mcs_set(a2), mcsi_in(&b, 0))); } \
     }
+/* The same for a density between two ends, which are prepared once. */
+#define MCSI_LOOP_CUT(NAME)                                                                     \
+    MCSI_LOOP void mcsi_##NAME##_loop(float a, float b, const mcsi_batch *call) {               \
+        const mcsi_cut d = mcsi_##NAME##_make(mcs_set(a), mcs_set(b));                          \
+        MCSI_EACH(at, call) { mcsi_out_sample1(&at, mcsi_##NAME##_draw(&d, mcsi_in(&at, 0))); } \
+    }
 MCSI_LOOP_LINE_2(linear)
 MCSI_LOOP_LINE(tent)
 MCSI_LOOP_LINE(exponential)
 MCSI_LOOP_LINE_2(truncexp)
 MCSI_LOOP_LINE_2(normal)
 MCSI_LOOP_LINE_2(logistic)
+MCSI_LOOP_CUT(truncnormal)
+MCSI_LOOP_CUT(trunclogistic)
 MCSI_LOOP_LINE(power)
 MCSI_LOOP_LINE(evenpower)
 MCSI_LOOP_LINE_2(smoothstep)
 #undef MCSI_LOOP_LINE
 #undef MCSI_LOOP_LINE_2
+#undef MCSI_LOOP_CUT
 #endif
 
 /* ==== [square] bodies ============================================================================================= */
@@ -11174,6 +11464,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_truncexp_pdf MCS_(truncexp_pdf)
 #define mcs_truncexp_sample MCS_(truncexp_sample)
 #define mcs_u MCSI_U
+#define mcs_trunclogistic_invert MCS_(trunclogistic_invert)
+#define mcs_trunclogistic_pdf MCS_(trunclogistic_pdf)
+#define mcs_trunclogistic_sample MCS_(trunclogistic_sample)
+#define mcs_truncnormal_invert MCS_(truncnormal_invert)
+#define mcs_truncnormal_pdf MCS_(truncnormal_pdf)
+#define mcs_truncnormal_sample MCS_(truncnormal_sample)
 #define mcs_u01 MCS_(u01)
 #define mcs_u01_open MCS_(u01_open)
 #define mcs_vec2 MCS_(vec2)
@@ -11191,6 +11487,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_ward_sample MCS_(ward_sample)
 #define mcs_ward_weight MCS_(ward_weight)
 #define mcsi_abs MCSI_(abs)
+#define mcsi_add_log2 MCSI_(add_log2)
 #define mcsi_always MCSI_(always)
 #define mcsi_angle MCSI_(angle)
 #define mcsi_angle_of_turns MCSI_(angle_of_turns)
@@ -11254,6 +11551,14 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_cos_power MCSI_(cos_power)
 #define mcsi_cosine_loop MCSI_(cosine_loop)
 #define mcsi_d MCSI_D
+#define mcsi_cut MCSI_(cut)
+#define mcsi_cut_from_base MCSI_(cut_from_base)
+#define mcsi_cut_invert MCSI_(cut_invert)
+#define mcsi_cut_make MCSI_(cut_make)
+#define mcsi_cut_part MCSI_(cut_part)
+#define mcsi_cut_pdf MCSI_(cut_pdf)
+#define mcsi_cut_place MCSI_(cut_place)
+#define mcsi_cut_sample MCSI_(cut_sample)
 #define mcsi_deviation MCSI_(deviation)
 #define mcsi_disk_hit MCSI_(disk_hit)
 #define mcsi_disk_light MCSI_(disk_light)
@@ -11276,7 +11581,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_eta_ok MCSI_(eta_ok)
 #define mcsi_evenpower_loop MCSI_(evenpower_loop)
 #define mcsi_exact_dot MCSI_(exact_dot)
+#define mcsi_exp2_parts MCSI_(exp2_parts)
 #define mcsi_exp_both MCSI_(exp_both)
+#define mcsi_exp_d MCSI_(exp_d)
 #define mcsi_exp_neg MCSI_(exp_neg)
 #define mcsi_exp_reduced MCSI_(exp_reduced)
 #define mcsi_exponent_bits MCSI_(exponent_bits)
@@ -11363,13 +11670,16 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_log MCSI_(log)
 #define mcsi_log1m MCSI_(log1m)
 #define mcsi_log1p MCSI_(log1p)
+#define mcsi_log1p_d MCSI_(log1p_d)
 #define mcsi_log_of_sum MCSI_(log_of_sum)
 #define mcsi_log_series MCSI_(log_series)
 #define mcsi_logistic_loop MCSI_(logistic_loop)
+#define mcsi_logistic_part MCSI_(logistic_part)
 #define mcsi_mask MCSI_(mask)
 #define mcsi_mask_of MCSI_(mask_of)
 #define mcsi_masked_f MCSI_(masked_f)
 #define mcsi_max MCSI_(max)
+#define mcsi_mills MCSI_(mills)
 #define mcsi_min MCSI_(min)
 #define mcsi_mirror MCSI_(mirror)
 #define mcsi_mirror_direction MCSI_(mirror_direction)
@@ -11377,7 +11687,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_mix MCSI_(mix)
 #define mcsi_mul_wide MCSI_(mul_wide)
 #define mcsi_normal_loop MCSI_(normal_loop)
+#define mcsi_normal_part MCSI_(normal_part)
 #define mcsi_normal_quantile MCSI_(normal_quantile)
+#define mcsi_normal_start MCSI_(normal_start)
 #define mcsi_normal_tail MCSI_(normal_tail)
 #define mcsi_off_zero MCSI_(off_zero)
 #define mcsi_one_minus_cos_power MCSI_(one_minus_cos_power)
@@ -11494,6 +11806,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_truncexp MCSI_(truncexp)
 #define mcsi_truncexp_loop MCSI_(truncexp_loop)
 #define mcsi_truncexp_make MCSI_(truncexp_make)
+#define mcsi_trunclogistic_draw MCSI_(trunclogistic_draw)
+#define mcsi_trunclogistic_loop MCSI_(trunclogistic_loop)
+#define mcsi_trunclogistic_make MCSI_(trunclogistic_make)
+#define mcsi_truncnormal_draw MCSI_(truncnormal_draw)
+#define mcsi_truncnormal_loop MCSI_(truncnormal_loop)
+#define mcsi_truncnormal_make MCSI_(truncnormal_make)
 #define mcsi_upward MCSI_(upward)
 #define mcsi_uv MCSI_(uv)
 #define mcsi_vec2 MCSI_(vec2)
@@ -11812,6 +12130,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_truncexp_invert
 #undef mcs_truncexp_pdf
 #undef mcs_truncexp_sample
+#undef mcs_trunclogistic_invert
+#undef mcs_trunclogistic_pdf
+#undef mcs_trunclogistic_sample
+#undef mcs_truncnormal_invert
+#undef mcs_truncnormal_pdf
+#undef mcs_truncnormal_sample
 #undef mcs_u
 #undef mcs_u01
 #undef mcs_u01_open
@@ -11830,6 +12154,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_ward_sample
 #undef mcs_ward_weight
 #undef mcsi_abs
+#undef mcsi_add_log2
 #undef mcsi_always
 #undef mcsi_angle
 #undef mcsi_angle_of_turns
@@ -11892,6 +12217,14 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_corners_make
 #undef mcsi_cos_power
 #undef mcsi_cosine_loop
+#undef mcsi_cut
+#undef mcsi_cut_from_base
+#undef mcsi_cut_invert
+#undef mcsi_cut_make
+#undef mcsi_cut_part
+#undef mcsi_cut_pdf
+#undef mcsi_cut_place
+#undef mcsi_cut_sample
 #undef mcsi_d
 #undef mcsi_deviation
 #undef mcsi_disk_hit
@@ -11915,7 +12248,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_eta_ok
 #undef mcsi_evenpower_loop
 #undef mcsi_exact_dot
+#undef mcsi_exp2_parts
 #undef mcsi_exp_both
+#undef mcsi_exp_d
 #undef mcsi_exp_neg
 #undef mcsi_exp_reduced
 #undef mcsi_exponent_bits
@@ -12002,13 +12337,16 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_log
 #undef mcsi_log1m
 #undef mcsi_log1p
+#undef mcsi_log1p_d
 #undef mcsi_log_of_sum
 #undef mcsi_log_series
 #undef mcsi_logistic_loop
+#undef mcsi_logistic_part
 #undef mcsi_mask
 #undef mcsi_mask_of
 #undef mcsi_masked_f
 #undef mcsi_max
+#undef mcsi_mills
 #undef mcsi_min
 #undef mcsi_mirror
 #undef mcsi_mirror_direction
@@ -12016,7 +12354,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_mix
 #undef mcsi_mul_wide
 #undef mcsi_normal_loop
+#undef mcsi_normal_part
 #undef mcsi_normal_quantile
+#undef mcsi_normal_start
 #undef mcsi_normal_tail
 #undef mcsi_off_zero
 #undef mcsi_one_minus_cos_power
@@ -12133,6 +12473,12 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_truncexp
 #undef mcsi_truncexp_loop
 #undef mcsi_truncexp_make
+#undef mcsi_trunclogistic_draw
+#undef mcsi_trunclogistic_loop
+#undef mcsi_trunclogistic_make
+#undef mcsi_truncnormal_draw
+#undef mcsi_truncnormal_loop
+#undef mcsi_truncnormal_make
 #undef mcsi_upward
 #undef mcsi_uv
 #undef mcsi_vec2
@@ -12265,6 +12611,8 @@ MCSI_ARRAY_LINE(exponential)
 MCSI_ARRAY_LINE_2(truncexp)
 MCSI_ARRAY_LINE_2(normal)
 MCSI_ARRAY_LINE_2(logistic)
+MCSI_ARRAY_LINE_2(truncnormal)
+MCSI_ARRAY_LINE_2(trunclogistic)
 MCSI_ARRAY_LINE(power)
 MCSI_ARRAY_LINE(evenpower)
 MCSI_ARRAY_LINE_2(smoothstep)
@@ -12333,16 +12681,16 @@ MCS_API void mcs_disk_light_sample_n(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 norma
     call.out[4] = distance;
     MCSI_BATCH_LOOP(disk_light_loop, (p, centre, normal, radius, &call));
 }
-#define MCSI_ARRAY_OF_LIGHT(NAME)                                                                                  \
-    MCS_API void mcs_##NAME##_sample_n(const mcs_##NAME *l, size_t n, const float *u1, const float *u2, float *x,  \
-                                       float *y, float *z, float *pdf, float *distance, float *light_x,            \
-                                       float *light_y) {                                                           \
-        mcsi_batch call;                                                                                           \
-        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                            \
-        call.out[4] = distance;                                                                                    \
-        call.out[5] = light_x;                                                                                     \
-        call.out[6] = light_y;                                                                                     \
-        MCSI_BATCH_LOOP(NAME##_loop, (l, &call));                                                                  \
+#define MCSI_ARRAY_OF_LIGHT(NAME)                                                                                 \
+    MCS_API void mcs_##NAME##_sample_n(const mcs_##NAME *l, size_t n, const float *u1, const float *u2, float *x, \
+                                       float *y, float *z, float *pdf, float *distance, float *light_x,           \
+                                       float *light_y) {                                                          \
+        mcsi_batch call;                                                                                          \
+        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                           \
+        call.out[4] = distance;                                                                                   \
+        call.out[5] = light_x;                                                                                    \
+        call.out[6] = light_y;                                                                                    \
+        MCSI_BATCH_LOOP(NAME##_loop, (l, &call));                                                                 \
     }
 MCSI_ARRAY_OF_LIGHT(spherical_rectangle)
 MCSI_ARRAY_OF_LIGHT(spherical_triangle)

@@ -67,6 +67,8 @@ LINE_1(exponential, 1)
 LINE_2(truncexp, 1, 2)
 LINE_2(normal, 0, 1)
 LINE_2(logistic, 0, 1)
+LINE_2(truncnormal, -1, 2)
+LINE_2(trunclogistic, 0.5f, 4)
 LINE_1(power, 3)
 LINE_1(evenpower, 2)
 LINE_2(smoothstep, 0, 1)
@@ -78,6 +80,8 @@ static const sampler lines[] = {
     {"truncexp, m = 2", "rate e^(-rate x)/(1-e^(-rate m))", LINE, draw_truncexp, density_truncexp, 0, 2},
     {"normal", "e^(-x^2/2) / sqrt(2 pi)", LINE, draw_normal, density_normal, -4, 4},
     {"logistic", "e^-x / (1 + e^-x)^2", LINE, draw_logistic, density_logistic, -8, 8},
+    {"truncnormal -1 to 2", "c e^(-x^2/2)", LINE, draw_truncnormal, density_truncnormal, -1, 2},
+    {"trunclogistic 0.5 to 4", "c e^-x / (1 + e^-x)^2", LINE, draw_trunclogistic, density_trunclogistic, 0.5f, 4},
     {"power, e = 3", "(e+1) x^e", LINE, draw_power, density_power, 0, 1},
     {"evenpower, e = 2", "(e+1)/2 |x|^e", LINE, draw_evenpower, density_evenpower, -1, 1},
     {"smoothstep", "2 (3 x^2 - 2 x^3)", LINE, draw_smoothstep, density_smoothstep, 0, 1}};

@@ -26,6 +26,7 @@ typedef struct {
     enum mcst_frame frame;
     int s_bins, t_bins;
     double a, b, k;                    /* the constants of the coordinates, see mcst_map_make */
+    double steep;                      /* the density at the end nearer to 0, within the inverse of which it falls */
     double noise;                      /* relative change of the density when the point is rounded to floats */
     double wo[3], ex[3], ey[3], ez[3]; /* for MCST_HALF: wo; for MCST_MIRROR: a frame about R */
 } mcst_map;
@@ -54,8 +55,13 @@ static inline void mcst_map_mirror(mcst_map *m) {
     m->ey[1] = z[2] * m->ex[0] - z[0] * m->ex[2];
     m->ey[2] = z[0] * m->ex[1] - z[1] * m->ex[0];
 }
+/* t / (1 + t) with the sign of x, where t is steep times the distance of |x| from c. */
+static inline double mcst_cut_share(double c, double steep, double x) {
+    return copysign(1 / (1 + 1 / (steep * (fabs(x) - c))), x);
+}
 /* The constants a, b, k of the coordinates. */
 static inline void mcst_map_constants(mcst_map *m, const mcst_row *row) {
+    float at_base;
     switch (row->coord) {
     case MCST_UNIT:
         m->a = 0;
@@ -69,6 +75,13 @@ static inline void mcst_map_constants(mcst_map *m, const mcst_row *row) {
     case MCST_BETWEEN:
         m->b -= m->a;
         m->coord = MCST_UNIT;
+        break;
+    case MCST_CUT:
+        m->k = fmax(fmax(m->a, -m->b), 0);
+        at_base = (float)(m->a > 0 ? m->k : -m->k);
+        m->steep = (double)row->truth.pdf(m->p, &at_base);
+        m->a = mcst_cut_share(m->k, m->steep, m->a);
+        m->b = mcst_cut_share(m->k, m->steep, m->b) - m->a;
         break;
     case MCST_SPHERE: m->k = 2; break; /* 1 - z = k s */
     case MCST_HEMISPHERE: m->k = 1; break;
@@ -100,6 +113,7 @@ static inline mcst_map mcst_map_make(const mcst_row *row, const float *p) {
     m.noise = 0x1p-24;
     if (row->coord == MCST_WHOLELINE || row->coord == MCST_BETWEEN) m.noise *= 1 + fabs(m.a) / m.b;
     if (row->coord == MCST_POWER || row->coord == MCST_EVENPOWER) m.noise *= 1 + m.a;
+    if (row->coord == MCST_CUT) m.noise *= 1 + m.k * m.steep;
     if (row->shape == MCST_IS_BRDF) {
         /* a component of wi is off by up to 2^-25, the slope of its half-vector by that over |wo + wi| = 2 wo.h, which
          * is a fraction of the lobe's width; wo.h is about the larger of wo.z and the width */
@@ -177,6 +191,11 @@ static inline double mcst_place_line(const mcst_map *m, double s, double *x) {
         w = 1 - fabs(2 * s - 1);
         *x = m->a + m->b * (2 * s - 1) / w;
         return 2 * m->b / (w * w);
+    case MCST_CUT: /* mcst_cut_share is a + b s */
+        j = m->a + m->b * s;
+        w = 1 - fabs(j);
+        *x = copysign(m->k + fabs(j) / (w * m->steep), j);
+        return m->b / (w * w * m->steep);
     case MCST_POWER: *x = 1 - mcst_power_y(m->a, s, &j); return j;
     default: /* MCST_EVENPOWER: a copy towards each end */
         *x = 1 - mcst_power_y(m->a, s < 0.5 ? 2 * s : 2 - 2 * s, &j);
@@ -289,6 +308,7 @@ static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
         n = (x - m->a) / m->b;
         s = 0.5 + 0.5 * n / (1 + fabs(n));
         break;
+    case MCST_CUT: s = (mcst_cut_share(m->k, m->steep, x) - m->a) / m->b; break;
     case MCST_POWER: s = mcst_power_s(m->a, 1 - x); break;
     case MCST_EVENPOWER:
         s = 0.5 * mcst_power_s(m->a, 1 - fabs(x));

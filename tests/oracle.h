@@ -296,6 +296,99 @@ static inline ld o_logistic_pdf_u(ld mean, ld s, ld u) {
 }
 static inline ld o_logistic_invert(ld mean, ld s, ld x) { return 1.0L / (1.0L + expl((mean - x) / s)); }
 
+/* ---- either bell between two ends: all is said of the distance y from c, the end nearer to 0, or 0 within the ends,
+ * in units of the bell at c ---- */
+
+/* The bell at y, and its integral from 0 to y. */
+typedef struct {
+    ld (*bell)(ld c, ld y);
+    ld (*mass)(ld c, ld y);
+} o_bell;
+/* Integrals to the left and to the right of c. */
+typedef struct {
+    ld c, left, right;
+} o_cut;
+static inline o_cut o_cut_make(const o_bell *of, ld a, ld b) {
+    o_cut k;
+    k.c = fmaxl(fmaxl(a, -b), 0.0L);
+    k.left = of->mass(k.c, fmaxl(-a, k.c) - k.c);
+    k.right = of->mass(k.c, fmaxl(b, k.c) - k.c);
+    return k;
+}
+/* The integral from c to the point of u, below 0 to the left. */
+static inline ld o_cut_mass(const o_cut *k, ld u) {
+    return (u < O_U_MIN ? O_U_MIN : u) * (k->left + k->right) - k->left;
+}
+/* The y of an integral. It grows and bends down, so that Newton's method comes to it from 0 without passing it. */
+static inline ld o_cut_y(const o_bell *of, ld c, ld mass) {
+    ld y = 0.0L;
+    for (int i = 0; i < 100; i++) {
+        const ld next = y + (mass - of->mass(c, y)) / of->bell(c, y);
+        if (!(next > y)) break;
+        y = next;
+    }
+    return y;
+}
+static inline ld o_cut_map(const o_bell *of, ld a, ld b, ld u) {
+    const o_cut k = o_cut_make(of, a, b);
+    const ld mass = o_cut_mass(&k, u);
+    return copysignl(k.c + o_cut_y(of, k.c, fabsl(mass)), mass);
+}
+static inline ld o_cut_pdf_u(const o_bell *of, ld a, ld b, ld u) {
+    const o_cut k = o_cut_make(of, a, b);
+    return of->bell(k.c, o_cut_y(of, k.c, fabsl(o_cut_mass(&k, u)))) / (k.left + k.right);
+}
+static inline ld o_cut_pdf(const o_bell *of, ld a, ld b, ld x) {
+    const o_cut k = o_cut_make(of, a, b);
+    return x >= a && x <= b ? of->bell(k.c, fabsl(x) - k.c) / (k.left + k.right) : 0.0L;
+}
+static inline ld o_cut_invert(const o_bell *of, ld a, ld b, ld x) {
+    const o_cut k = o_cut_make(of, a, b);
+    const ld inside = fminl(fmaxl(x, a), b);
+    const ld mass = of->mass(k.c, fabsl(inside) - k.c);
+    return (k.left + copysignl(mass, inside)) / (k.left + k.right);
+}
+
+/* The integral of e^(-t^2/2) from x on, over e^(-x^2/2): Laplace's continued fraction far out. */
+static inline ld o_mills(ld x) {
+    if (x < 8.0L) return 0.5L * O_SQRT_2PI * expl(0.5L * x * x) * erfcl(x / O_SQRT_2);
+    ld below = 0.0L;
+    for (int n = 60; n > 0; n--) below = (ld)n / (x + below);
+    return 1.0L / (x + below);
+}
+static inline ld o_normal_bell(ld c, ld y) { return expl(-y * (c + 0.5L * y)); }
+/* The difference of the tails; where it cancels Taylor's series at c, as the slope of the bell is -(c + y) times it. */
+static inline ld o_normal_mass(ld c, ld y) {
+    if (y * (c + 0.5L * y) > 0.25L) return o_mills(c) - o_mills(c + y) * o_normal_bell(c, y);
+    ld before = 0.0L;
+    ld term = 1.0L;
+    ld sum = 0.0L;
+    for (int k = 0; k < 40; k++) {
+        const ld next = -y * (c * term + y * before) / (ld)(k + 1);
+        sum += term / (ld)(k + 1);
+        before = term;
+        term = next;
+    }
+    return y * sum;
+}
+static const o_bell o_normal_of = {o_normal_bell, o_normal_mass};
+static inline ld o_truncnormal_map(ld a, ld b, ld u) { return o_cut_map(&o_normal_of, a, b, u); }
+static inline ld o_truncnormal_pdf(ld a, ld b, ld x) { return o_cut_pdf(&o_normal_of, a, b, x); }
+static inline ld o_truncnormal_pdf_u(ld a, ld b, ld u) { return o_cut_pdf_u(&o_normal_of, a, b, u); }
+static inline ld o_truncnormal_invert(ld a, ld b, ld x) { return o_cut_invert(&o_normal_of, a, b, x); }
+
+/* e^-x / (1 + e^-x)^2 over e^-c */
+static inline ld o_logistic_bell(ld c, ld y) {
+    const ld one_and = 1.0L + expl(-c - y);
+    return expl(-y) / (one_and * one_and);
+}
+static inline ld o_logistic_mass(ld c, ld y) { return -expm1l(-y) / ((1.0L + expl(-c)) * (1.0L + expl(-c - y))); }
+static const o_bell o_logistic_of = {o_logistic_bell, o_logistic_mass};
+static inline ld o_trunclogistic_map(ld a, ld b, ld u) { return o_cut_map(&o_logistic_of, a, b, u); }
+static inline ld o_trunclogistic_pdf(ld a, ld b, ld x) { return o_cut_pdf(&o_logistic_of, a, b, x); }
+static inline ld o_trunclogistic_pdf_u(ld a, ld b, ld u) { return o_cut_pdf_u(&o_logistic_of, a, b, u); }
+static inline ld o_trunclogistic_invert(ld a, ld b, ld x) { return o_cut_invert(&o_logistic_of, a, b, x); }
+
 /* v^e for v in [0, 1], e >= 0 */
 static inline ld o_pow(ld v, ld e) {
     if (v == 0.0L) return e == 0.0L ? 1.0L : 0.0L;

@@ -29,6 +29,8 @@
     M(X, LINE, truncexp, truncexp, 2, -, TRUNCATED, truncexp, line, 1, 0)         \
     M(X, LINE, normal, normal, 2, -, WHOLELINE, normal, normal, 2, MCST_QUANTILE) \
     M(X, LINE, logistic, logistic, 2, -, WHOLELINE, normal, line, 2, 0)           \
+    M(X, LINE, truncnormal, truncnormal, 2, -, CUT, cut, line, 1, 0)              \
+    M(X, LINE, trunclogistic, trunclogistic, 2, -, CUT, cut, line, 1, 0)          \
     M(X, LINE, power, power, 1, -, POWER, power, line, 1, 0)                      \
     M(X, LINE, evenpower, evenpower, 1, -, EVENPOWER, power, line, 1, 0)          \
     M(X, LINE, smoothstep, smoothstep, 2, -, BETWEEN, ends, line, 1, 0)
@@ -97,6 +99,7 @@ enum mcst_coord {
     MCST_POWER,
     MCST_EVENPOWER,
     MCST_BETWEEN, /* from the first parameter to the second */
+    MCST_CUT,     /* the same of a bell, about the end nearer to 0 */
     MCST_DISK,
     MCST_SPHERE,
     MCST_HEMISPHERE,
@@ -213,6 +216,27 @@ static const float mcst_grid_power[][2] = {{2, 0},  {0, 0},   {1, 0},    {0.5f, 
                                            {10, 0}, {100, 0}, {1e4f, 0}, {1e6f, 0}, {1e9f, 0}};
 static const float mcst_grid_ends[][2] = {{0, 1},      {-1, 1},    {2, 5},      {-3, -2.5f},     {1000, 1001},
                                           {0, 1e-18f}, {0, 1e18f}, {-1e18f, 0}, {-1e-30f, 0.5f}, {-1e6f, 1e-6f}};
+static const float mcst_grid_cut[][2] = {{-1, 1},
+                                         {0, 1},
+                                         {8, 9},
+                                         {-9, -8},
+                                         {30, 31},
+                                         {-31, -30},
+                                         {-3, 0.5f},
+                                         {-40, -2},
+                                         {-INFINITY, INFINITY},
+                                         {-INFINITY, 1},
+                                         {1e6f, INFINITY},
+                                         {-FLT_MAX, -2e17f},
+                                         {1, 1.0000001f},
+                                         {-1e-20f, 1},
+                                         {1e-9f, 2e-9f},
+                                         {-1e-4f, 3e-4f},
+                                         {3.16e-4f, 5e-4f},
+                                         {0.5f, 0.50001f},
+                                         {-20.000002f, -20},
+                                         {-1e-18f, 1e-18f},
+                                         {-5, 7}};
 /* Two of four heights; the others stand in adapters.h. */
 static const float mcst_grid_corners[][2] = {{2, 5}, {1, 3},     {1, 1},    {0, 0},         {0, 4},
                                              {4, 0}, {1e-6f, 1}, {1e6f, 3}, {1e30f, 2e30f}, {1e-30f, 3e-30f}};
@@ -271,6 +295,7 @@ static inline int mcst_bad_normal(int i, float v) {
 }
 static inline int mcst_bad_power(int i, float v) { return i == 0 && mcst_outside(v, 0, 1e9f); }
 static inline int mcst_bad_ends(int i, float v) { return i < 2 && !(fabsf(v) <= FLT_MAX); }
+static inline int mcst_bad_cut(int i, float v) { return i == 0 ? !(v < 1e18f) : i == 1 && !(v > -1e18f); }
 /* A bad height makes the density uniform. */
 static inline int mcst_bad_corners(int i, float v) { return i < 2 && !(v >= 0 && v <= FLT_MAX) ? -1 : 0; }
 static inline int mcst_bad_cone(int i, float v) { return i != 0 ? 0 : !(v > 0 && v <= 2) ? 1 : v < 1e-30f ? -1 : 0; }
@@ -302,6 +327,7 @@ static inline int mcst_bad_exponents(int i, float v) {
 #define MCST_DOMAIN_normal {mcst_bad_normal, {1e-30, 1e-18}, {1e30, 1e18}, 1}
 #define MCST_DOMAIN_power {mcst_bad_power, {1e-30, 1e-30}, {1e9, 1e9}, 0}
 #define MCST_DOMAIN_ends {mcst_bad_ends, {1e-30, 2}, {1, 9e17}, 1}
+#define MCST_DOMAIN_cut {mcst_bad_cut, {1e-30, 2}, {1, 9e17}, 1}
 #define MCST_DOMAIN_corners {mcst_bad_corners, {1e-45, 1e-45}, {3.4e38, 3.4e38}, 0}
 #define MCST_DOMAIN_cone {mcst_bad_cone, {1e-30, 0}, {2, 0}, 0}
 #define MCST_DOMAIN_ball {mcst_bad_ball, {1e-18, 1e-18}, {1e18, 1e18}, 1}
@@ -334,6 +360,9 @@ static const mcst_set mcst_chi_power[] = {
     {2, 0, 0, 0, 10}, {0, 0, 0, 0, 2}, {0.5f, 0, 0, 0, 2}, {10, 0, 0, 0, 2}, {100, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_ends[] = {
     {0, 1, 0, 0, 10}, {-1, 1, 0, 0, 2}, {2, 5, 0, 0, 2}, {0, 1e-18f, 0, 0, 2}, {-1e18f, 0, 0, 0, 2}};
+static const mcst_set mcst_chi_cut[] = {{-1, 1, 0, 0, 10},        {8, 9, 0, 0, 2},
+                                        {-31, -30, 0, 0, 2},      {-INFINITY, INFINITY, 0, 0, 2},
+                                        {-3, 0.5f, 0, 0, 2},      {0.5f, 0.51f, 0, 0, 2}};
 static const mcst_set mcst_chi_corners[] = {
     {2, 5, 0, 0, 10}, {0, 0, 0, 0, 2}, {0, 4, 0, 0, 2}, {4, 0, 0, 0, 2}, {1e6f, 1, 0, 0, 2}};
 static const mcst_set mcst_chi_cone[] = {
@@ -580,9 +609,23 @@ static inline void mcst_grid_get(const mcst_row *row, size_t i, float p[MCST_P])
     mcst_fill(row, g[0], g[1], o[0], o[1], p);
 }
 
+/* Where the x of a line is a difference, its rounding is that of the terms: their size. */
+static inline double mcst_line_scale(const mcst_row *row, const float *p) {
+    const double a = fabs((double)p[0]);
+    const double b = fabs((double)p[1]);
+    switch (row->coord) {
+    case MCST_TENT:
+    case MCST_BETWEEN: return a;
+    case MCST_WHOLELINE: return a + b;
+    case MCST_CUT: return p[0] < 0 && p[1] > 0 ? fmin(1, fmax(a, b)) : 0;
+    default: return 0;
+    }
+}
+
 /* Parameters that are bad together, while each is good. */
 static inline int mcst_bad_together(const mcst_row *row, const float *p) {
     if (row->coord == MCST_UNIT) return p[0] == 0 && p[1] == 0;
+    if (row->coord == MCST_CUT) return !(fminf(p[1], 1e18f) - fmaxf(p[0], -1e18f) >= 1e-18f);
     return row->coord == MCST_BETWEEN && mcst_outside(p[1] - p[0], 1e-18f, 1e18f);
 }
 

@@ -76,7 +76,8 @@ static void valid_parameters(const mcst_row *row, uint64_t *state, float set[3])
     set[0] = (d->either_sign && !(z & 2) ? -1.0f : 1.0f) * spread(state, d->least[0], d->most[0]);
     if (d->least[1] == 0) return;
     if (row->coord == MCST_UNIT && z & 2) return;
-    const int apart = row->coord == MCST_TRUNCATED || row->coord == MCST_WHOLELINE || row->coord == MCST_BETWEEN;
+    const int apart = row->coord == MCST_TRUNCATED || row->coord == MCST_WHOLELINE || row->coord == MCST_BETWEEN ||
+                      row->coord == MCST_CUT;
     if (!apart && z & (row->coord == MCST_UNIT ? 4 : 2)) set[1] = set[0];
     else set[1] = spread(state, d->least[1], d->most[1]);
 }
@@ -95,7 +96,7 @@ static void valid_point(const mcst_row *row, uint64_t *state, const float *of, f
     } else if (row->shape == MCST_IS_LINE || row->shape == MCST_IS_PLANE) {
         for (int k = 0; k < 3; k++) {
             const double size =
-                z & 4 ? (double)of[k & 1] * (double)spread(state, 0.1, 10) : (double)spread(state, 1e-45, 3.4e38);
+                z & 4 ? fabs((double)of[k & 1]) * (double)spread(state, 0.1, 10) : (double)spread(state, 1e-45, 3.4e38);
             x[k] = (z >> (4 + k) & 1 ? 1.0f : -1.0f) * (float)fmin(size, FLT_MAX);
         }
     }
@@ -260,7 +261,8 @@ static unsigned long flush_mode(int on) {
 /* The size that a coordinate on a line or plane is judged by. */
 static double line_of(const mcst_row *row, const float *p) {
     switch (row->coord) {
-    case MCST_WHOLELINE: return fabs((double)p[0]) + (double)p[1];
+    case MCST_WHOLELINE:
+    case MCST_CUT: return mcst_line_scale(row, p) + 0x1p-24;
     case MCST_TENT:
     case MCST_DISK: return (double)p[0];
     case MCST_HALFLINE: return 0x1p-24 / (double)p[0];

@@ -75,12 +75,15 @@ static float between(uint64_t *state, double lo, double hi) {
     return (float)(lo * pow(hi / lo, (double)(mcst_mix(state) >> 40) * 0x1p-24));
 }
 static void draw_set(const mcst_row *row, uint64_t *state, float p[MCST_P]) {
-    const double lo[MCST_SLOPES] = {1e-5, 1e-18, 1e-18, 1e-3, 1e-3, 1e-3, 1e-3, 1e-30};
-    const double hi[MCST_SLOPES] = {1, 1e18, 1e18, 1e3, 1e3, 1e9, 1e9, 9e-4};
+    const double lo[MCST_SLOPES] = {1e-5, 1e-18, 1e-18, 1e-3, 1e-3, 1e-3, 1e-3, 1e-30, 1e-3};
+    const double hi[MCST_SLOPES] = {1, 1e18, 1e18, 1e3, 1e3, 1e9, 1e9, 9e-4, 40};
     const int own = row->coord >= MCST_SLOPES; /* a line beyond the list has its domain */
     const float a =
         between(state, own ? row->domain.least[0] : lo[row->coord], own ? row->domain.most[0] : hi[row->coord]);
-    mcst_fill(row, a, between(state, 1e-3, 1e3), 1, 0, p);
+    const float b = between(state, 1e-3, 1e3);
+    const float from = mcst_mix(state) & 1 ? a : -a;
+    if (row->coord == MCST_CUT) mcst_fill(row, from, from + b, 1, 0, p);
+    else mcst_fill(row, a, b, 1, 0, p);
 }
 
 /* No x below that of the u before, by the array form, whose bits the others share. Parameters of `linear` that are of a

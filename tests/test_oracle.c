@@ -87,15 +87,6 @@ static double direction_tol(const mcst_row *row, const float *p, const float *x,
                                                : pdf_tol(pdf, peak);
 }
 
-/* Distances on a line are judged by the larger of |x| and this: where x is a difference, the rounding is that of its
- * terms. */
-static double line_scale(const mcst_row *row, const float *p) {
-    if (row->coord == MCST_TENT) return (double)p[0];
-    if (row->coord == MCST_WHOLELINE) return fabs((double)p[0]) + (double)p[1];
-    if (row->coord == MCST_BETWEEN) return fabs((double)p[0]);
-    return 0;
-}
-
 static int is_azimuth(const mcst_row *row, int i) {
     return row->shape == MCST_IS_VLOBE ? i == 0 : row->dim > 1 && !(row->traits & MCST_SQUARE) && i == 1;
 }
@@ -152,7 +143,7 @@ static void check_where(const grid_point *g) {
         err = fmax(err, fabs((double)((ld)x[i] - exact[i])));
         size = fmax(size, fabs((double)exact[i]));
     }
-    if (row->dim == 1) size = fmax(size, line_scale(row, g->p));
+    if (row->dim == 1) size = fmax(size, mcst_line_scale(row, g->p));
     else if (row->dim == 3) size = 1;
     double steps = row->shape == MCST_IS_BRDF    ? 16
                    : row->shape == MCST_IS_DIR   ? 2

@@ -78,6 +78,21 @@ static void beyond_the_ends(void) {
               mcs_smoothstep_sample(2, 5, top).x <= 5 && mcs_smoothstep_pdf(2, 5, 2) == 0,
           "smoothstep at its ends: %g %g", (double)mcs_smoothstep_sample(2, 5, 0).x,
           (double)mcs_smoothstep_sample(2, 5, top).x);
+    CHECK(mcs_truncnormal_pdf(-2, 3, -2.1f) == 0 && mcs_truncnormal_pdf(-2, 3, 3.1f) == 0 &&
+              mcs_truncnormal_pdf(-2, 3, 3) > 0 && mcs_truncnormal_pdf(0, 1e-6f, 2e-6f) == 0 &&
+              mcs_truncnormal_invert(-2, 3, -5) == 0 && mcs_truncnormal_invert(-2, 3, 4) == top &&
+              mcs_truncnormal_invert(0, 1e-6f, 1) == top && mcs_truncnormal_sample(1, 1.0000001f, top).x == 1.0000001f,
+          "truncnormal: %g %g", (double)mcs_truncnormal_invert(-2, 3, -5), (double)mcs_truncnormal_invert(-2, 3, 4));
+    CHECK(mcs_trunclogistic_pdf(-2, 3, -2.1f) == 0 && mcs_trunclogistic_pdf(-2, 3, 3.1f) == 0 &&
+              mcs_trunclogistic_invert(-2, 3, -5) == 0 && mcs_trunclogistic_invert(-2, 3, 4) == top &&
+              mcs_trunclogistic_pdf(-2, INFINITY, INFINITY) == 0 && mcs_trunclogistic_pdf(-INFINITY, 3, -1e30f) == 0,
+          "trunclogistic: %g %g", (double)mcs_trunclogistic_invert(-2, 3, -5),
+          (double)mcs_trunclogistic_invert(-2, 3, 4));
+    CHECK(mcs_truncnormal_sample(2, 2, 0.5f).pdf == 0 && mcs_truncnormal_sample(2, 2, 0.5f).x == 0 &&
+              mcs_truncnormal_pdf(3, 2, 2.5f) == 0 && mcs_trunclogistic_invert(INFINITY, INFINITY, 2) == 0 &&
+              mcs_truncnormal_sample(2e18f, INFINITY, 0.5f).pdf == 0 &&
+              mcs_trunclogistic_pdf(-INFINITY, -INFINITY, 2) == 0,
+          "no room between the ends: %g", (double)mcs_truncnormal_sample(2, 2, 0.5f).pdf);
     CHECK(mcs_disk_pdf(3, 3.00001f, 0) == 0 && mcs_concentric_pdf(3, 0, -3.00001f) == 0 && mcs_disk_pdf(3, 3, 0) > 0,
           "disks, 3e-6 past the rim: %g", (double)mcs_disk_pdf(3, 3.00001f, 0));
     CHECK(mcs_bilinear_pdf(1, 2, 3, 4, -0.1f, 0.5f) == 0 && mcs_bilinear_pdf(1, 2, 3, 4, 0.5f, 1.1f) == 0 &&

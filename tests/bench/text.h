@@ -87,6 +87,19 @@ static inline text_sample text_logistic(float mean, float s, float u) {
     const float e = expf(-fabsf(x - mean) / s);
     return text_line(x, e / (s * (1 + e) * (1 + e)));
 }
+/* The share between both ends, by the cumulative distribution and its inverse: in a tail all digits cancel. */
+static inline text_sample text_truncnormal(float a, float b, float u) {
+    const float from = erff(0.70710678f * a);
+    const float to = erff(0.70710678f * b);
+    const float x = 1.41421356f * text_erfinv((1 - u) * from + u * to);
+    return text_line(x, 0.79788456f * expf(-0.5f * x * x) / (to - from));
+}
+static inline text_sample text_trunclogistic(float a, float b, float u) {
+    const float from = 1 / (1 + expf(-a));
+    const float to = 1 / (1 + expf(-b));
+    const float p = (1 - u) * from + u * to;
+    return text_line(-logf(1 / p - 1), p * (1 - p) / (to - from));
+}
 static inline text_sample text_power(float n, float u) {
     const float x = powf(u, 1 / (n + 1));
     return text_line(x, (n + 1) * powf(x, n));

@@ -7,7 +7,7 @@
  *
  * Error of the place: for directions the largest error of a component in units of 2^-24, the ulp of a unit vector's
  * largest component; for disks in ulp of the largest component of the exact point; for lines in ulp of the value, or of
- * the scale where the value is a difference (tent: r; normal, logistic: |mean| + sd; smoothstep: |a|). Error of the density: |pdf /
+ * the scale where the value is a difference (tent: r; normal, logistic: |mean| + sd; smoothstep: |a|; truncnormal, trunclogistic about 0: 1). Error of the density: |pdf /
  * exact - 1| in units of 1e-6 (1 + |ln(exact / peak)|), where exact is the density at the exact point of u. Left out:
  * densities of reflected directions within 40 2^-24 of the horizon, where lost or not is a matter of rounding. Results
  * that are not finite are counted apart.
@@ -55,6 +55,8 @@ TEXT1(exponential, text_exponential(a, u))
 TEXT1(truncexp, text_truncexp(a, b, u))
 TEXT1(normal, text_normal(a, b, u))
 TEXT1(logistic, text_logistic(a, b, u))
+TEXT1(truncnormal, text_truncnormal(a, b, u))
+TEXT1(trunclogistic, text_trunclogistic(a, b, u))
 TEXT1(power, text_power(a, u))
 TEXT1(evenpower, text_evenpower(a, u))
 TEXT1(smoothstep, text_smoothstep(a, b, u))
@@ -163,6 +165,8 @@ static const sampler listed[] = {
     {"truncexp", "truncexp", ALL, 3, 1, truncexp_text, 0, 1, NULL, NULL},
     {"normal", "normal", ALL, 1, 2, normal_text, 0, 1, NULL, NULL},
     {"logistic", "logistic", ALL, 1, 2, logistic_text, 0, 1, NULL, NULL},
+    {"truncnormal", "truncnormal", ALL, -1, 2, truncnormal_text, 0, 1, NULL, NULL},
+    {"trunclogistic", "trunclogistic", ALL, -1, 2, trunclogistic_text, 0, 1, NULL, NULL},
     {"power", "power", ALL, 10, 0, power_text, 0, 1, NULL, NULL},
     {"evenpower", "evenpower", ALL, 2, 0, evenpower_text, 0, 1, NULL, NULL},
     {"smoothstep", "smoothstep", ALL, 2, 5, smoothstep_text, 0, 1, NULL, NULL},
@@ -285,10 +289,7 @@ static void make_exact(const mcst_row *row, const float *p, void (*map)(const fl
                        ld (*pdf_u)(const float *, ld, ld), const float *a, const float *b, exact_points *e) {
     int i, k;
     e->peak = 0;
-    e->scale = row->coord == MCST_TENT        ? (double)p[0]
-               : row->coord == MCST_WHOLELINE ? fabs((double)p[0]) + (double)p[1]
-               : row->coord == MCST_BETWEEN   ? fabs((double)p[0])
-                                              : 0;
+    e->scale = mcst_line_scale(row, p);
     for (i = 0; i < POINTS; i++) {
         ld x[3] = {0, 0, 0};
         map(p, a[i], b[i], x);

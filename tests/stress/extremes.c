@@ -281,9 +281,7 @@ static void check_where(const drawn_point *d) {
     const mcst_row *row = d->row;
     const q3 x = d->x;
     double size = row->dim == 3 ? 1 : fmax(fabs((double)x.x), fabs((double)x.y));
-    if (row->coord == MCST_TENT) size = (double)d->p[0];
-    if (row->coord == MCST_WHOLELINE) size = fmax(size, fabs((double)d->p[0]) + (double)d->p[1]);
-    if (row->coord == MCST_BETWEEN) size = fmax(size, fabs((double)d->p[0]));
+    size = fmax(size, mcst_line_scale(row, d->p));
     const double off = (double)len(add(d->at, times(-1, x))) / EPS;
     const double limit = row->shape == MCST_IS_BRDF ? 16 : row->traits & MCST_QUANTILE ? 12 : 8;
     /* what is subnormal in units of the range has lost digits */

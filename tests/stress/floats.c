@@ -685,16 +685,13 @@ static void support(const mcst_row *of, double *lo, double *hi) {
         break;
     }
     case MCST_EVENPOWER: *lo = -1; break;
-    case MCST_BETWEEN: *lo = a, *hi = b; break;
+    case MCST_BETWEEN:
+    case MCST_CUT: *lo = a, *hi = b; break;
     default: break;
     }
 }
 
-static double scale_of(const mcst_row *of) { /* where x is a difference, the rounding is that of its terms */
-    if (of->coord == MCST_TENT) return (double)arg[0];
-    if (of->coord == MCST_BETWEEN) return fabs((double)arg[0]);
-    return of->coord == MCST_WHOLELINE ? fabs((double)arg[0]) + (double)arg[1] : 0;
-}
+static double scale_of(const mcst_row *of) { return mcst_line_scale(of, arg); }
 
 static const range grid = {GRID, 0, BELOW_1, {0.25f, 0.5f, 0.75f}, 3, 1};
 
