@@ -360,9 +360,9 @@ static const mcst_set mcst_chi_power[] = {
     {2, 0, 0, 0, 10}, {0, 0, 0, 0, 2}, {0.5f, 0, 0, 0, 2}, {10, 0, 0, 0, 2}, {100, 0, 0, 0, 2}};
 static const mcst_set mcst_chi_ends[] = {
     {0, 1, 0, 0, 10}, {-1, 1, 0, 0, 2}, {2, 5, 0, 0, 2}, {0, 1e-18f, 0, 0, 2}, {-1e18f, 0, 0, 0, 2}};
-static const mcst_set mcst_chi_cut[] = {{-1, 1, 0, 0, 10},        {8, 9, 0, 0, 2},
-                                        {-31, -30, 0, 0, 2},      {-INFINITY, INFINITY, 0, 0, 2},
-                                        {-3, 0.5f, 0, 0, 2},      {0.5f, 0.51f, 0, 0, 2}};
+static const mcst_set mcst_chi_cut[] = {{-1, 1, 0, 0, 10},   {8, 9, 0, 0, 2},
+                                        {-31, -30, 0, 0, 2}, {-INFINITY, INFINITY, 0, 0, 2},
+                                        {-3, 0.5f, 0, 0, 2}, {0.5f, 0.51f, 0, 0, 2}};
 static const mcst_set mcst_chi_corners[] = {
     {2, 5, 0, 0, 10}, {0, 0, 0, 0, 2}, {0, 4, 0, 0, 2}, {4, 0, 0, 0, 2}, {1e6f, 1, 0, 0, 2}};
 static const mcst_set mcst_chi_cone[] = {
@@ -617,7 +617,8 @@ static inline double mcst_line_scale(const mcst_row *row, const float *p) {
     case MCST_TENT:
     case MCST_BETWEEN: return a;
     case MCST_WHOLELINE: return a + b;
-    case MCST_CUT: return p[0] < 0 && p[1] > 0 ? fmin(1, fmax(a, b)) : 0;
+    /* a place near 0 is where a share is: about 0 a difference of shares, beside it one that double rounds */
+    case MCST_CUT: return fmin(1, fmax(a, b)) * (p[0] < 0 && p[1] > 0 ? 1 : 1e-5);
     default: return 0;
     }
 }
