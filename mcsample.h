@@ -4056,8 +4056,9 @@ MCSI_FN mcs_f mcs_logistic_invert(mcs_f mean, mcs_f scale, mcs_f x) {
  * 0 lies between the ends. What lies beyond the base, on one side, is a tail. The part of it up to x is
  * 1 - tail(x)/tail(base), of which nothing cancels and nothing underflows far out, as differences of P do. Parts to the
  * left of the base count below 0, and u is mapped to the part u (left + right) - left. All is in double, so that
- * rounding cannot bring x below that of the last u. */
-
+ * rounding cannot bring x below that of the last u.
+ * Their arrays are drawn one by one: they are rare, and loops of all widths would make an include 5 % longer. */
+#ifdef MCSI_PUBLIC
 typedef struct {
     mcs_i ok;
     mcs_i bent; /* elsewhere the density is uniform within 1e-7, and what is below is that of [0,1] */
@@ -4114,7 +4115,6 @@ MCSI_CORE mcs_sample1 mcsi_cut_sample(const mcsi_cut *d, mcs_i ok, mcs_f u, mcs_
         mcsi_sel(d->bent, sign * MCSI_NARROW(MCSI_WIDEN(d->base) + *distance), MCSI_NARROW(a + MCSI_WIDEN(u) * width));
     return mcsi_sample1(ok, mcsi_min(mcsi_max(x, d->a), d->b), mcsi_sel(d->bent, pdf, d->even));
 }
-#ifdef MCSI_PUBLIC
 /* The density at x, of which pdf is that of bent ones. */
 MCSI_CORE mcs_f mcsi_cut_pdf(const mcsi_cut *d, mcs_f x, mcs_f pdf) {
     return mcsi_sane_result(d->ok & (x >= d->a) & (x <= d->b), mcsi_sel(d->bent, pdf, d->even));
@@ -4132,7 +4132,6 @@ MCSI_CORE mcs_f mcsi_cut_invert(const mcsi_cut *d, mcs_f x, const mcsi_d *part) 
 MCSI_CORE mcs_f mcsi_cut_place(const mcsi_cut *d, mcs_f x) {
     return mcsi_sel(d->bent, mcsi_abs(mcsi_min(mcsi_max(x, d->a), d->b)), d->base);
 }
-#endif
 
 /* *x becomes its exponential, in [-80, 0]; 1e-10 of it. */
 MCSI_CORE void mcsi_exp_d(mcsi_d *x) {
@@ -4234,7 +4233,6 @@ MCSI_SAMPLE mcs_sample1 mcs_truncnormal_sample(mcs_f a, mcs_f b, mcs_f u) {
     const mcsi_cut d = mcsi_truncnormal_make(a, b);
     return mcsi_truncnormal_draw(&d, u);
 }
-#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_truncnormal_pdf(mcs_f a, mcs_f b, mcs_f x) {
     const mcsi_cut d = mcsi_truncnormal_make(a, b);
     const mcs_f place = mcsi_cut_place(&d, x);
@@ -4248,7 +4246,6 @@ MCSI_FN mcs_f mcs_truncnormal_invert(mcs_f a, mcs_f b, mcs_f x) {
     mcsi_normal_part(&d, mcsi_cut_place(&d, x), &part);
     return mcsi_cut_invert(&d, x, &part);
 }
-#endif
 
 /* With k = e^-base and y the distance from the base, tail(x)/tail(base) is e^-y (1 + k) / (1 + k e^-y). */
 MCSI_CORE void mcsi_logistic_part(const mcsi_cut *d, mcs_f x, mcsi_d *part) {
@@ -4285,7 +4282,6 @@ MCSI_SAMPLE mcs_sample1 mcs_trunclogistic_sample(mcs_f a, mcs_f b, mcs_f u) {
     const mcsi_cut d = mcsi_trunclogistic_make(a, b);
     return mcsi_trunclogistic_draw(&d, u);
 }
-#ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_trunclogistic_pdf(mcs_f a, mcs_f b, mcs_f x) {
     const mcsi_cut d = mcsi_trunclogistic_make(a, b);
     const mcs_f place = mcsi_cut_place(&d, x);
@@ -4302,6 +4298,21 @@ MCSI_FN mcs_f mcs_trunclogistic_invert(mcs_f a, mcs_f b, mcs_f x) {
     mcsi_logistic_part(&d, mcsi_cut_place(&d, x), &part);
     return mcsi_cut_invert(&d, x, &part);
 }
+#if MCSI_W == 1 && defined(MCSI_BATCH)
+/* The ends are prepared once for n samples. */
+#define MCSI_ARRAY_CUT(NAME)                                                                               \
+    MCS_API void mcs_##NAME##_sample_n(float a, float b, size_t n, const float *u, float *x, float *pdf) { \
+        const mcsi_cut d = mcsi_##NAME##_make(a, b);                                                       \
+        for (size_t i = 0; i < n; i++) {                                                                   \
+            const mcs_sample1 s = mcsi_##NAME##_draw(&d, u[i]);                                            \
+            if (x) x[i] = s.x;                                                                             \
+            if (pdf) pdf[i] = s.pdf;                                                                       \
+        }                                                                                                  \
+    }
+MCSI_ARRAY_CUT(truncnormal)
+MCSI_ARRAY_CUT(trunclogistic)
+#undef MCSI_ARRAY_CUT
+#endif
 #endif
 
 /* ---- power and evenpower ---- */
@@ -4426,26 +4437,17 @@ MCSI_FN mcs_f mcs_smoothstep_invert(mcs_f a, mcs_f b, mcs_f x) {
     MCSI_LOOP void mcsi_##NAME##_loop(float a1, float a2, const mcsi_batch *call) {                                 \
         MCSI_EACH(b, call) { mcsi_out_sample1(&b, mcs_##NAME##_sample(mcs_set(a1), mcs_set(a2), mcsi_in(&b, 0))); } \
     }
-/* The same for a density between two ends, which are prepared once. */
-#define MCSI_LOOP_CUT(NAME)                                                                     \
-    MCSI_LOOP void mcsi_##NAME##_loop(float a, float b, const mcsi_batch *call) {               \
-        const mcsi_cut d = mcsi_##NAME##_make(mcs_set(a), mcs_set(b));                          \
-        MCSI_EACH(at, call) { mcsi_out_sample1(&at, mcsi_##NAME##_draw(&d, mcsi_in(&at, 0))); } \
-    }
 MCSI_LOOP_LINE_2(linear)
 MCSI_LOOP_LINE(tent)
 MCSI_LOOP_LINE(exponential)
 MCSI_LOOP_LINE_2(truncexp)
 MCSI_LOOP_LINE_2(normal)
 MCSI_LOOP_LINE_2(logistic)
-MCSI_LOOP_CUT(truncnormal)
-MCSI_LOOP_CUT(trunclogistic)
 MCSI_LOOP_LINE(power)
 MCSI_LOOP_LINE(evenpower)
 MCSI_LOOP_LINE_2(smoothstep)
 #undef MCSI_LOOP_LINE
 #undef MCSI_LOOP_LINE_2
-#undef MCSI_LOOP_CUT
 #endif
 
 /* ==== [square] bodies ============================================================================================= */
@@ -11807,10 +11809,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_truncexp_loop MCSI_(truncexp_loop)
 #define mcsi_truncexp_make MCSI_(truncexp_make)
 #define mcsi_trunclogistic_draw MCSI_(trunclogistic_draw)
-#define mcsi_trunclogistic_loop MCSI_(trunclogistic_loop)
 #define mcsi_trunclogistic_make MCSI_(trunclogistic_make)
 #define mcsi_truncnormal_draw MCSI_(truncnormal_draw)
-#define mcsi_truncnormal_loop MCSI_(truncnormal_loop)
 #define mcsi_truncnormal_make MCSI_(truncnormal_make)
 #define mcsi_upward MCSI_(upward)
 #define mcsi_uv MCSI_(uv)
@@ -12474,10 +12474,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_truncexp_loop
 #undef mcsi_truncexp_make
 #undef mcsi_trunclogistic_draw
-#undef mcsi_trunclogistic_loop
 #undef mcsi_trunclogistic_make
 #undef mcsi_truncnormal_draw
-#undef mcsi_truncnormal_loop
 #undef mcsi_truncnormal_make
 #undef mcsi_upward
 #undef mcsi_uv
@@ -12611,8 +12609,6 @@ MCSI_ARRAY_LINE(exponential)
 MCSI_ARRAY_LINE_2(truncexp)
 MCSI_ARRAY_LINE_2(normal)
 MCSI_ARRAY_LINE_2(logistic)
-MCSI_ARRAY_LINE_2(truncnormal)
-MCSI_ARRAY_LINE_2(trunclogistic)
 MCSI_ARRAY_LINE(power)
 MCSI_ARRAY_LINE(evenpower)
 MCSI_ARRAY_LINE_2(smoothstep)

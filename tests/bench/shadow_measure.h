@@ -31,7 +31,7 @@ typedef struct {
     coat coat;
     mcs_pcg32 rng;
     strategy strategy[STRATEGIES];
-    int pays[REGIONS][STAGES]; /* mcs_region_pays, once the table of a stage is built */
+    int pays[REGIONS][STAGES];                 /* mcs_region_pays, once the table of a stage is built */
     knowledge region[REGIONS], early[REGIONS]; /* from all rays, from 256 */
     knowledge whole, spare;
     product product[REGIONS][TECHNIQUES];

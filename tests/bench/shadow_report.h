@@ -135,8 +135,8 @@ static void print_strategies(const report *p) {
 
 /* Geometric means over the configurations of one scene, map or material. */
 static void print_groups(const report *p) {
-    static const int columns[] = {PAIR + STAGE_LAST, PAYING + STAGE_LAST, PAYING_ONLINE, MIXED + STAGE_LAST,
-                                  PRODUCT_ALONE_16,  LEARNED_ALONE};
+    static const int columns[] = {PAIR + STAGE_LAST,  PAYING + STAGE_LAST, PAYING_ONLINE,
+                                  MIXED + STAGE_LAST, PRODUCT_ALONE_16,    LEARNED_ALONE};
     printf("\n%-16s %14s %14s %14s %14s %14s %14s\n", "geometric means", "region + BRDF", "if it pays", "online",
            "region or BRDF", "product x 16", "learned x 16");
     for (kind by = BY_SCENE; by < BY_SOURCE; by++) {
