@@ -146,7 +146,7 @@ cross: ## the same bits on other machines, by cross compilers and qemu-user; man
 
 cuda: ## the same bits, chi-square and rates on a graphics processor, or only that it compiles; some minutes; build/cuda
 	$(SAY)
-	@if command -v $(NVCC) >/dev/null; then $(SUBMAKE) cuda-binaries && $(CUDA)/bits && MCS_TEST_SCALE=0.1 $(CUDA)/samplers; \
+	+@if command -v $(NVCC) >/dev/null; then $(SUBMAKE) cuda-binaries && $(CUDA)/bits && MCS_TEST_SCALE=0.1 $(CUDA)/samplers; \
 	else echo 'SKIPPED: ALL OF IT: $(NVCC) is not installed'; fi
 	@$(TOOK) "programs in $(CUDA)"
 
