@@ -355,7 +355,8 @@ bench-quick: ## the same with less repetition and smaller tables; 45 s; build/be
 bench-peers: ## samplers of Mitsuba beside ours, error and run time; 10 s; prints a table; wants pip install mitsuba numpy
 	$(SAY)
 	+@$(SUBMAKE) $(LIB)/libmcsample.so
-	@$(PYTHON) tests/bench/peers.py $(LIB)/libmcsample.so
+	@if command -v $(PYTHON) >/dev/null; then $(PYTHON) tests/bench/peers.py $(LIB)/libmcsample.so; \
+	else echo 'SKIPPED: ALL OF IT: $(PYTHON) is not installed'; fi
 	@$(TOOK) "the table above"
 
 $(BENCH)/wide8.o: tests/bench/wide.c $(BENCH_HEADERS)
