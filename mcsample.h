@@ -1,4 +1,4 @@
-/* mcsample.h, version 0.1.0: Monte Carlo sampling for rendering in one C header.
+/* mcsample.h: Monte Carlo sampling for rendering in one C header.
  *
  * The header draws points and directions from the densities that a renderer needs, and it tells the density of any
  * point. It covers lines, disks and spheres of directions, lights, phase functions, the Phong, Ward, Beckmann, GGX and
@@ -119,7 +119,7 @@
  *   [disk]        points on a disk                                         lenses, round lights
  *   [triangle]    points on a triangle                                     lights made of triangles
  *   [lights]      directions towards balls, disks, rectangles, triangles   lights, seen from a shaded point
- *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte surfaces, spherical lights
+ *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte surfaces, the sun
  *   [media]       henyey_greenstein, rayleigh, von_mises_fisher            fog, skin, clear air; guiding
  *   [frame]       local and world coordinates                              every shaded point
  *   [microfacet]  half-vectors, mirroring, Schlick's Fresnel               BRDFs of your own
@@ -596,12 +596,14 @@ MCS_FN float mcs_logistic_invert(float mean, float scale, float x);
 /* ---- truncnormal, trunclogistic: the parts of both bells between two ends ----
  * density    e^(-z^2/2) or e^-z / (1 + e^-z)^2 on [a, b], over its integral
  * a, b       the ends in standard deviations, or scales, from the mean: a < 1e18, b > -1e18, b - a at least 1e-18.
- *            -infinity and infinity are good. With (first - mean)/sd and (last - mean)/sd, mean + sd x is the sample
- *            between first and last, and pdf/sd its density.
+ *            -infinity and infinity are good. For ends in units of your own take a = (first - mean)/sd and
+ *            b = (last - mean)/sd. The sample is mean + sd x, its density pdf/sd; pdf and invert take (x - mean)/sd.
+ *            No x is outside [a, b].
  * cost       truncnormal: 5 divisions, 2 logarithms, 1 exponential, 1 root, and for the ends 9 divisions, 2
  *            exponentials, 1 root. trunclogistic: 2 divisions, 1 logarithm, and for the ends 4 divisions, 3
- *            exponentials. Arrays look at the ends once.
- * tail       u below 2^-25 counts as 2^-25, as above. Ends far in a tail keep all digits: [30, 31], [1e6, infinity].
+ *            exponentials. Arrays look at the ends once, and then draw one by one.
+ * tail       u lies in [2^-25, 1 - 2^-24], as above: what is beyond is not drawn. Ends far in a tail keep all digits:
+ *            [30, 31], [1e6, infinity].
  * functions  mcs_truncnormal_sample, mcs_truncnormal_pdf, mcs_truncnormal_invert, mcs_trunclogistic_sample,
  *            mcs_trunclogistic_pdf, mcs_trunclogistic_invert */
 MCS_FN mcs_sample1 mcs_truncnormal_sample(float a, float b, float u);
@@ -738,13 +740,18 @@ MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, f
 #endif
 
 /* ==== [lights] directions towards a light =========================================================================
- * Maps from the unit square to the directions in which a light is seen. Each function takes the point that is lit first
- * and then the light, both in the space of your scene.
+ * Maps from the unit square to the directions in which a light is seen from a point p. Balls and disks take p first and
+ * then the light. Rectangles and triangles are prepared for one p by their _make, and again for the next one.
  *
- *   p         the point that is lit. From there to the light all is in double, so that a light nearby keeps its digits
- *             far from the origin. If your scene is in double, pass (0, 0, 0), and the light less p.
- *   w         a direction, from p to the light. A density above 0 says that it meets the light, if nothing is in its
- *             way.
+ *     mcs_light s = mcs_ball_sample(p, centre, radius, u1, u2);
+ *     float cosine = the normal at p times s.w;
+ *     if (s.pdf > 0 && cosine > 0 && nothing is in the way) sum += radiance * brdf * cosine / s.pdf;
+ *
+ *   p         the point that is lit, in the space of your scene like all else. From p to the light all is in double, so
+ *             that a light nearby keeps its digits far from the origin. If your scene is in double, pass (0, 0, 0), and
+ *             the light less p.
+ *   w         a direction from p to the light. Where its density is above 0 it meets the light, or misses a ball or a
+ *             disk by an angle below 2^-23: take it as met, without a test of your own.
  *   distance  of the light along w: a shadow ray goes from p to p + distance w. It is 0 where the density is 0.
  *
  * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24 */
@@ -788,7 +795,7 @@ MCS_API void mcs_ball_sample_n(mcs_vec3 p, mcs_vec3 centre, float radius, size_t
  *
  * p, centre  coordinates in [-1e18, 1e18]
  * normal     of the disk, a direction. For a disk that gives light to the side of its normal alone, leave out samples
- *            whose w is on the side of the normal.
+ *            with w.normal >= 0, as w goes to the light.
  * radius     in [1e-18, 1e18]; below 1e-15 of the largest coordinate of centre - p it counts as that
  * map        the point is that of mcs_concentric_sample, in the frame of mcs_frame_make(normal), and w is its
  *            direction. Where it is within 1e-18 of p, w is +z and the density 0. A density that is too small for a
@@ -843,7 +850,7 @@ typedef struct {
 /* ---- spherical_rectangle: the light with the corners c, c + edge_x, c + edge_y and c + edge_x + edge_y ----
  * u1 goes along edge_x, in proportion to the solid angle of what is passed, and u2 along edge_y. So do the members x
  * and y of a sample, in [0,1]: the place on the light is c + x edge_x + y edge_y. If the edges are not at right angles,
- * edge_y counts without its part along edge_x.
+ * edge_y counts without its part along edge_x in all of this. A parallelogram is two triangles.
  *
  * cost       8 divisions and 6 square roots, mostly in double; up to 8 arctangents to prepare it, 4 to invert
  * functions  mcs_spherical_rectangle_make, mcs_spherical_rectangle_sample, mcs_spherical_rectangle_pdf,
@@ -2046,9 +2053,11 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * point in it, by the light, and where it pays by the reflection towards the tile's corners.
  *
  *   tiles       mcs_tiles_build, once per map.
- *   prepared    mcs_product_build, once per shading point. For several draws at a point, and for one in the open.
+ *   prepared    mcs_product_build, once per shading point. For several draws at a point, and for one where next to
+ *               nothing hides the light.
  *   of a region mcs_product_build_region, for a part of a scene in whose points one table is drawn from. It knows which
- *               light is hidden there. For one draw at a point. A draw takes about twice that of the map. See [region].
+ *               light is hidden there. For one draw at a point where things stand in the way. A draw takes about twice
+ *               that of the map. See [region].
  *   of weights  mcs_product_build_weights, for anything else: one weight per tile.
  *
  * All are drawn from by mcs_product_sample. Pair the last two with one sample of the BRDF (mcs_mis_balance): they do
@@ -2244,14 +2253,18 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
 
 /* ==== [region] what a part of a scene learns of its light ===========================================================
  * A region is a set of points that see nearly the same: a piece of one object that faces one way. How to cut a scene is
- * the renderer's; object, cell of a grid and main axis of the normal will do, with cells of 3/8 of the object. A region
+ * the renderer's; object, cell of a grid and main axis of the normal will do, with cells of 3/8 of its size. A region
  * collects what its surfaces reflect and which light comes through to them, tile by tile. From both
  * mcs_product_build_region makes one table for all its points.
  *
- *     mcs_region_start(g, bytes, t);
+ *     mcs_region_start(g, mcs_region_bytes(rows), t);              and one more, `fresh`
  *     for a dozen points or more: mcs_region_add_point(g, t, e, &reflection);
- *     mcs_product_build_region(p, size, t, e, g);                  and again when g->rays has doubled
- *     for each sample: mcs_region_add_ray(g, mcs_tiles_of_texel(t, e, s.col, s.row), through);
+ *     mcs_product_build_region(p, mcs_product_table_bytes(rows), t, e, g);
+ *     for each pass over the picture:
+ *         for each sample s: mcs_region_add_ray(fresh, mcs_tiles_of_texel(t, e, s.col, s.row), through);
+ *         mcs_region_merge(g, fresh);
+ *         mcs_region_decay(fresh, 0);
+ *         build p again, where g->rays has doubled since
  *
  * A tile of the table weighs
  *
@@ -2265,12 +2278,12 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *   V       the share of the tile's rays that came through, with V0 of a ray before any is sent: 1/4, or that of a
  *           larger region (mcs_region_inherit)
  *
- * So all light can be drawn, whatever was learned: nothing is biased, as long as no table is built of the rays of the
- * very samples that are drawn from it. Add the rays of a pass to regions of their own, merge these behind it, rebuild
- * the tables, and empty them by mcs_region_decay(g, 0).
+ * So all light can be drawn, whatever was learned. Nothing is biased, as no table knows the ray of a sample that was
+ * drawn from it: the rays of a pass wait in `fresh` until it is over.
  *
- * Pair each sample with one of the BRDF by mcs_mis_balance, and add its ray, too. Narrow lobes gain by a table only
- * where much is hidden: mcs_region_pays tells whether to take it, or the map with mcs_mis_power.
+ * Pair each sample with one of the BRDF by mcs_mis_balance, and add the ray of that, too (mcs_tiles_of_direction).
+ * Narrow lobes gain by a table only where much is hidden: mcs_region_pays tells whether to take it, or the map with
+ * mcs_mis_power.
  *
  *   g          a region, in memory of yours like a product; it holds no pointers
  *   points     Reflections above the surface; others are not added. Without any, f is 1.
@@ -2295,8 +2308,9 @@ MCS_API void mcs_region_decay(mcs_region *g, float keep);
 MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger);
 /* V of tile k, 0 where k is no tile. */
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
-/* Whether r, seen from above, gains by the table of the region: 1 if it has a matte part or its lobe covers at least 8
- * tiles. A lobe that covers 1 tile or more gains where fewer than half the rays came through, others do not: 0. */
+/* Whether r gains by the table of the region, 1 or 0; to be asked when the table is built. It does if it has any matte
+ * part, or a lobe of 8 tiles or more: of 2 rows^2 alpha_x alpha_y, whatever wo is (alpha 0.125 with 16 rows). A lobe of
+ * 1 to 8 tiles gains where fewer than half the rays came through, a smaller one nowhere. */
 MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r);
 #endif
 
@@ -2370,7 +2384,8 @@ MCS_FN float mcs_reservoir_k_weight(const mcs_reservoir_k *r, uint32_t at);
 
 /* ==== [estimator] running mean, variance and standard error ========================================================
  * Estimates an integral as the mean of f(x)/pdf(x) over the samples, and tells how far off that mean may be. Four times
- * as many samples halve the error.
+ * as many samples halve the error. What is told is the error of independent samples. It is too large for well-spread
+ * points: for these, add the means of several seeds, as one value each.
  *
  *     mcs_stat s = {0, 0, 0};
  *     for (...) mcs_stat_add(&s, value_of_a_sample);
