@@ -3565,8 +3565,16 @@ MCS_FN void mcsi_philox_fill_loop(uint64_t key, uint64_t counter, size_t n, floa
 
 #ifdef MCSI_LOOPS
 #if MCSI_W > 1
+/* 64 bits whose lower half is that which is first in memory, and back. */
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+MCSI_CORE mcsi_q mcsi_halves(mcsi_q q) { return q << 32 | q >> 32; }
+#else
+MCSI_CORE mcsi_q mcsi_halves(mcsi_q q) { return q; }
+#endif
 /* The words in the lower halves of a and in the upper halves of b, in turns. */
-MCSI_CORE mcs_u mcsi_in_turns(mcsi_q a, mcsi_q b) { return (mcs_u)((a & 0xffffffffu) | (b & 0xffffffff00000000u)); }
+MCSI_CORE mcs_u mcsi_in_turns(mcsi_q a, mcsi_q b) {
+    return (mcs_u)mcsi_halves((a & 0xffffffffu) | (b & 0xffffffff00000000u));
+}
 #endif
 #if MCSI_W > 4
 /* The outputs of two vectors of states, in turns. gcc does not know vectors of rotations. */
@@ -3630,8 +3638,8 @@ MCSI_CORE void mcsi_philox_blocks(uint64_t key, mcsi_q even, mcsi_q odd, float *
     mcsi_philox_rounds(key, v);
     mcsi_q pair[2][2]; /* of even and odd lanes; words 0 and 1, words 2 and 3 */
     for (int k = 0; k < 2; k++) {
-        const mcsi_q a = (mcsi_q)mcs_u01(v[2 * k]);
-        const mcsi_q b = (mcsi_q)mcs_u01(v[2 * k + 1]);
+        const mcsi_q a = mcsi_halves((mcsi_q)mcs_u01(v[2 * k]));
+        const mcsi_q b = mcsi_halves((mcsi_q)mcs_u01(v[2 * k + 1]));
         pair[0][k] = (mcsi_q)mcsi_in_turns(a, b << 32);
         pair[1][k] = (mcsi_q)mcsi_in_turns(a >> 32, b);
     }
@@ -11666,6 +11674,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_glass_side MCSI_(glass_side)
 #define mcsi_glass_side_of MCSI_(glass_side_of)
 #define mcsi_glass_weighted MCSI_(glass_weighted)
+#define mcsi_halves MCSI_(halves)
 #define mcsi_hemisphere_loop MCSI_(hemisphere_loop)
 #define mcsi_henyey_greenstein MCSI_(henyey_greenstein)
 #define mcsi_henyey_greenstein_loop MCSI_(henyey_greenstein_loop)
@@ -12331,6 +12340,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_glass_side
 #undef mcsi_glass_side_of
 #undef mcsi_glass_weighted
+#undef mcsi_halves
 #undef mcsi_hemisphere_loop
 #undef mcsi_henyey_greenstein
 #undef mcsi_henyey_greenstein_loop

@@ -7,10 +7,10 @@
  *
  * Error of the place: for directions the largest error of a component in units of 2^-24, the ulp of a unit vector's
  * largest component; for disks in ulp of the largest component of the exact point; for lines in ulp of the value, or of
- * the scale where the value is a difference (tent: r; normal, logistic: |mean| + sd; smoothstep: |a|; truncnormal, trunclogistic about 0: 1). Error of the density: |pdf /
- * exact - 1| in units of 1e-6 (1 + |ln(exact / peak)|), where exact is the density at the exact point of u. Left out:
- * densities of reflected directions within 40 2^-24 of the horizon, where lost or not is a matter of rounding. Results
- * that are not finite are counted apart.
+ * the scale where the value is a difference (tent: r; normal, logistic: |mean| + sd; smoothstep: |a|; truncnormal,
+ * trunclogistic about 0: 1). Error of the density: |pdf / exact - 1| in units of 1e-6 (1 + |ln(exact / peak)|), where
+ * exact is the density at the exact point of u. Left out: densities of reflected directions within 40 2^-24 of the
+ * horizon, where lost or not is a matter of rounding. Results that are not finite are counted apart.
  *
  * Of a wo and parameters per sample: hits.h.
  *
