@@ -1,38 +1,21 @@
 /* What the tests of environment maps draw from: images with the probability of every texel, summed in long double. */
 #ifndef MCST_ENV_MAPS_H
 #define MCST_ENV_MAPS_H
-#include <float.h>
-#include <math.h>
-#include "arena.h"
-#include "latlong.h"
-#include "mcs_test.h"
-#include "mcsample.h"
-
-typedef long double ld;
+#define SHADE_STREAM 2
+#include "env_shades.h"
 
 enum { MAX_TEXELS = 8192 * 16 };
-static const double pi = 3.14159265358979323846;
 static const double level = 1e-5; /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
-static const double eps = 0x1p-24;     /* rounding of a float, relative; also the step of u */
 static const double quantum = 0x1p-31; /* probabilities of rows and of columns are integers over 2^31 */
-
-/* MCS_TEST_SCALE below 1 (sanitizer builds) draws fewer samples. */
-static inline int scaled(int n) {
-    const char *s = getenv("MCS_TEST_SCALE");
-    const double f = s ? atof(s) : 1;
-    return f > 0 && f < 1 ? (int)(n * f) + 1 : n;
-}
 
 /* ---- maps ---- */
 
 typedef struct {
     const char *name;
     uint32_t w, h;
-    float (*value)(uint32_t col, uint32_t row, uint32_t w, uint32_t h);
+    shade value;
     int draws; /* random samples that are checked one by one */
 } map;
-
-static inline float hash01(uint32_t i) { return mcs_u01(mcs_philox(mcst.seed, i, 2).v[0]); }
 
 static inline float v_one(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
     (void)c;
@@ -40,15 +23,6 @@ static inline float v_one(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
     (void)w;
     (void)h;
     return 1.0f;
-}
-static inline float v_random(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    (void)h;
-    return 0.1f + hash01(r * w + c);
-}
-static inline float v_checker(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    (void)w;
-    (void)h;
-    return (c + r) & 1 ? 1.0f : 0.0f;
 }
 static inline float v_poles(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
     (void)w;

@@ -4,27 +4,12 @@
 #define MCST_ENV_MODES_H
 static int asserted; /* how often a condition of the header did not hold */
 #define MCS_ASSERT(condition) ((void)((condition) ? 0 : asserted++))
-#include <float.h>
-#include <math.h>
-#include "arena.h"
-#include "latlong.h"
-#include "mcs_test.h"
-#include "mcsample.h"
+#define SHADE_STREAM 4
+#include "env_shades.h"
 
-typedef long double ld;
-
-static const double pi = 3.14159265358979323846;
 static const double level = 1e-5; /* of one statistical test: Sidak, 1000 of them in the whole suite at 0.01 together */
 static const double sigmas = 4.42;     /* the same level for a mean, both sides */
-static const double eps = 0x1p-24;     /* rounding of a float, relative; also the step of u */
 static const double quantum = 0x1p-31; /* probabilities of rows and of columns are integers over 2^31 */
-
-/* MCS_TEST_SCALE below 1 (sanitizer builds) draws fewer samples. */
-static inline int scaled(int n) {
-    const char *s = getenv("MCS_TEST_SCALE");
-    const double f = s ? atof(s) : 1;
-    return f > 0 && f < 1 ? (int)(n * f) + 1 : n;
-}
 
 static inline void *get(size_t bytes) {
     void *p = calloc(bytes, 1);
@@ -46,33 +31,6 @@ typedef struct {
     ld *prob, *row_prob, total;
 } picture;
 
-typedef float (*shade)(uint32_t col, uint32_t row, uint32_t w, uint32_t h);
-
-static inline float hash01(uint32_t i) { return mcs_u01(mcs_philox(mcst.seed, i, 4).v[0]); }
-
-static inline float v_random(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    (void)h;
-    return 0.1f + hash01(r * w + c);
-}
-static inline float v_constant(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    (void)c;
-    (void)r;
-    (void)w;
-    (void)h;
-    return 0.7f;
-}
-static inline float v_black(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    (void)c;
-    (void)r;
-    (void)w;
-    (void)h;
-    return 0.0f;
-}
-static inline float v_checker(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
-    (void)w;
-    (void)h;
-    return (c + r) & 1 ? 1.0f : 0.0f;
-}
 /* A sky brighter towards its horizon, dark ground, and a sun of one texel that is 1e5 times brighter. */
 static inline float v_sky(uint32_t c, uint32_t r, uint32_t w, uint32_t h) {
     const float up = 1.0f - 2.0f * ((float)r + 0.5f) / (float)h;
