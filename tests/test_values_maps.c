@@ -84,7 +84,7 @@ static void borders_of_rows(void) {
 
 /* The only light in every place of a row of some chunks. */
 static void lone_texels(void) {
-    enum { W = 200, H = 3 };
+    enum { W = 2 * MCSI_ENV_CHUNK + MCSI_ENV_CHUNK / 2, H = 3 };
     for (uint32_t c = 0; c < W; c++) {
         float light[W * H];
         memset(light, 0, sizeof light);
@@ -100,7 +100,7 @@ static void lone_texels(void) {
 
 /* Rows of two levels, each of which fills a chunk, are not even. */
 static void rows_of_two_levels(void) {
-    enum { W = 128, H = 4 };
+    enum { W = 2 * MCSI_ENV_CHUNK, H = 4 };
     int right = 0;
     float light[W * H];
     for (int i = 0; i < W * H; i++) light[i] = i % W < W / 2 ? 1.0f : 3.0f;
