@@ -29,11 +29,11 @@
     M(X, LINE, truncexp, truncexp, 2, -, TRUNCATED, truncexp, line, 1, 0)         \
     M(X, LINE, normal, normal, 2, -, WHOLELINE, normal, normal, 2, MCST_QUANTILE) \
     M(X, LINE, logistic, logistic, 2, -, WHOLELINE, normal, line, 2, 0)           \
-    M(X, LINE, truncnormal, truncnormal, 2, -, CUT, cut, line, 1, 0)              \
-    M(X, LINE, trunclogistic, trunclogistic, 2, -, CUT, cut, line, 1, 0)          \
+    M(X, LINE, truncnormal, truncnormal, 2, -, CUT, cut, line, 3, 0)              \
+    M(X, LINE, trunclogistic, trunclogistic, 2, -, CUT, cut, line, 3, 0)          \
     M(X, LINE, power, power, 1, -, POWER, power, line, 1, 0)                      \
     M(X, LINE, evenpower, evenpower, 1, -, EVENPOWER, power, line, 1, 0)          \
-    M(X, LINE, smoothstep, smoothstep, 2, -, BETWEEN, ends, line, 1, 0)
+    M(X, LINE, smoothstep, smoothstep, 2, -, BETWEEN, ends, line, 2, 0)
 #define MCST_LIGHTS(M, X)                                                                                          \
     M(X, LIGHT, ball, ball, ball, -, BY_TRUTH, ball, ball, 0, MCST_WHOLE | MCST_DISTANCE)                          \
     M(X, LIGHT, disk_light, disk_light, disk_light, -, BY_TRUTH, disk_light, disk_light, 0, MCST_LIT)              \
