@@ -88,7 +88,7 @@ static void draw_set(const mcst_row *row, uint64_t *state, float p[MCST_P]) {
 
 /* No x below that of the u before, by the array form, whose bits the others share. Parameters of `linear` that are of a
  * size are the hard case: its closed form in float falls at up to 1e6 of the 2^24 steps. Truncated bells, whose arrays
- * are drawn one by one, have every eighth block here, and all in tests/stress/floats.c. */
+ * are drawn one by one, have every eighth block here; tests/stress/floats.c has all, for the grid. */
 static void check_increase(const mcst_row *row) {
     const int step = (row->coord == MCST_CUT ? 8 : 1) * BLOCK;
     uint64_t state = mcst_seed_for(row->name, "increase", 0);

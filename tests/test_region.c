@@ -26,9 +26,10 @@ static void add_point(learned *l, const scene *m, const surface *s) {
     mcs_region_add_point(l->g, tiles_of(m), env_of(m), &s->r);
 }
 static uint32_t count_of(const scene *m) { return 2 * m->rows * m->rows; }
+static uint32_t tiles_in(const mcs_region *g) { return 2 * g->rows * g->rows; }
 /* Rays to tiles by chance, two of three of them through to the first half of the tiles, one of ten to the others. */
 static void add_rays(learned *l, uint32_t rays, uint32_t stream) {
-    const uint32_t n = 2 * l->g->rows * l->g->rows;
+    const uint32_t n = tiles_in(l->g);
     for (uint32_t i = 0; i < rays; i++) {
         const uint32_t k = (uint32_t)((float)n * hash01(i, stream));
         mcs_region_add_ray(l->g, k, hash01(i, stream + 1) < (k < n / 2 ? 0.67f : 0.1f));
@@ -36,16 +37,15 @@ static void add_rays(learned *l, uint32_t rays, uint32_t stream) {
 }
 /* `rays` to every tile. */
 static void add_rays_to_all(learned *l, uint32_t rays, int through) {
-    for (uint32_t k = 0; k < rays * 2 * l->g->rows * l->g->rows; k++)
-        mcs_region_add_ray(l->g, k % (2 * l->g->rows * l->g->rows), through);
+    for (uint32_t k = 0; k < rays * tiles_in(l->g); k++) mcs_region_add_ray(l->g, k % tiles_in(l->g), through);
 }
 static const float *rays_of(const mcs_region *g, uint32_t k) {
-    return MCSI_READ(float, g, sizeof *g) + 2 * g->rows * g->rows + k;
+    return MCSI_READ(float, g, sizeof *g) + tiles_in(g) + k;
 }
 /* V as part I has it, in double; up: where it was inherited from. */
 static double visibility_of(const mcs_region *g, const mcs_region *up, uint32_t k) {
     const double rays = (double)rays_of(g, k)[0];
-    const double through = (double)rays_of(g, k)[2 * g->rows * g->rows];
+    const double through = (double)rays_of(g, k)[tiles_in(g)];
     return fmax(1e-4, (through + 2 * (up ? visibility_of(up, NULL, k) : 0.25)) / (rays + 2));
 }
 
