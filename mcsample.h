@@ -74,7 +74,7 @@
  *               and reads and writes n numbers of each. A result may be NULL and is then left out. A result may be the
  *               array of an input. BRDFs take one material and one wo for all n; X_hits_n takes a wo, and parameters
  *               of the material, for each. The widest unit of the processor is found at run time; mcs_lanes tells it.
- *               Calls of few points take a narrower one: none costs more than as many calls of X.
+ *               Calls of few points take a narrower one, at about the price of as many calls of X or less.
  *
  * Lanes         mcs4_X, mcs8_X and mcs16_X do for 4, 8 and 16 points what mcs_X does for one. MCS_PACKETS asks for
  *               them: 8 gives those of 4 and of 8 lanes. They exist for mcs_u01, mcs_u01_open, mcs_sobol,
