@@ -75,6 +75,7 @@ int main(int argc, char **argv) {
     const report all = {c->strategy, results, n};
     print_prices(&all);
     print_strategies(&all);
+    print_choice(&all);
     print_groups(&all);
     printf("shadow: %.0f s; %s\n", bench_seconds() - start, bench.out);
     return 0;

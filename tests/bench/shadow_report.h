@@ -47,9 +47,11 @@ static double gain_of(const result *r, const strategy *list, int k) {
 }
 
 /* Names by which configurations are told apart. */
-typedef enum { BY_SCENE, BY_MAP, BY_MATERIAL, BY_SOURCE, KINDS } kind;
+typedef enum { BY_SCENE, BY_MAP, BY_MATERIAL, BY_SOURCE, BY_WALLS, KINDS } kind;
 static const char *name_of(const result *r, kind by) {
-    const char *const names[KINDS] = {r->scene, r->map, r->material, r->from};
+    const int walls = strcmp(r->scene, "courtyard") == 0 || strcmp(r->scene, "room") == 0;
+    const char *const names[KINDS] = {r->scene, r->map, r->material, r->from,
+                                      walls ? "courtyard, room" : "spheres, leaves"};
     return names[by];
 }
 
@@ -60,21 +62,26 @@ typedef struct {
     int count;
 } report;
 
-/* Geometric mean and 5 % quantile of the gains of all configurations, or of those that have a name. */
+/* Gains of all configurations, or of those that have a name: geometric mean, 5 % quantile, and the shares of them that
+ * are below 1 and below 1/1.1. */
 typedef struct {
-    double mean, low;
+    double mean, low, slower, slower_by_a_tenth;
     int n;
 } gains;
 static gains gains_of(const report *p, int k, kind by, const char *name) {
     static double gain[4096];
-    gains g = {0, 0, 0};
+    gains g = {0, 0, 0, 0, 0};
     for (int i = 0; i < p->count; i++) {
         if (name && strcmp(name_of(&p->result[i], by), name) != 0) continue;
         gain[g.n] = gain_of(&p->result[i], p->list, k);
+        g.slower += gain[g.n] < 1;
+        g.slower_by_a_tenth += gain[g.n] < 1 / 1.1;
         g.mean += log(gain[g.n++]);
     }
     if (g.n == 0) return g;
     g.mean = exp(g.mean / g.n);
+    g.slower /= g.n;
+    g.slower_by_a_tenth /= g.n;
     bench_spread_of(gain, g.n);
     g.low = gain[g.n / 20];
     return g;
@@ -130,6 +137,23 @@ static void print_strategies(const report *p) {
         if (k < MEASURED)
             printf(" %10.0f %9.0f", nanoseconds(p, offsetof(result, draw) + (size_t)k * sizeof(double)), largest);
         printf("\n");
+    }
+}
+
+/* What to choose where: the same gains with walls around and without, and how often a strategy loses to MIS. */
+static void print_choice(const report *p) {
+    static const int rows[] = {PRODUCT_ALONE, PAIR + STAGE_LAST, PAYING + STAGE_LAST,
+                               PAYING_ONLINE, PRODUCT_ALONE_16,  LEARNED_ALONE};
+    printf("\n%-24s %6s %17s %17s %17s %8s %12s\n", "gain: mean / 5 %", "draws", "spheres, leaves", "courtyard, room",
+           "all maps", "slower", "by a tenth");
+    for (size_t j = 0; j < sizeof rows / sizeof *rows; j++) {
+        const int k = rows[j];
+        const gains all = gains_of(p, k, BY_SOURCE, NULL);
+        const gains open = gains_of(p, k, BY_WALLS, "spheres, leaves");
+        const gains walls = gains_of(p, k, BY_WALLS, "courtyard, room");
+        printf("%-24s %6.0d %8.2f / %-6.2f %8.2f / %-6.2f %8.2f / %-6.2f %6.0f %% %10.0f %%\n", p->list[k].name,
+               p->list[k].draws, open.mean, open.low, walls.mean, walls.low, all.mean, all.low, 100 * all.slower,
+               100 * all.slower_by_a_tenth);
     }
 }
 
