@@ -2268,15 +2268,17 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *
  * A tile of the table weighs
  *
- *   L V (f + m/5),    V = (through + 2 V0)/(rays + 2), at least 1e-4
+ *   L V (f + m/5),    V = (through + 16 Va)/(rays + 16), at least 1e-4
  *
  *   L       its light
  *   f       root mean square of the reflections towards it, times cosine, over the points that were added. Lobes count
  *           as if alpha^2 were larger by 0.01.
  *   m       mean of f over the light that comes through: sum of L V f over sum of L V. A sixth of the samples so
  *           follows the light alone.
- *   V       the share of the tile's rays that came through, with V0 of a ray before any is sent: 1/4, or that of a
- *           larger region (mcs_region_inherit)
+ *   V       the share of the tile's rays that came through, with 16 more that did as those about it
+ *   Va      the same share of the rays to the tile and its neighbours, as what a tile sees they are likely to see: few
+ *           rays so tell of many tiles. The four beside it count 3/4, those at its corners 9/16. It has 2 more that came
+ *           through as V0 has it, 1/4 or the V of a larger region (mcs_region_inherit).
  *
  * So all light can be drawn, whatever was learned. Nothing is biased, as no table knows the ray of a sample that was
  * drawn from it: the rays of a pass wait in `fresh` until it is over.
@@ -2308,9 +2310,10 @@ MCS_API void mcs_region_decay(mcs_region *g, float keep);
 MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger);
 /* V of tile k, 0 where k is no tile. */
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
-/* Whether r gains by the table of the region, 1 or 0; to be asked when the table is built. It does if it has any matte
+/* Whether r gains by the table of the region, 1 or 0; to be asked before the table is built. It does if it has any matte
  * part, or a lobe of 8 tiles or more: of 2 rows^2 alpha_x alpha_y, whatever wo is (alpha 0.125 with 16 rows). A lobe of
- * 1 to 8 tiles gains where fewer than half the rays came through, a smaller one nowhere. */
+ * 1 to 8 tiles gains where at most half the rays came through, a smaller one nowhere: where the answer is 0 before any
+ * ray, nothing need be learned. */
 MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r);
 #endif
 
@@ -10567,13 +10570,32 @@ MCSI_CORE mcsi_region_lists mcsi_region_lists_of(mcs_region *g) {
     l.prior = l.through + l.n;
     return l;
 }
+/* What a ray to the next tile counts. */
+#define MCSI_NEXT_COUNTS 0.75f
 #endif
-/* V of tiles, whose lists are n floats apart. */
-MCSI_CORE mcs_f mcsi_visibility(const float *rays, size_t n) {
-    const float least = 1e-4f;
-    const float prior_rays = 2.0f;
-    const mcs_f through = mcs_load(rays + n) + prior_rays * mcs_load(rays + 2 * n);
-    return mcsi_max(through / (mcs_load(rays) + prior_rays), mcs_set(least));
+/* A list of tiles, [cols][rows], at tile k: its number and, each 3/4 of it, those above and below. Columns end at the
+ * poles. */
+MCSI_CORE mcs_f mcsi_column_about(const float *list, size_t rows, size_t k) {
+    mcs_f above = mcs_load(list + k - 1);
+    mcs_f below = mcs_load(list + k + 1);
+    if (k % rows == 0) MCSI_LANE(above, 0) = 0.0f;
+    if ((k + MCSI_W) % rows == 0) MCSI_LANE(below, MCSI_W - 1) = 0.0f;
+    return mcs_load(list + k) + MCSI_NEXT_COUNTS * (above + below);
+}
+/* The same and 3/4 of the columns on both sides. These go round the map. */
+MCSI_CORE mcs_f mcsi_about(const float *list, size_t rows, size_t k) {
+    const size_t n = 2 * rows * rows;
+    const mcs_f left = mcsi_column_about(list, rows, (k >= rows ? k : k + n) - rows);
+    const mcs_f right = mcsi_column_about(list, rows, k + rows < n ? k + rows : k + rows - n);
+    return mcsi_column_about(list, rows, k) + MCSI_NEXT_COUNTS * (left + right);
+}
+/* V of tile k. The list of rays has those that came through behind it, then the V of the region above. */
+MCSI_CORE mcs_f mcsi_visibility(const float *rays, size_t rows, size_t k) {
+    const float *through = rays + 2 * rows * rows;
+    const float *prior = through + 2 * rows * rows;
+    const mcs_f about = mcsi_about(through, rows, k) + 2.0f * mcs_load(prior + k);
+    const mcs_f v = about / (mcsi_about(rays, rows, k) + 2.0f);
+    return mcsi_max((mcs_load(through + k) + 16.0f * v) / (mcs_load(rays + k) + 16.0f), mcs_set(1e-4f));
 }
 #ifdef MCSI_LOOPS
 /* Adds the squares of reflections towards n tiles. Not above 1e15, so that a thousand of them and more can be added. */
@@ -10585,9 +10607,10 @@ MCSI_LOOP void mcsi_region_points_loop(const mcsi_surface *s, size_t n, const fl
         mcs_store(square + i, mcs_load(square + i) + value * value);
     }
 }
-/* light times V. */
-MCSI_LOOP void mcsi_seen_light_loop(size_t n, const float *rays, const float *light, float *seen) {
-    for (size_t i = 0; i < n; i += MCSI_W) mcs_store(seen + i, mcs_load(light + i) * mcsi_visibility(rays + i, n));
+/* Multiplies the light of all tiles by their V. */
+MCSI_LOOP void mcsi_see_loop(size_t rows, const float *rays, float *light) {
+    for (size_t k = 0; k < 2 * rows * rows; k += MCSI_W)
+        mcs_store(light + k, mcs_load(light + k) * mcsi_visibility(rays, rows, k));
 }
 /* Root mean squares. */
 MCSI_LOOP void mcsi_region_values_loop(float points, size_t n, const float *square, float *value) {
@@ -10597,7 +10620,7 @@ MCSI_LOOP void mcsi_region_values_loop(float points, size_t n, const float *squa
 #endif
 #if MCSI_W == 1
 MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square);
-MCS_FN void mcsi_seen_light_n(size_t n, const float *rays, const float *light, float *seen);
+MCS_FN void mcsi_see_n(size_t rows, const float *rays, float *light);
 MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value);
 
 MCS_API size_t mcs_region_bytes(uint32_t rows) {
@@ -10616,7 +10639,8 @@ MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles
 MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger) {
     MCS_ASSERT(g->rows == larger->rows);
     const mcsi_region_lists l = mcsi_region_lists_of(g);
-    for (size_t k = 0; k < l.n; k++) l.prior[k] = mcs_region_visibility(larger, (uint32_t)k);
+    for (size_t k = 0; k < l.n; k++) l.prior[k] = 1.0f;
+    mcsi_see_n(g->rows, MCSI_READ(float, larger, sizeof *larger) + l.n, l.prior);
 }
 MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
     MCS_ASSERT(g->rows == t->rows);
@@ -10656,14 +10680,14 @@ MCS_API void mcs_region_decay(mcs_region *g, float keep) {
 }
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k) {
     const size_t n = mcsi_region_tiles(g);
-    return k < n ? mcsi_visibility(MCSI_READ(float, g, sizeof *g) + n + k, n) : 0.0f;
+    return k < n ? mcsi_visibility(MCSI_READ(float, g, sizeof *g) + n, g->rows, k) : 0.0f;
 }
 MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r) {
     const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-4f, 1e4f);
     const float ay = mcsi_sane_parameter(r->alpha_y >= 0.0f, r->alpha_y, 1e-4f, 1e4f);
     const float tiles = (float)mcsi_region_tiles(g) * ax * ay;
     if (r->matte > 0.0f || tiles >= 8.0f) return 1;
-    return tiles >= 1.0f && 2.0f * g->through < g->rays;
+    return tiles >= 1.0f && 2.0f * g->through <= g->rays;
 }
 
 /* ---- [product] building ---- */
@@ -10673,8 +10697,8 @@ MCS_FN void mcsi_product_see(mcs_product *p, const mcs_tiles *t, const mcs_regio
     const size_t n = mcsi_tiles_count(t);
     const float *light = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light);
     float *seen = MCSI_WRITE(float, p, p->at.light);
-    if (g) mcsi_seen_light_n(n, MCSI_READ(float, g, sizeof *g) + n, light, seen);
-    else MCSI_COPY(seen, light, n * sizeof *seen);
+    MCSI_COPY(seen, light, n * sizeof *seen);
+    if (g) mcsi_see_n(g->rows, MCSI_READ(float, g, sizeof *g) + n, seen);
 }
 MCSI_CORE float mcsi_sum_of_products(const float *a, const float *b, size_t n) {
     float sum = 0.0f;
@@ -11488,13 +11512,13 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_truncexp_invert MCS_(truncexp_invert)
 #define mcs_truncexp_pdf MCS_(truncexp_pdf)
 #define mcs_truncexp_sample MCS_(truncexp_sample)
-#define mcs_u MCSI_U
 #define mcs_trunclogistic_invert MCS_(trunclogistic_invert)
 #define mcs_trunclogistic_pdf MCS_(trunclogistic_pdf)
 #define mcs_trunclogistic_sample MCS_(trunclogistic_sample)
 #define mcs_truncnormal_invert MCS_(truncnormal_invert)
 #define mcs_truncnormal_pdf MCS_(truncnormal_pdf)
 #define mcs_truncnormal_sample MCS_(truncnormal_sample)
+#define mcs_u MCSI_U
 #define mcs_u01 MCS_(u01)
 #define mcs_u01_open MCS_(u01_open)
 #define mcs_vec2 MCS_(vec2)
@@ -11511,6 +11535,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_ward_pdf MCS_(ward_pdf)
 #define mcs_ward_sample MCS_(ward_sample)
 #define mcs_ward_weight MCS_(ward_weight)
+#define mcsi_about MCSI_(about)
 #define mcsi_abs MCSI_(abs)
 #define mcsi_add_log2 MCSI_(add_log2)
 #define mcsi_always MCSI_(always)
@@ -11565,6 +11590,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_blurred_value MCSI_(blurred_value)
 #define mcsi_brdf MCSI_(brdf)
 #define mcsi_cancelled MCSI_(cancelled)
+#define mcsi_column_about MCSI_(column_about)
 #define mcsi_combine MCSI_(combine)
 #define mcsi_concentric_loop MCSI_(concentric_loop)
 #define mcsi_cone_loop MCSI_(cone_loop)
@@ -11575,7 +11601,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_corners_make MCSI_(corners_make)
 #define mcsi_cos_power MCSI_(cos_power)
 #define mcsi_cosine_loop MCSI_(cosine_loop)
-#define mcsi_d MCSI_D
 #define mcsi_cut MCSI_(cut)
 #define mcsi_cut_from_base MCSI_(cut_from_base)
 #define mcsi_cut_invert MCSI_(cut_invert)
@@ -11584,6 +11609,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_cut_pdf MCSI_(cut_pdf)
 #define mcsi_cut_place MCSI_(cut_place)
 #define mcsi_cut_sample MCSI_(cut_sample)
+#define mcsi_d MCSI_D
 #define mcsi_deviation MCSI_(deviation)
 #define mcsi_disk_hit MCSI_(disk_hit)
 #define mcsi_disk_light MCSI_(disk_light)
@@ -11687,8 +11713,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_in_turns MCSI_(in_turns)
 #define mcsi_inverse_root MCSI_(inverse_root)
 #define mcsi_inverted MCSI_(inverted)
-#define mcsi_largest MCSI_(largest)
 #define mcsi_lane3 MCSI_(lane3)
+#define mcsi_largest MCSI_(largest)
 #define mcsi_linear MCSI_(linear)
 #define mcsi_linear_loop MCSI_(linear_loop)
 #define mcsi_linear_make MCSI_(linear_make)
@@ -11771,7 +11797,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_scale_ok MCSI_(scale_ok)
 #define mcsi_scramble_reversed MCSI_(scramble_reversed)
 #define mcsi_secant2 MCSI_(secant2)
-#define mcsi_seen_light_loop MCSI_(seen_light_loop)
+#define mcsi_see_loop MCSI_(see_loop)
 #define mcsi_sel MCSI_(sel)
 #define mcsi_sel3 MCSI_(sel3)
 #define mcsi_side MCSI_(side)
@@ -12177,6 +12203,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_ward_pdf
 #undef mcs_ward_sample
 #undef mcs_ward_weight
+#undef mcsi_about
 #undef mcsi_abs
 #undef mcsi_add_log2
 #undef mcsi_always
@@ -12231,6 +12258,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_blurred_value
 #undef mcsi_brdf
 #undef mcsi_cancelled
+#undef mcsi_column_about
 #undef mcsi_combine
 #undef mcsi_concentric_loop
 #undef mcsi_cone_loop
@@ -12353,8 +12381,8 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_in_turns
 #undef mcsi_inverse_root
 #undef mcsi_inverted
-#undef mcsi_largest
 #undef mcsi_lane3
+#undef mcsi_largest
 #undef mcsi_linear
 #undef mcsi_linear_loop
 #undef mcsi_linear_make
@@ -12437,7 +12465,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_scale_ok
 #undef mcsi_scramble_reversed
 #undef mcsi_secant2
-#undef mcsi_seen_light_loop
+#undef mcsi_see_loop
 #undef mcsi_sel
 #undef mcsi_sel3
 #undef mcsi_side
@@ -12590,8 +12618,8 @@ MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l) { MCSI_WIDE(l->rows 
 MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square) {
     MCSI_WIDE(n, region_points_loop, (s, n, tile, square));
 }
-MCS_FN void mcsi_seen_light_n(size_t n, const float *rays, const float *light, float *seen) {
-    MCSI_WIDE(n, seen_light_loop, (n, rays, light, seen));
+MCS_FN void mcsi_see_n(size_t rows, const float *rays, float *light) {
+    MCSI_WIDE(2 * rows * rows, see_loop, (rows, rays, light));
 }
 MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value) {
     MCSI_WIDE(n, region_values_loop, (points, n, square, value));

@@ -19,7 +19,7 @@
  *   gain           (variance x seconds) of MIS over that of the strategy
  *   256, 8192      rays from which a region has learned; their price is not counted. Its object stands in for what it
  *                  has not seen, with the rays of the regions that are measured.
- *   online         A region begins with nothing; its tables are built anew whenever its rays have doubled, until 2048
+ *   online         A region begins without rays; its tables are built anew whenever these have doubled, until 2048
  *                  rays: the variance is the mean over all samples, the seconds are those of learning and building,
  *                  too.
  *   largest        sample over the answer of its region */

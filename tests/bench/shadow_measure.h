@@ -4,10 +4,10 @@
 #include "bench.h"
 #include "shadow_strategy.h"
 
-enum { TESTED = 16, TABLE_POINTS = 32, SAMPLES = 32, ADDED_RAYS = 256 };
+enum { TESTED = 16, TABLE_POINTS = 16, SAMPLES = 32, ADDED_RAYS = 256 };
 
 /* What is timed beside draws. */
-typedef enum { BUILD_PRODUCT, BUILD_PRODUCT_16, BUILD_LEARNED, BUILD_TABLE, ADD_POINT, ADD_RAYS, WORKS } work;
+typedef enum { BUILD_PRODUCT, BUILD_PRODUCT_16, BUILD_LEARNED, BUILD_TABLE, MERGE, ADD_POINT, ADD_RAYS, WORKS } work;
 
 typedef struct {
     const char *scene, *map, *material;
@@ -16,6 +16,7 @@ typedef struct {
     double rays[MEASURED];     /* shadow rays of one draw */
     double largest[MEASURED];  /* the largest sample over the answer of its region */
     double draw[MEASURED];     /* seconds of one draw without rays */
+    double paying[STAGES];     /* the share of regions that pay */
     double seconds[WORKS];
 } result;
 
@@ -31,7 +32,7 @@ typedef struct {
     coat coat;
     mcs_pcg32 rng;
     strategy strategy[STRATEGIES];
-    int pays[REGIONS][STAGES];                 /* mcs_region_pays, once the table of a stage is built */
+    int pays[REGIONS][STAGES];                 /* mcs_region_pays, before the table of a stage is built */
     knowledge region[REGIONS], early[REGIONS]; /* from all rays, from 256 */
     knowledge whole, spare;
     product product[REGIONS][TECHNIQUES];
@@ -78,11 +79,11 @@ static void build_table(bench_case *c, int i, int stage) {
         mcs_region_merge(&c->whole.g, &c->region[k].g);
         parts++;
     }
+    const mcs_reflection r = coat_seen_from_above(&c->coat);
+    c->pays[i][stage] = mcs_region_pays(&c->region[i].g, &r);
     if (parts > 1) mcs_region_inherit(&c->region[i].g, &c->whole.g);
     mcs_product_build_region(&c->product[i][TABLE + stage].p, sizeof(product), c->map->tiles, c->map->table,
                              &c->region[i].g);
-    const mcs_reflection r = coat_seen_from_above(&c->coat);
-    c->pays[i][stage] = mcs_region_pays(&c->region[i].g, &r);
 }
 
 /* All regions learn side by side from the rays of their own samples, a table of the stage before paired with the BRDF;
@@ -100,7 +101,7 @@ static void train(bench_case *c) {
     for (int stage = 0; stage < STAGES; stage++) {
         const int from = stage ? TABLE + stage - 1 : MAP;
         for (int i = 0; i < regions; i++) {
-            const float rays = (float)(STAGE_FIRST << stage);
+            const float rays = (float)stage_rays(stage);
             for (int tries = 0; c->region[i].g.rays < rays && tries < 100000; tries++) {
                 const point *p = any_point(c, i);
                 teach(c, i, p, from);
@@ -176,6 +177,8 @@ static void summarise(bench_case *c, result *out) {
         if (k < PAYING) out->draw[k] = bench_spread_of(c->draw[k], regions).median;
         for (int i = 0; k >= PAYING && i < regions; i++) out->draw[k] += out->draw[chosen(c, i, k)] / regions;
     }
+    for (int k = 0; k < STAGES; k++)
+        for (int i = 0; i < regions; i++) out->paying[k] += (double)c->pays[i][k] / regions;
     for (int k = 0; k < WORKS; k++) out->seconds[k] = bench_spread_of(c->seconds[k], regions).median;
 }
 
@@ -195,11 +198,13 @@ static void do_work(bench_case *c, int i, work what) {
     case BUILD_PRODUCT: build_product(c, &s, PRODUCT, NULL); break;
     case BUILD_PRODUCT_16: build_product(c, &s, PRODUCT_16, NULL); break;
     case BUILD_LEARNED: build_product(c, &s, LEARNED, &c->region[i].g); break;
-    case BUILD_TABLE: /* and adding what a pass has learned to the region and to its object */
-        for (int k = 0; k < 2; k++) mcs_region_merge(&c->spare.g, &c->early[i].g);
+    case BUILD_TABLE:
         mcs_region_inherit(&c->spare.g, &c->whole.g);
         mcs_product_build_region(&c->product[i][TABLE + STAGE_LAST].p, sizeof(product), t, c->map->table,
                                  &c->region[i].g);
+        break;
+    case MERGE: /* what a pass has learned, with the region and with its object */
+        for (int k = 0; k < 2; k++) mcs_region_merge(&c->spare.g, &c->early[i].g);
         break;
     case ADD_POINT: mcs_region_add_point(&c->spare.g, t, c->map->table, &f); break;
     default:

@@ -18,19 +18,22 @@ static cost measured_cost(const result *r, const strategy *list, int k) {
     if (s->technique == LEARNED_256 || s->technique == LEARNED) c.seconds += r->seconds[BUILD_LEARNED] / s->draws;
     return c;
 }
-/* Of a region that learns from nothing while it draws, until it has sent 2048 rays: by MIS before it has a table, by
- * the table of each stage until the rays have doubled, with the price of learning and building. */
+/* Of a region that learns from nothing while it draws, until it has sent 2048 rays: by the table of each stage until the
+ * rays have doubled, with the price of learning and building. Where it is asked whether it pays, tables are built only
+ * for regions that do, and nothing is learned where no region does before its first ray. */
 static cost online_cost(const result *r, const strategy *list, int first) {
-    enum { LAST = 6 };
+    const int asked = first == PAYING;
+    if (asked && !(r->paying[0] > 0)) return measured_cost(r, list, MIS_POWER);
     cost sum = {0, TABLE_POINTS * r->seconds[ADD_POINT]};
     double draws = 0;
-    for (int stage = -1; stage < LAST; stage++) {
-        const int k = stage < 0 ? MIS_POWER : first + stage;
-        const double rays = stage < 0 ? STAGE_FIRST : STAGE_FIRST << stage;
+    for (int stage = 0; stage < STAGE_2048; stage++) {
+        const int k = first + stage;
+        const double rays = stage_rays(stage + 1) - stage_rays(stage);
         const double more = rays / r->rays[k];
         const cost one = measured_cost(r, list, k);
         sum.variance += more * one.variance;
-        sum.seconds += more * one.seconds + rays / ADDED_RAYS * r->seconds[ADD_RAYS] + r->seconds[BUILD_TABLE];
+        sum.seconds += more * one.seconds + rays / ADDED_RAYS * r->seconds[ADD_RAYS] + r->seconds[MERGE];
+        sum.seconds += (asked ? r->paying[stage] : 1) * r->seconds[BUILD_TABLE];
         draws += more;
     }
     sum.variance /= draws;
@@ -94,8 +97,8 @@ static double nanoseconds(const report *p, size_t member) {
 }
 /* Medians of the configurations. */
 static void print_prices(const report *p) {
-    static const char *const names[WORKS] = {"a product", "a product for 16", "a learned product",
-                                             "a table",   "adding a point",   "256 rays"};
+    static const char *const names[WORKS] = {"a product",     "a product for 16", "a learned product", "a table",
+                                             "merging twice", "adding a point",   "256 rays"};
     printf("\nNanoseconds:");
     for (size_t k = 0; k < WORKS; k++)
         printf("%s %s %.0f", k ? "," : "", names[k], nanoseconds(p, offsetof(result, seconds) + k * sizeof(double)));

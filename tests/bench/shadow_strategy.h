@@ -5,8 +5,10 @@
 #include "shadow_material.h"
 #include "shadow_scene.h"
 
-/* Tables of a region are built whenever its rays have doubled: stage 0 after 32, stage 8 after 8192. */
-enum { STAGES = 9, STAGE_FIRST = 32, STAGE_256 = 3, STAGE_LAST = STAGES - 1 };
+/* Tables of a region are built at once, and whenever its rays have doubled: stage 0 knows of none, stage 1 of 32, stage 9
+ * of 8192. */
+enum { STAGES = 10, STAGE_256 = 4, STAGE_2048 = 7, STAGE_LAST = STAGES - 1 };
+static int stage_rays(int k) { return k > 0 ? 16 << k : 0; }
 
 /* What samples are drawn from. Products of a point are built at each one, tables once per region and stage. */
 typedef enum {
@@ -26,7 +28,7 @@ typedef enum {
     PAIR_POWER,   /* one of each, power heuristic */
     PAIR_BALANCE, /* one of each, balance heuristic */
     PAID,         /* that of number `technique` where a region pays, else of MIS_POWER */
-    ONLINE        /* a region that learns while it draws: the strategies of all stages, from number `technique` on */
+    ONLINE        /* a region that learns while it draws: the strategies of stages, from number `technique` on */
 } way;
 
 typedef struct {
@@ -79,10 +81,10 @@ static void list_strategies(const coat *c, strategy *list) {
     for (int k = 0; k < STAGES; k++) {
         strategy *pair = &list[PAIR + k];
         strategy *mixed = &list[MIXED + k];
-        snprintf(pair->name, sizeof pair->name, "region + BRDF %d", STAGE_FIRST << k);
-        snprintf(mixed->name, sizeof mixed->name, "region or BRDF %d", STAGE_FIRST << k);
+        snprintf(pair->name, sizeof pair->name, "region + BRDF %d", stage_rays(k));
+        snprintf(mixed->name, sizeof mixed->name, "region or BRDF %d", stage_rays(k));
         list[PAYING + k] = (strategy){"", PAID, PAIR + k, 0, 0};
-        snprintf(list[PAYING + k].name, sizeof mixed->name, "region if it pays %d", STAGE_FIRST << k);
+        snprintf(list[PAYING + k].name, sizeof mixed->name, "region if it pays %d", stage_rays(k));
         pair->technique = mixed->technique = TABLE + k;
         pair->how = tiles < 1 && r.matte == 0 ? PAIR_POWER : PAIR_BALANCE;
         mixed->how = ONE;
