@@ -1,8 +1,8 @@
 # mcsample.h is one header: nothing here has to be built to use it. This file builds what proves it and what shows it.
 #
-# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), PYTHON (python3), DESTDIR, SOURCE_DATE_EPOCH; MAPS (.hdr files
-# for the benchmark, none); for tests also FILTER=text, SEED=number, WITHOUT=files and
-# MCS_TEST_SCALE=0.05 (scales the sample counts of the statistical tests; 1 is the count that the tolerances are meant for).
+# Variables: CC, CFLAGS (-O2), BUILD (build), PREFIX (/usr/local), PYTHON (python3), DESTDIR, SOURCE_DATE_EPOCH; for benchmarks MAPS
+# (.hdr files, none), PBRT and CYCLES (checkouts of pbrt-v4 and Cycles, none); for tests also FILTER=text, SEED=number, WITHOUT=files
+# and MCS_TEST_SCALE=0.05 (scales the sample counts of the statistical tests; 1 is the count that the tolerances are meant for).
 
 CFLAGS ?= -O2
 BUILD ?= build
@@ -353,12 +353,36 @@ bench-quick: ## the same with less repetition and smaller tables; 45 s; build/be
 	@$(BENCH)/spectrum --quick --out $(BENCH)
 	@$(TOOK) "CSV files and plots in $(BENCH)"
 
-bench-peers: ## samplers of Mitsuba beside ours, error and run time; 10 s; prints a table; wants pip install mitsuba numpy
+# Peers by their own sources, in the directories PBRT and CYCLES. They are built each time, as nothing here says what is checked out
+# there. Headers of Cycles want a lock of TBB, which is not taken here.
+PEERS = $(if $(PBRT),$(BENCH)/peers_pbrt) $(if $(CYCLES),$(BENCH)/peers_cycles)
+PEERS_FLAGS = -O3 -march=native
+PEERS_BUILD = $(CXX) $(PEERS_FLAGS) -DNDEBUG -ffunction-sections -fdata-sections -Wl,--gc-sections -w -Itests/bench
+# $(1) its directory, $(2) its program: the comparison, if there is a directory.
+PEERS_RUN = $(if $($(1)),echo '$($(1)): commit' "$$(git -C '$($(1))' log -1 --format='%h of %cs' || echo unknown)" && $(BENCH)/$(2), \
+	echo 'SKIPPED: the comparison with $(3): $(1)=directory is not given')
+
+bench-peers: ## samplers of pbrt, Mitsuba, Cycles beside ours; 1 min; tables; PBRT=directory CYCLES=directory; pip install mitsuba numpy
 	$(SAY)
-	+@$(SUBMAKE) $(LIB)/libmcsample.so
+	+@$(SUBMAKE) $(LIB)/libmcsample.so $(PEERS)
 	@if command -v $(PYTHON) >/dev/null; then $(PYTHON) tests/bench/peers.py $(LIB)/libmcsample.so; \
-	else echo 'SKIPPED: ALL OF IT: $(PYTHON) is not installed'; fi
-	@$(TOOK) "the table above"
+	else echo 'SKIPPED: the comparison with Mitsuba: $(PYTHON) is not installed'; fi
+	@$(call PEERS_RUN,PBRT,peers_pbrt,pbrt)
+	@$(call PEERS_RUN,CYCLES,peers_cycles,Cycles)
+	@$(TOOK) "the tables above"
+
+$(BENCH)/peers.o: tests/bench/peers.c $(BENCH_HEADERS)
+	@mkdir -p $(@D)
+	$(CC) $(BENCH_FLAGS) -DPEERS_FLAGS='"$(PEERS_FLAGS)"' -c $< -o $@
+
+$(BENCH)/peers_pbrt: tests/bench/peers_pbrt.cpp $(BENCH)/peers.o FORCE
+	$(PEERS_BUILD) -std=c++17 -I'$(PBRT)/src' -I'$(PBRT)/src/ext' -I'$(PBRT)/src/ext/gtest' $< '$(PBRT)/src/pbrt/util/sampling.cpp' \
+		$(BENCH)/peers.o -o $@ $(LIBS)
+
+$(BENCH)/peers_cycles: tests/bench/peers_cycles.cpp $(BENCH)/peers.o FORCE
+	@mkdir -p $(BENCH)/tbb
+	@echo 'namespace tbb { struct spin_mutex { void lock() {} void unlock() {} }; }' > $(BENCH)/tbb/spin_mutex.h
+	$(PEERS_BUILD) -std=c++20 -I'$(CYCLES)/src' -I$(BENCH) $< $(BENCH)/peers.o -o $@ $(LIBS)
 
 $(BENCH)/wide8.o: tests/bench/wide.c $(BENCH_HEADERS)
 	@mkdir -p $(@D)

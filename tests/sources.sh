@@ -1,7 +1,7 @@
 # sources.sh: what the text of the header and of the other sources has to be like. Read by hygiene.sh, whose check(), $dir,
 # $compilers and lists of names it uses.
 
-others=$(ls examples/*.c examples/*.h tests/*.c tests/*.h tests/*/*.c tests/*/*.h)
+others=$(ls examples/*.c examples/*.h tests/*.c tests/*.h tests/*/*.c tests/*/*.h tests/*/*.cpp)
 sources="mcsample.h $others"
 
 # text FILE: its code, comments and strings left out, lines kept.

@@ -92,7 +92,7 @@ def show(name, whose, nanoseconds, got, exact):
     place = np.sqrt(sum((LONG(g) - e) ** 2 for g, e in zip(got[:3], exact[:3]))) / NEAREST
     density = abs(LONG(got[3]) / exact[3] - 1)
     of_place, of_density = [(np.quantile(error, 0.99), error.max()) for error in (place, density)]
-    print("%-24s %-8s %6.2f %14.2g %9.2g %14.1e %9.1e" % (name, whose, nanoseconds, *of_place, *of_density))
+    print("%-24s %-12s %6.2f %14.2g %9.2g %14.1e %9.1e" % (name, whose, nanoseconds, *of_place, *of_density))
 
 
 def compare(function, name, parameter, mitsuba, exact):
@@ -105,7 +105,7 @@ def compare(function, name, parameter, mitsuba, exact):
     least = [min(column) * 1e9 / COUNT for column in zip(*times)]
     w, pdf = theirs(mitsuba, parameter, sample)
     truth = exact(LONG(np.float32(parameter)), LONG(u1), LONG(u2))
-    show("%s %g" % (name, parameter), "here", least[0], out, truth)
+    show("%s %g" % (name, parameter), "here, arrays", least[0], out, truth)
     show("", "Mitsuba", least[1], [np.array(part) for part in (w.x, w.y, w.z, pdf)], truth)
 
 
@@ -113,7 +113,7 @@ def main():
     dr.set_thread_count(1)
     library = ctypes.CDLL(sys.argv[1])
     print("Mitsuba %s, %d samples, ns a sample (least of %d)" % (mi.__version__, COUNT, ROUNDS))
-    print("%-24s %-8s %6s %14s %9s %14s %9s" % ("", "", "ns", "direction 99 %", "largest", "density 99 %", "largest"))
+    print("%-24s %-12s %6s %14s %9s %14s %9s" % ("", "", "ns", "direction 99 %", "largest", "density 99 %", "largest"))
     for g in (0.1, 0.8, 0.99, 0.999):
         compare(library.mcs_henyey_greenstein_sample_n, "Henyey-Greenstein", g, mitsuba_henyey_greenstein,
                 exact_henyey_greenstein)
