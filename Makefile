@@ -47,10 +47,15 @@ STRESS_SUM = awk '/: [0-9]+ passed, [0-9]+ failed, [0-9.]+ s$$/ { p += $$(NF - 5
 	END { print p + 0 " passed, " f + 0 " failed"; exit f != 0 || p == 0 }'
 STRESS_CUT = $(if $(filter-out $(TESTS) $(WITHOUT),$(wildcard tests/test_*.c)),,$(STRESS_BINS))
 EXAMPLE_BINS = $(EXAMPLES:%.c=$(BUILD)/%)
-# What most of their compile time went into is compiled once: tests/shared. ASSERTING=yes: rows that count what MCS_ASSERT tells, which
-# two programs want, are for all programs.
+# What most of their compile time went into is compiled once: tests/shared. Programs have the header's declarations, but for those that
+# look inside it, which have all of it. ASSERTING=yes: rows and bodies that count what MCS_ASSERT tells, which some programs want, are
+# for all programs; else the bodies that do have arrays of 4 lanes alone, as what is told does not depend on lanes.
 SHARED = $(BUILD)/tests/shared
 ROWS = $(SHARED)/$(if $(ASSERTING),asserting,rows).o
+BODIES = $(SHARED)/$(if $(ASSERTING),telling,implementation).o
+INSIDE = $(patsubst %,$(BUILD)/tests/test_%,math pwc2 region tables values values_maps values_tables)
+TELLING = $(patsubst %,$(BUILD)/tests/test_%,env_modes env_window mistakes oracle)
+DECLARED = $(filter-out $(INSIDE),$(filter $(BUILD)/tests/test_%,$(TEST_BINS)) $(STRESS_BINS))
 WIDE = $(SHARED)/wide16.o $(SHARED)/wide8.o $(SHARED)/wide4.o
 RENDER = $(BUILD)/examples/render
 GALLERY = $(BUILD)/examples/gallery
@@ -284,11 +289,16 @@ $(RENDER): examples/render.c $(wildcard examples/render_*.h) examples/hdr.h mcsa
 $(GALLERY): $(wildcard examples/gallery_*.h) examples/render_png.h tests/bench/svg.h
 
 $(TEST_BINS) $(STRESS_BINS): CONTRACT = $(EXACT) -DMCST_LINKED
+$(DECLARED): CONTRACT = $(EXACT) -DMCST_LINKED -DMCS_DECLARE
 # Headers define functions that one object or another does not call.
-SHARED_FLAGS = -DMCST_LINKED -DMCST_SHARED -Wno-unused-function -Wno-unused-variable
+SHARED_FLAGS = -DMCST_LINKED -DMCST_SHARED -DMCS_DECLARE -Wno-unused-function -Wno-unused-variable
 $(STRESS_BINS) $(filter $(BUILD)/tests/test_values%,$(TEST_BINS)): $(ROWS)
 $(patsubst %,$(BUILD)/tests/test_%,bits chi2_lobes chi2_rest fenv lines mutants width): $(ROWS)
 $(patsubst %,$(BUILD)/tests/test_%,mistakes oracle): $(SHARED)/asserting.o
+$(filter-out $(TELLING),$(DECLARED)) $(filter $(BUILD)/tests/test_values%,$(TEST_BINS)): $(BODIES)
+$(TELLING): $(SHARED)/telling.o
+$(SHARED)/telling.o: private SHARED_FLAGS += $(if $(ASSERTING),,-DMCS_MAX_LANES=4)
+$(BUILD)/tests/test_env_files $(BUILD)/tests/stress/fuzz: $(SHARED)/forge.o
 $(patsubst %,$(BUILD)/tests/%,test_bits test_fenv test_lines test_width stress/floats stress/hostile): $(WIDE)
 $(patsubst %,$(BUILD)/tests/test_%,bits fenv): $(SHARED)/functions.o
 $(STRESS_BINS): $(wildcard tests/stress/*.h)

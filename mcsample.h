@@ -2164,6 +2164,8 @@ typedef struct {
     mcs_ward gauss;
     mcs_phong phong;
 } mcsi_lobe;
+/* The nodes of a grid on the light of a tile, along a side and in all, and the most grids of a product. Private. */
+enum { MCSI_NODES = 8, MCSI_GRID = MCSI_NODES * MCSI_NODES, MCSI_GRIDS = 32 };
 /* What follows an mcs_product, for R rows of tiles: LIST(type, name, length). Private. */
 #define MCSI_PRODUCT_LISTS(LIST, R)                                                                               \
     LIST(double, per_share, (R))                   /* of each row: probability of one of its shares */            \
@@ -9604,11 +9606,8 @@ MCSI_CORE void mcsi_tile_light_store(const mcsi_tile_light *l, float *first, siz
 
 enum {
     MCSI_TILE_ROWS_MAX = 64,
-    MCSI_TILE_BLOCK = 64,                /* rows and columns of texels that are added up together */
-    MCSI_TILE_MEMBERS = 9,               /* floats of a mcsi_tile_light */
-    MCSI_NODES = 8,                      /* of a grid on the light of a tile, along a side */
-    MCSI_GRID = MCSI_NODES * MCSI_NODES, /* and all of them */
-    MCSI_GRIDS = 32                      /* of a product, at most */
+    MCSI_TILE_BLOCK = 64, /* rows and columns of texels that are added up together */
+    MCSI_TILE_MEMBERS = 9 /* floats of a mcsi_tile_light */
 };
 typedef struct {
     uint32_t row, col;

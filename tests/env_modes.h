@@ -2,8 +2,7 @@
  */
 #ifndef MCST_ENV_MODES_H
 #define MCST_ENV_MODES_H
-static int asserted; /* how often a condition of the header did not hold */
-#define MCS_ASSERT(condition) ((void)((condition) ? 0 : asserted++))
+#include "asserting.h"
 #define SHADE_STREAM 4
 #include "env_shades.h"
 

@@ -1,5 +1,4 @@
-/* What the tests of environment maps share: what a texel covers and where it lies, in double and long double; tables
- * with forged checksums. */
+/* What the tests of environment maps share: what a texel covers and where it lies, in double and long double. */
 #ifndef MCST_LATLONG_H
 #define MCST_LATLONG_H
 #include <math.h>
@@ -40,16 +39,5 @@ static inline void texel_of(uint32_t w, uint32_t h, mcs_vec3 v, double *col, dou
 typedef enum { LIT, BLACK, NEITHER } brightness;
 static inline brightness brightness_of(const mcs_env *e) {
     return e->total > 0 ? LIT : e->total == 0 && e->uniform ? BLACK : NEITHER;
-}
-
-/* Checksums that fit a damaged table, as a forger would compute them: what mcs_env_check knows without them is then all
- * that is left. Size and layout must be those of the memory. */
-static inline void seal(mcs_env *e) {
-    mcsi_row_light *light = MCSI_WRITE(mcsi_row_light, e, e->offset.row_light);
-    for (uint32_t y = 0; y < e->h; y++) {
-        const mcsi_cdf columns = mcsi_env_columns(e, y);
-        light[y].checksum = mcsi_row_checksum(&columns);
-    }
-    e->checksum = mcsi_env_checksum(e);
 }
 #endif

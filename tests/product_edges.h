@@ -287,6 +287,10 @@ static void check_copies(const sampler *d) {
 
 /* Behind something small: a product is aligned as the numbers in it are. */
 static void check_room_on_stack(void) {
+    typedef struct {
+        char before;
+        double at;
+    } aligned;
     struct {
         char before;
         union {
@@ -297,7 +301,7 @@ static void check_room_on_stack(void) {
     scene m = scene_make(SMOOTH, 64, 32, 16);
     const surface s = surface_make(normals[0], local_wo(0.7, 0.1), lobes[0]);
     CHECK(!mcs_product_build(&on_stack.at.p, sizeof on_stack.at, tiles_of(&m), env_of(&m), &s.r, NULL), "refused");
-    CHECK(((uintptr_t)&on_stack.at.p + on_stack.at.p.at.per_share) % offsetof(mcsi_aligned, at) == 0, "misaligned");
+    CHECK(((uintptr_t)&on_stack.at.p + on_stack.at.p.at.per_share) % offsetof(aligned, at) == 0, "misaligned");
     scene_free(&m);
 }
 static void test_memory(void) {
@@ -362,7 +366,7 @@ static void check_array(const sampler *d, mcs_pcg32 *rng, int n, int off) {
     }
 }
 static int has_fine(const sampler *d) {
-    const uint8_t *grid_of = MCSI_READ(uint8_t, d->p, mcsi_product_layout(d->m->rows).grid_of);
+    const uint8_t *grid_of = (const uint8_t *)d->p + d->p->at.grid_of;
     int grids = 0;
     for (uint32_t k = 0; k < 2 * d->m->rows * d->m->rows; k++) grids += grid_of[k] > 0;
     return grids > 0;

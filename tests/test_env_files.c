@@ -1,5 +1,6 @@
 /* Environment maps that come from a file: what mcs_env_check refuses, and that what it lets pass does no harm. */
 #include "env_pictures.h"
+#include "forge.h"
 
 /* ---- from a file ---- */
 

@@ -1,4 +1,3 @@
 /* What rows.c is, where MCS_ASSERT counts: for test_mistakes and test_oracle. */
 #include "asserting.h"
-int asserted;
 #include "rows.c"

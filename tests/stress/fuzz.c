@@ -7,6 +7,7 @@
  *
  * With -DMCS_FUZZ_MAIN and any compiler the program replays the files given to it, or, without any, a corpus made from
  * a counter (1e7 inputs times MCS_TEST_SCALE); options as in mcs_test.h. */
+#include "forge.h"
 #include "latlong.h"
 #include "stress.h"
 
@@ -635,10 +636,7 @@ static void fuzz_file(bytes *b) {
             ((unsigned char *)e)[at % size] ^= take_u8(b);
         }
     }
-    if (forged && size >= sizeof *e && mcs_env_bytes(e->w, e->h) == size) {
-        const mcsi_env_offsets offset = mcsi_env_layout(e->w, e->h);
-        if (!memcmp(&offset, &e->offset, sizeof offset)) seal(e);
-    }
+    if (forged && size >= sizeof *e && mcs_env_bytes(e->w, e->h) == size && is_laid_out(e)) seal(e);
     mcs_env *cut = (mcs_env *)room(size ? less % size : 0);
     memcpy(cut, e, size ? less % size : 0);
     s = mcs_env_check(cut, size ? less % size : 0);

@@ -1,0 +1,4 @@
+/* What implementation.c is, where MCS_ASSERT counts: for test_env_modes and test_mistakes. */
+#include "asserting.h"
+int asserted;
+#include "implementation.c"
