@@ -137,20 +137,25 @@ FN(reflect_pdf) { PUT(0, M_(reflect_pdf)(IN(0), IN(6))); }
 FN(half) { B_(put3)(out, 0, M_(half)(IN3(3), IN3(8))); }
 FN(cos_d) { PUT(0, M_(cos_d)(IN3(3), IN3(8))); }
 FN(schlick) { PUT(0, M_(schlick)(IN(6), IN(7))); }
-/* A parameter is mostly no index of refraction: a random number makes one of 1/2 to 5/2. */
+/* A parameter is mostly no index of refraction: a random number makes one of 1/2 to 5/2. Where a function is called
+ * several times, it is in a loop: each call is inlined, and at 16 lanes has up to 40 kB. */
 FN(fresnel_dielectric) {
     const F_ eta = 0.5f + 2.0f * IN(7);
-    PUT(0, M_(fresnel_dielectric)(IN(10), IN(0))), PUT(1, M_(fresnel_dielectric)(IN(10), eta));
-    PUT(2, M_(fresnel_dielectric)(IN(6), eta)), PUT(3, M_(fresnel_dielectric)(-IN(6), eta));
+    const F_ cosine[4] = {IN(10), IN(10), IN(6), -IN(6)};
+    int i;
+    for (i = 0; i < 4; i++) PUT(i, M_(fresnel_dielectric)(cosine[i], i ? eta : IN(0)));
 }
 FN(fresnel_conductor) {
     const F_ eta = 0.5f + 2.0f * IN(7);
-    PUT(0, M_(fresnel_conductor)(IN(10), IN(0), IN(1))), PUT(1, M_(fresnel_conductor)(IN(10), eta, IN(1)));
-    PUT(2, M_(fresnel_conductor)(IN(10), eta, IN(6))), PUT(3, M_(fresnel_conductor)(IN(6), eta, IN(0)));
+    const F_ cosine[4] = {IN(10), IN(10), IN(10), IN(6)};
+    const F_ k[4] = {IN(1), IN(1), IN(6), IN(0)};
+    int i;
+    for (i = 0; i < 4; i++) PUT(i, M_(fresnel_conductor)(cosine[i], i ? eta : IN(0), k[i]));
 }
 FN(refract) {
-    B_(put3)(out, 0, M_(refract)(IN3(3), IN3(8), IN(0)));
-    B_(put3)(out, 3, M_(refract)(IN3(3), IN3(8), 0.5f + 2.0f * IN(7)));
+    const F_ eta[2] = {IN(0), 0.5f + 2.0f * IN(7)};
+    int i;
+    for (i = 0; i < 2; i++) B_(put3)(out, 3 * i, M_(refract)(IN3(3), IN3(8), eta[i]));
 }
 
 /* A prepared material is opaque: it is seen through its functions. */
@@ -219,23 +224,27 @@ FN(ggx_compensation) {
 FN(ggx_glass_sample) {
     GGX;
     const F_ eta = 0.5f + 2.0f * IN(10) * IN(10);
-    const M_(brdf) s = M_(ggx_glass_sample)(&m, eta, IN3(3), IN(6), IN(7), 0.5f * (IN(6) + IN(7)));
     M_(vec3) wo = IN3(3);
-    wo.z = -wo.z;
-    const M_(brdf) t = M_(ggx_glass_sample)(&m, eta, wo, IN(6), IN(7), 0.5f * (IN(6) + IN(7)));
-    B_(put3)(out, 0, s.wi), PUT(3, s.pdf), PUT(4, s.weight);
-    B_(put3)(out, 5, t.wi), PUT(8, t.pdf);
+    int i;
+    for (i = 0; i < 2; i++) {
+        const M_(brdf) s = M_(ggx_glass_sample)(&m, eta, wo, IN(6), IN(7), 0.5f * (IN(6) + IN(7)));
+        B_(put3)(out, 5 * i, s.wi), PUT(5 * i + 3, s.pdf);
+        if (!i) PUT(4, s.weight);
+        wo.z = -wo.z;
+    }
 }
-#define GLASS(name)                                          \
-    FN(ggx_glass_##name) {                                   \
-        GGX;                                                 \
-        const F_ eta = 0.5f + 2.0f * IN(7);                  \
-        M_(vec3) wi = IN3(8);                                \
-        PUT(0, M_(ggx_glass_##name)(&m, eta, IN3(3), wi));   \
-        PUT(1, M_(ggx_glass_##name)(&m, IN(0), wi, IN3(3))); \
-        wi.z = -wi.z;                                        \
-        PUT(2, M_(ggx_glass_##name)(&m, eta, IN3(3), wi));   \
-        PUT(3, M_(ggx_glass_##name)(&m, eta, wi, IN3(3)));   \
+/* There and back, by reflection or by refraction as z has it. */
+#define GLASS(name)                                                                                \
+    FN(ggx_glass_##name) {                                                                         \
+        GGX;                                                                                       \
+        const F_ eta[2] = {0.5f + 2.0f * IN(7), IN(0)};                                            \
+        M_(vec3) w[3];                                                                             \
+        int i;                                                                                     \
+        w[0] = IN3(3), w[1] = IN3(8), w[2] = w[1], w[2].z = -w[2].z;                               \
+        for (i = 0; i < 4; i++) {                                                                  \
+            const int with = 1 + i / 2;                                                            \
+            PUT(i, M_(ggx_glass_##name)(&m, eta[i == 1], w[i % 2 * with], w[(1 - i % 2) * with])); \
+        }                                                                                          \
     }
 GLASS(pdf)
 GLASS(eval)
