@@ -102,13 +102,12 @@ static void check_increase(const mcst_row *row) {
         if (!mcst_case("%s %g %g", row->name, (double)p[0], (double)p[1])) continue;
         for (k = 0; k < CELLS; k += step) {
             draw_block(row, p, FORMS - 1, k, x, pdf);
-            for (i = 0; i < BLOCK; i++) {
-                if (!(x[i] >= last)) {
-                    if (first < 0) first = k + i;
-                    falls++;
-                }
-                last = x[i];
-            }
+            const int before = falls;
+            falls += !(x[0] >= last);
+            for (i = 1; i < BLOCK; i++) falls += !(x[i] >= x[i - 1]);
+            for (i = 0; falls > before && first < 0; i++)
+                if (!(x[i] >= (i ? x[i - 1] : last))) first = k + i;
+            last = x[BLOCK - 1];
         }
         CHECK(falls == 0, "x falls at %d of 2^24 steps, first to u = %d 2^-24", falls, first);
     }
