@@ -52,7 +52,7 @@ EXAMPLE_BINS = $(EXAMPLES:%.c=$(BUILD)/%)
 # look inside it, which have all of it. ASSERTING=yes: rows and bodies that count what MCS_ASSERT tells, which some programs want, are
 # for all programs; else the bodies that do have arrays of 4 lanes alone, as what is told does not depend on lanes.
 SHARED = $(BUILD)/tests/shared
-ROWS = $(SHARED)/$(if $(ASSERTING),asserting,rows).o
+ROWS = $(SHARED)/$(if $(ASSERTING),asserting,rows).o $(SHARED)/rough.o
 BODIES = $(SHARED)/$(if $(ASSERTING),telling,implementation).o
 INSIDE = $(patsubst %,$(BUILD)/tests/test_%,math pwc2 region tables values values_maps values_tables)
 TELLING = $(patsubst %,$(BUILD)/tests/test_%,env_modes env_window mistakes oracle)
@@ -301,7 +301,8 @@ $(DECLARED): CONTRACT = $(EXACT) -DMCST_LINKED -DMCS_DECLARE
 SHARED_FLAGS = -DMCST_LINKED -DMCST_SHARED -DMCS_DECLARE -Wno-unused-function -Wno-unused-variable
 $(STRESS_BINS) $(filter $(BUILD)/tests/test_values%,$(TEST_BINS)): $(ROWS)
 $(patsubst %,$(BUILD)/tests/test_%,bits chi2_lobes chi2_rest fenv lines mutants width): $(ROWS)
-$(patsubst %,$(BUILD)/tests/test_%,mistakes oracle): $(SHARED)/asserting.o
+$(patsubst %,$(BUILD)/tests/test_%,mistakes oracle): $(SHARED)/asserting.o $(SHARED)/rough.o
+$(SHARED)/rough.o: private SHARED_FLAGS += $(shell $(CC) -mlong-double-64 -E -x c /dev/null >/dev/null 2>&1 && echo '-mlong-double-64')
 $(filter-out $(TELLING),$(DECLARED)) $(filter $(BUILD)/tests/test_values%,$(TEST_BINS)): $(BODIES)
 $(TELLING): $(SHARED)/telling.o
 $(SHARED)/telling.o: private SHARED_FLAGS += $(if $(ASSERTING),,-DMCS_MAX_LANES=4)

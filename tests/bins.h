@@ -207,6 +207,10 @@ static inline double mcst_place_line(const mcst_map *m, double s, double *x) {
 /* The point at (s, t) and |d measure / d(s, t)|. */
 static inline double mcst_place(const mcst_map *m, double s, double t, double x[3]) {
     if (m->coord == MCST_BY_TRUTH) {
+        if (m->row->rough.map) {
+            m->row->rough.map(m->p, s, t, x);
+            return 1 / m->row->rough.pdf_u(m->p, s, t);
+        }
         ld exact[3] = {0, 0, 0};
         m->row->truth.map(m->p, (ld)s, (ld)t, exact);
         for (int i = 0; i < 3; i++) x[i] = (double)exact[i];
@@ -292,6 +296,11 @@ static inline void mcst_in_frame(const mcst_map *m, double x, double y, double w
 static inline int mcst_cell(const mcst_map *m, double x, double y, double w) {
     if (m->coord == MCST_BY_TRUTH) {
         const float at[3] = {(float)x, (float)y, (float)w};
+        if (m->row->rough.invert) {
+            double v[2];
+            m->row->rough.invert(m->p, at, v);
+            return mcst_cell_at(m, v[0], v[1]);
+        }
         ld u[2] = {0, 0};
         m->row->truth.invert(m->p, at, u);
         return mcst_cell_at(m, (double)u[0], (double)u[1]);
@@ -395,17 +404,17 @@ static inline double mcst_smooth(const mcst_density *d, double s0, double s1, do
     return sum + mcst_panel(d, s0, s1, t);
 }
 
-/* The integral over [s0, s1] at one t. Where the density is positive at one end and zero at the other it is cut at the
- * jump. */
-static inline double mcst_span(const mcst_density *d, double s0, double s1, double t) {
-    /* the ends s = 0 and s = 1 may be singular (a horizon at infinite slope): look just inside */
-    const double inset = 1e-9;
-    const double e0 = fmax(s0, inset);
-    const double e1 = fmin(s1, 1 - inset);
-    const int in0 = mcst_density_at(d, e0, t) > 0;
-    const int in1 = mcst_density_at(d, e1, t) > 0;
-    double lo = e0;
-    double hi = e1;
+/* The ends s = 0 and s = 1 may be singular (a horizon at infinite slope): they are looked at just inside. */
+static inline double mcst_inside(double s) { return fmin(fmax(s, 1e-9), 1 - 1e-9); }
+static inline int mcst_is_positive(const mcst_density *d, double s, double t) {
+    return mcst_density_at(d, mcst_inside(s), t) > 0;
+}
+
+/* The integral over [s0, s1] at one t. in0 and in1 say whether the density is positive at its ends; where it is at one
+ * of them alone the span is cut at the jump. */
+static inline double mcst_span(const mcst_density *d, double s0, double s1, double t, int in0, int in1) {
+    double lo = mcst_inside(s0);
+    double hi = mcst_inside(s1);
     if (in0 == in1) return mcst_smooth(d, s0, s1, t);
     for (int i = 0; i < 30; i++) {
         const double mid = 0.5 * (lo + hi);
@@ -417,7 +426,13 @@ static inline double mcst_span(const mcst_density *d, double s0, double s1, doub
 
 static inline void mcst_line(const mcst_density *d, double t, double weight, double *sums) {
     const int n = d->map.s_bins;
-    for (int i = 0; i < n; i++) sums[i] += weight * mcst_span(d, (double)i / n, (i + 1.0) / n, t);
+    int in0 = mcst_is_positive(d, 0, t);
+    for (int i = 0; i < n; i++) {
+        const double s1 = (i + 1.0) / n;
+        const int in1 = mcst_is_positive(d, s1, t);
+        sums[i] += weight * mcst_span(d, (double)i / n, s1, t, in0, in1);
+        in0 = in1;
+    }
 }
 
 static inline void mcst_column_rule(const mcst_density *d, double t0, double t1, double *sums) {

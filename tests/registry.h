@@ -123,6 +123,10 @@ typedef void mcst_map_fn(const float *p, ld u1, ld u2, ld *x);
 typedef ld mcst_exact_fn(const float *p, const float *x);
 typedef ld mcst_exact_u_fn(const float *p, ld u1, ld u2);
 typedef void mcst_exact_invert_fn(const float *p, const float *x, ld *u);
+/* In tests/shared/rough.c: the same truth computed in double, several times as fast, for bins and integrals. */
+typedef void mcst_rough_map_fn(const float *p, double u1, double u2, double *x);
+typedef double mcst_rough_u_fn(const float *p, double u1, double u2);
+typedef void mcst_rough_invert_fn(const float *p, const float *x, double *u);
 
 typedef struct {
     mcst_sample_fn *sample;
@@ -136,6 +140,13 @@ typedef struct {
     mcst_exact_invert_fn *invert;
     mcst_exact_fn *eval, *weight;
 } mcst_truth;
+
+/* NULL without -DMCST_LINKED, and of BRDFs. */
+typedef struct {
+    mcst_rough_map_fn *map;
+    mcst_rough_u_fn *pdf_u;
+    mcst_rough_invert_fn *invert;
+} mcst_rough;
 
 /* Two parameters, the incidence (cosine, azimuth in radians) and the samples that the chi-square test draws, in
  * millions. */
@@ -195,6 +206,7 @@ typedef struct {
     mcst_value_n_fn *pdf_n, *eval_n;
     mcst_hits_fn *sample_hits_n, *pdf_hits_n;
     mcst_truth truth;
+    mcst_rough rough;
     const mcst_claim *claims; /* narrower ranges first */
     size_t claims_size;
     unsigned vary, traits;
@@ -459,7 +471,10 @@ static const mcst_claim mcst_claims_ashikhmin[] = {
 #define MCST_HOST_FN
 #define MCST_DECLARE_UV(row)                                                                               \
     mcst_value_fn mcst1_##row##_invert, mcst4_##row##_invert, mcst8_##row##_invert, mcst16_##row##_invert; \
-    mcst_exact_invert_fn mcsto_##row##_invert;
+    mcst_exact_invert_fn mcsto_##row##_invert;                                                             \
+    mcst_rough_map_fn mcstr_##row##_map;                                                                   \
+    mcst_rough_u_fn mcstr_##row##_pdf_u;                                                                   \
+    mcst_rough_invert_fn mcstr_##row##_invert;
 #define MCST_DECLARE_LINE MCST_DECLARE_UV
 #define MCST_DECLARE_PLANE MCST_DECLARE_UV
 #define MCST_DECLARE_DIR MCST_DECLARE_UV
@@ -514,11 +529,17 @@ MCST_ROWS(MCST_DECLARE)
 #define MCST_FNS_BRDF(w, row) {w##row##_sample, w##row##_pdf, NULL, w##row##_eval, w##row##_weight}
 #define MCST_TAIL_UV(row) \
     MCST_FOR_WIDTHS(MCST_FNS_UV, row), mcstn_##row, NULL, NULL, NULL, NULL, \
-        {mcsto_##row##_map, mcsto_##row##_pdf, mcsto_##row##_pdf_u, mcsto_##row##_invert, NULL, NULL}
+        {mcsto_##row##_map, mcsto_##row##_pdf, mcsto_##row##_pdf_u, mcsto_##row##_invert, NULL, NULL}, MCST_ROUGH(row)
+#ifdef MCST_LINKED
+#define MCST_ROUGH(row) {mcstr_##row##_map, mcstr_##row##_pdf_u, mcstr_##row##_invert}
+#else
+#define MCST_ROUGH(row) {NULL, NULL, NULL}
+#endif
 #define MCST_TAIL_BRDF(row) \
     MCST_FOR_WIDTHS(MCST_FNS_BRDF, row), mcstn_##row, mcstn_##row##_pdf, mcstn_##row##_eval, \
         mcstn_##row##_sample_hits, mcstn_##row##_pdf_hits, \
-        {mcsto_##row##_map, mcsto_##row##_pdf, mcsto_##row##_pdf_u, NULL, mcsto_##row##_eval, mcsto_##row##_weight}
+        {mcsto_##row##_map, mcsto_##row##_pdf, mcsto_##row##_pdf_u, NULL, mcsto_##row##_eval, mcsto_##row##_weight}, \
+        {NULL, NULL, NULL}
 #define MCST_COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define MCST_COUNT_0 0
 #define MCST_COUNT_1 1
