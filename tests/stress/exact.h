@@ -33,11 +33,15 @@ static inline qd square(qd x) { return x * x; }
 static inline q3 at_versine(qd m, qd phi) {
     const qd half = m / 2;
     const qd sine = 2 * sqrtq(half * (1 - half));
-    return vec(sine * cosq(phi), sine * sinq(phi), 1 - m);
+    qd s, c;
+    sincosq(phi, &s, &c);
+    return vec(sine * c, sine * s, 1 - m);
 }
 static inline q3 at_tangent2(qd tan2, qd phi) {
-    const qd theta = atanq(sqrtq(tan2));
-    return vec(sinq(theta) * cosq(phi), sinq(theta) * sinq(phi), cosq(theta));
+    qd sine, z, s, c;
+    sincosq(atanq(sqrtq(tan2)), &sine, &z);
+    sincosq(phi, &s, &c);
+    return vec(sine * c, sine * s, z);
 }
 /* tan^2 of a direction, and cos^2(phi)/ax^2 + sin^2(phi)/ay^2 (Walter et al. 2007, anisotropic as in Heitz 2014) */
 static inline qd tan2_of(q3 h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
@@ -179,14 +183,16 @@ static inline q3 half_vector_map(const setting *s, qd u1, qd u2) {
         h = vec(s->a * h.x, s->b * h.y, h.z);
         return times(1 / len(h), h);
     }
+    qd sine, cosine;
+    sincosq(turn, &sine, &cosine);
     if (s->id == ID_ashikhmin || s->id == ID_ashikhmin_h) {
-        const qd phi = atan2q(sqrtq(s->a + 1) * sinq(turn), sqrtq(s->b + 1) * cosq(turn));
-        const qd e = s->a * square(cosq(phi)) + s->b * square(sinq(phi));
+        const qd phi = atan2q(sqrtq(s->a + 1) * sine, sqrtq(s->b + 1) * cosine);
+        sincosq(phi, &sine, &cosine);
+        const qd e = s->a * square(cosine) + s->b * square(sine);
         return at_versine(-expm1q(log1pq(-u1) / (e + 1)), phi);
     } else {
         const qd r2 = s->id == ID_ggx || s->id == ID_ggx_h ? u1 / (1 - u1) : -log1pq(-u1);
-        return at_tangent2(r2 * (square(s->a * cosq(turn)) + square(s->b * sinq(turn))),
-                           atan2q(s->b * sinq(turn), s->a * cosq(turn)));
+        return at_tangent2(r2 * (square(s->a * cosine) + square(s->b * sine)), atan2q(s->b * sine, s->a * cosine));
     }
 }
 
@@ -324,6 +330,7 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
     }
 }
 
+static inline qd ward_gauss(qd a, qd b, q3 h) { return expq(-tan2_of(h) * per_alpha2(a, b, h)) / (pi * a * b); }
 /* f of a BRDF, wo and wi above the surface. */
 static inline qd exact_value(const setting *s, q3 wi) {
     const q3 h = add(s->wo, wi);
@@ -331,16 +338,15 @@ static inline qd exact_value(const setting *s, q3 wi) {
     const qd zi = wi.z;
     const qd a = s->a;
     const qd b = s->b;
-    const qd gauss = expq(-tan2_of(h) * per_alpha2(a, b, h)) / (pi * a * b);
     switch (s->id) {
     case ID_phong: {
         const q3 r = vec(-s->wo.x, -s->wo.y, s->wo.z);
         const qd c = dot(r, wi) / (len(r) * len(wi));
         return c > 0 ? (a + 2) / (2 * pi) * expq(a * logq(c)) : 0;
     }
-    case ID_ward_gmd: return gauss * dot(h, h) / square(square(h.z));
-    case ID_ward_duer: return gauss / (4 * zo * zi);
-    case ID_ward_1992: return gauss / (4 * sqrtq(zo * zi));
+    case ID_ward_gmd: return ward_gauss(a, b, h) * dot(h, h) / square(square(h.z));
+    case ID_ward_duer: return ward_gauss(a, b, h) / (4 * zo * zi);
+    case ID_ward_1992: return ward_gauss(a, b, h) / (4 * sqrtq(zo * zi));
     case ID_beckmann:
         return beckmann_d(a, b, h) / (4 * zo * zi * (1 + beckmann_lambda(a, b, s->wo) + beckmann_lambda(a, b, wi)));
     case ID_ashikhmin: return ashikhmin_h(a, b, h) / (2 * len(h) * fmaxq(zo, zi)); /* 4 wo.h = 2 |H| */

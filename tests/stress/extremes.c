@@ -199,8 +199,12 @@ static int judge(tally *t, question q, float got, qd want, double unit, double p
     score(t, q.what, raw, judged, where);
     return judged <= 1;
 }
+/* A bound: the digits of double will do where it has the ratio. */
 static double unit_of(qd pdf, double peak) {
-    return 1e-6 * (1 + (pdf > 0 && peak > 0 ? fabs((double)logq(pdf / (qd)peak)) : 0));
+    if (!(pdf > 0 && peak > 0)) return 1e-6;
+    const qd ratio = pdf / (qd)peak;
+    const int in_double = ratio > (qd)1e-300 && ratio < (qd)1e300;
+    return 1e-6 * (1 + (in_double ? fabs(log((double)ratio)) : fabs((double)logq(ratio))));
 }
 
 /* How far the exact sample itself moves, in half ulps of 1, when parameters and wo move by half an ulp. */
