@@ -393,6 +393,7 @@ int main(void) {
     mcs_ggx_vndf_sample_n(&m, up, 3, u, u, x, y, z, pdf, NULL);
     for (int i = 0; i < 3; i++)
         if (pdf[i] != mcs_ggx_vndf_sample(&m, up, u[i], u[i]).pdf) return 3;
+    if (MCS_PRODUCT_BYTES(16) != mcs_product_bytes(16)) return 4;
     return mcs_lanes() < 1;
 }
 EOF
