@@ -12,6 +12,7 @@
 #pragma clang fp exceptions( \
     maytrap) /* else lanes of its own making divide 0 by 0: in functions that are compiled here */
 #undef MCST_LINKED
+#undef MCS_DECLARE
 #endif
 #if !defined(FE_INVALID) || !defined(FE_DIVBYZERO) || !defined(FE_OVERFLOW) || defined(__FAST_MATH__)
 #define FENV_NONE /* a machine without these flags, or a build that does as it likes with them */
