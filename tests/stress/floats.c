@@ -249,9 +249,50 @@ static void exact_row(double u, double want[2]) {
     want[1] = (double)row->truth.pdf_u(p, (ld)u, 0);
 }
 
+/* The y of an integral by Newton's method, from that of an integral nearby. The bell falls by at most c + y of itself,
+ * so that a step leaves (c + y) step^2 / 2 of error. A start beyond the root may lead below 0, and from 0 on the method
+ * does not pass the root. */
+static ld next_point(const o_bell *of, ld c, ld mass, ld y) {
+    if (mass == 0) return 0;
+    for (int i = 0; i < 100; i++) {
+        const ld step = (mass - of->mass(c, y)) / of->bell(c, y);
+        y = fmaxl(y + step, 0);
+        if ((1 + c + y) * step * step <= 1e-13L * y) break;
+    }
+    return y;
+}
+/* The truth of a bell between two ends, of which oracle.h finds each point anew, over u that come in order. */
+static void exact_cut(double u, double want[2]) {
+    static o_cut k;
+    static ld y;
+    static struct {
+        const mcst_row *row;
+        float a, b;
+    } of;
+    const o_bell *bell = !strcmp(row->name, "truncnormal") ? &o_normal_of : &o_logistic_of;
+    if (of.row != row || of.a != arg[0] || of.b != arg[1]) {
+        of.row = row;
+        of.a = arg[0];
+        of.b = arg[1];
+        k = o_cut_make(bell, (ld)arg[0], (ld)arg[1]);
+        y = 0;
+    }
+    const ld mass = o_cut_mass(&k, (ld)u);
+    if (bell == &o_normal_of) y = next_point(bell, k.c, fabsl(mass), y);
+    else {
+        const ld beyond = fabsl(mass) * (1 + expl(-k.c));
+        y = log1pl(beyond * expl(-k.c)) - log1pl(-beyond);
+    }
+    want[0] = (double)copysignl(k.c + y, mass);
+    want[1] = (double)(bell->bell(k.c, y) / (k.left + k.right));
+}
+
 /* The same for any float as u: bad input gives 0, density 0. */
 static void exact_any_row(double u, double want[2]) {
     if (u >= 0 && u < 1) exact_row(u, want);
+}
+static void exact_any_cut(double u, double want[2]) {
+    if (u >= 0 && u < 1) exact_cut(u, want);
 }
 static void exact_any_normal(double u, double want[2]) {
     if (u >= 0 && u < 1) exact_normal(u, want);
@@ -275,6 +316,8 @@ EXACT(logistic)
 EXACT(row)
 EXACT(any_row)
 EXACT(any_normal)
+EXACT(cut)
+EXACT(any_cut)
 
 /* --- sweeps ----------------------------------------------------------------------------------------------------------
  */
@@ -697,7 +740,7 @@ static const range grid = {GRID, 0, BELOW_1, {0.25f, 0.5f, 0.75f}, 3, 1};
 
 /* Over all u a line with the parameters of its grid. */
 static void sweep_line(void) {
-    exact_fn *exact = row->traits & MCST_QUANTILE ? normal_n : row_n;
+    exact_fn *exact = row->traits & MCST_QUANTILE ? normal_n : row->coord == MCST_CUT ? cut_n : row_n;
     result of[2];
     double lo, hi;
     size_t j;
@@ -751,7 +794,7 @@ static void sweep_unit(const char *name, exact_fn *exact) {
 static void sweep_any(void) {
     const range as_u = {EVERYTHING, -INFINITY, INFINITY, {-1, 0, 0.5f, 1}, 4, 101};
     const range as_x = {EVERYTHING, -INFINITY, INFINITY, {-1, 0, 0.5f, 1}, 4, 11};
-    exact_fn *exact = row->traits & MCST_QUANTILE ? any_normal_n : any_row_n;
+    exact_fn *exact = row->traits & MCST_QUANTILE ? any_normal_n : row->coord == MCST_CUT ? any_cut_n : any_row_n;
     result of[2];
     double lo, hi;
     arg[0] = row->grid[0][0], arg[1] = row->grid[0][1];
