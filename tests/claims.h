@@ -4,19 +4,19 @@
 #define MCST_CLAIMS_H
 #include "registry.h"
 
-static const char *const mcst_claim_name[CLAIMS] = {"pdf of u",           "pdf of w",    "eval",
-                                                    "weight of a sample", "weight of w", "length"};
+static const char *const mcst_claim_name[CLAIMS] = {
+    "pdf of u", "pdf of w", "eval", "weight of a sample", "weight of w", "length", "where", "distance", "place"};
 
 /* The sentences that state them. */
 /* clang-format off */
 static const char *const mcst_claim_sentences[] = {
     "1 E is a relative error of 1e-6 (1 + |ln(pdf/peak)|)",
     /* [1d] */
-    "pdf of u and of x within 0.45 E (normal), 0.2 E (the others)",
+    "pdf of u and of x within 0.45 E (normal), 0.3 E (the others)",
     /* [square] */
     "coordinates within 4 ulp of 1, pdf of u 0.7 E, of a point 0.5 E",
     /* [disk] */
-    "coordinates within 2^-23 of the radius, pdf within 0.1 E",
+    "coordinates within 2^-23 of the radius, pdf within 0.16 E",
     /* [triangle] */
     "coordinates within half an ulp of the exact map, for u of 0 and of 2^-125 and more; pdf exact",
     /* [lights] */
@@ -25,7 +25,8 @@ static const char *const mcst_claim_sentences[] = {
     "coordinates within 2^-24, pdf and distance within 1e-7 of themselves, for samples whose distance is 1e-4 radii or "
     "more",
     "w within 1.1 x 2^-24 of the exact map by coordinate, places on the light within 1.1 x 2^-24, pdf within 2e-7 and "
-    "distance within 1e-7 of itself, for solid angles of 1e-12 and more and lights 1e5 times as long as wide",
+    "distance within 1e-7 of itself, for solid angles of 1e-12 and more, lights 1e5 times as long as wide, and p "
+    "further from the plane of the light than 1e-8 of its size and distance",
     /* [sphere] */
     "unit length within 4 x 2^-24, pdf within 0.2 E.",
     /* [frame], [fresnel] */

@@ -83,8 +83,10 @@ ONLY="$*" DIR=$dir LC_ALL=C awk '
 build() { # HEADER_FOLDER PROGRAM FILTER OUTPUT LANES
     row=
     case $2 in test_oracle | test_width) row=$(sed -n "s/^ *\(M(X, [A-Z]*, ${3%%[/ ]*},[^)]*)\).*/\1/p" tests/registry.h) ;; esac
-    ${CC:-cc} -O1 -DMCS_MAX_LANES="$5" ${row:+"-DMCST_LIST(M, X)=$row"} -std=c99 -w -Wno-psabi -ffp-contract=off -I"$1" -I. -Itests \
-        "tests/$2.c" -o "$4" -lm >"$4.log" 2>&1
+    cc=${CC:-cc} quad=
+    case $2 in stress/extremes | stress/climb) cc=gcc quad=-lquadmath ;; esac # their truth is __float128
+    $cc -O1 -DMCS_MAX_LANES="$5" ${row:+"-DMCST_LIST(M, X)=$row"} -std=c99 -w -Wno-psabi -ffp-contract=off -I"$1" -I. -Itests \
+        "tests/$2.c" -o "$4" $quad -lm >"$4.log" 2>&1
 }
 binary() { # FOLDER PROGRAM FILTER
     case $2 in test_oracle | test_width) echo "$1/$2.${3%%[/ ]*}" ;; *) echo "$1/${2##*/}" ;; esac
