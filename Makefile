@@ -30,16 +30,13 @@ STRESS_BINS = $(STRESS:%=$(BUILD)/tests/stress/%)
 STRESS_LINES := $(shell sed -n 's/^ *M.X, LINE, \([a-z0-9_]*\),.*/\1/p' tests/registry.h)
 STRESS_NAMES := $(shell sed -n 's/^ *M.X, [A-Z]*, \([a-z0-9_]*\),.*/\1/p' tests/registry.h)
 STRESS_ROWS := $(filter-out $(foreach n,$(STRESS_NAMES),$(filter-out $(n),$(filter %$(n),$(STRESS_NAMES)))),$(STRESS_NAMES))
-# Those of them that the extremes know exactly.
-STRESS_EXACT := $(filter $(shell sed -n 's/^ *M.X, \(V*LOBE\|BRDF\), \([a-z0-9_]*\),.*/\2/p' tests/registry.h; \
-	sed -n 's/^ *case ID_\([a-z0-9_]*\):.*/\1/p' tests/stress/exact.h),$(STRESS_ROWS))
 # Parts of make stress, of up to three minutes each: program-filter, + for a space and . for a slash in the filter, ^ for all
 # but what follows. stress-whole looks whether they leave a case out, or one of them has none.
 STRESS_PARTS = hostile images fuzz-product fuzz-^product $(filter climb,$(STRESS)) fireflies-climbing fireflies-^climbing \
 	$(addprefix floats-vector+maths.,sin 1 ln+x ln+of e^min e^x x normal+tail normal+quantile) \
 	$(addprefix floats-,any+x+below any+x+from y+to+1 y+beyond+1 y+below y+from u+to+radius any+float.u) \
 	$(addprefix floats-u+to+x.,$(STRESS_LINES)) $(addprefix floats-any+float.x+of+,$(STRESS_LINES)) \
-	$(STRESS_ROWS:%=deep-%.) $(if $(filter extremes,$(STRESS)),$(STRESS_EXACT:%=extremes-%.) extremes-mass extremes-oracle)
+	$(STRESS_ROWS:%=deep-%.) $(if $(filter extremes,$(STRESS)),$(STRESS_ROWS:%=extremes-%.) extremes-mass extremes-oracle)
 STRESS_FILTER = $(if $(findstring -,$(1)),--filter '$(subst .,/,$(subst +, ,$(word 2,$(subst -, ,$(1)))))')
 # One of them each day of the year.
 DAY ?= $(shell date +%j)

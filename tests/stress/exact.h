@@ -13,6 +13,9 @@ typedef struct {
 } q3;
 static qd pi; /* exact_start() sets it */
 
+#define ST_ID(shape, row, fn, arg, base, coord, grid) ID_##row,
+enum { MCST_ROWS(ST_ID) IDS };
+
 /* --- the oracle --------------------------------------------------------------------------------------------------- */
 
 static inline q3 vec(qd x, qd y, qd z) {
@@ -102,6 +105,105 @@ normal_quantile(qd u) { /* bisection to a start, then Newton: the cumulative is 
     return z;
 }
 
+/* --- the parts of bells between two ends ---
+ * Mirrored so that the end nearer to 0 is a: either a < 0 < b, or both are in the upper tail. A point of a bell
+ * may be so far out that 113 bits do not hold how far it is from a, or from the mean: it is the sum of x.x and x.y. */
+
+typedef struct {
+    int mirrored;
+    qd a, b;
+} ends;
+
+static inline ends ends_of(qd a, qd b) {
+    ends e;
+    e.mirrored = -a > b;
+    e.a = e.mirrored ? -b : a;
+    e.b = e.mirrored ? -a : b;
+    return e;
+}
+static inline q3 beyond(qd from, qd t) { return vec(from + t, from - (from + t) + t, 0); }
+static inline q3 beyond_end(const ends *e, qd t) { return e->mirrored ? beyond(-e->a, -t) : beyond(e->a, t); }
+
+/* Mills' ratio: the mass beyond z over the density at z. From 4 on by Laplace's continued fraction, whose error falls
+ * as e^(-2 z sqrt(2 n)): 100 terms leave e^-113. */
+static inline qd mills(qd z) {
+    if (z < 4) return sqrtq(pi / 2) * expq(z * z / 2) * erfcq(z / sqrtq(2));
+    qd f = z;
+    for (int n = 100; n > 0; n--) f = z + n / f;
+    return 1 / f;
+}
+/* What is beyond a + t of what is beyond a, a >= 1. */
+static inline qd normal_left(qd a, qd t) { return expq(-t * (a + t / 2)) * mills(a + t) / mills(a); }
+static inline qd normal_from_0(qd x) { return erfq(x / sqrtq(2)) / 2; }
+
+static inline q3 truncnormal(const ends *e, qd u) {
+    if (e->a >= 1) { /* Newton's method for a concave logarithm, from beyond the root: it never steps over it */
+        const qd left = 1 - u * (1 - normal_left(e->a, e->b - e->a));
+        qd t = fminq(e->b - e->a, -logq(left) / e->a);
+        for (int i = 0; i < 12; i++) t += logq(normal_left(e->a, t) / left) * mills(e->a + t);
+        return beyond_end(e, fminq(fmaxq(t, 0), e->b - e->a));
+    }
+    const qd share = normal_from_0(e->a) + u * (normal_from_0(e->b) - normal_from_0(e->a));
+    qd lo = fmaxq(e->a, -15);
+    qd hi = fminq(e->b, 15);
+    for (int i = 0; i < 50; i++) {
+        const qd middle = (lo + hi) / 2;
+        if (normal_from_0(middle) < share) lo = middle;
+        else hi = middle;
+    }
+    qd x = (lo + hi) / 2;
+    for (int i = 0; i < 4; i++) x -= (normal_from_0(x) - share) * sqrtq(2 * pi) * expq(x * x / 2);
+    x = fminq(fmaxq(x, e->a), e->b);
+    return vec(e->mirrored ? -x : x, 0, 0);
+}
+static inline qd truncnormal_pdf(const ends *e, qd x, qd t) {
+    if (e->a >= 1) return expq(-t * (e->a + t / 2)) / (mills(e->a) * (1 - normal_left(e->a, e->b - e->a)));
+    return expq(-x * x / 2) / (sqrtq(2 * pi) * (normal_from_0(e->b) - normal_from_0(e->a)));
+}
+
+/* What is between a and b of what is beyond a: the logistic one has 1/(1 + e^x) beyond x. */
+static inline qd logistic_between(const ends *e) { return -expm1q(e->a - e->b) / (1 + expq(-e->b)); }
+static inline q3 trunclogistic(ends e, qd u) {
+    e.a = fmaxq(e.a, -5000); /* beyond it is e^-5000 of all */
+    const qd passed = u * logistic_between(&e);
+    return beyond_end(&e, fminq(log1pq((1 + expq(-e.a)) * passed / (1 - passed)), e.b - e.a));
+}
+static inline qd trunclogistic_pdf(const ends *e, qd x, qd t) {
+    const qd over_left = e->a > 0 ? expq(-t) * (1 + expq(-e->a)) : expq(-fabsq(x)) * (1 + expq(e->a));
+    return over_left / (square(1 + expq(-fabsq(x))) * logistic_between(e));
+}
+
+static inline qd cut_pdf(int id, const ends *e, q3 x) {
+    const qd side = e->mirrored ? -1 : 1;
+    const qd t = side * x.x - e->a + side * x.y;
+    if (!(t >= 0 && t <= e->b - e->a)) return 0;
+    return id == ID_truncnormal ? truncnormal_pdf(e, side * x.x, t) : trunclogistic_pdf(e, side * x.x, t);
+}
+
+static inline qd linear(qd a, qd b, qd u) { return u > 0 ? u * (a + b) / (a + sqrtq(a * a * (1 - u) + b * b * u)) : 0; }
+/* Two steps of it. Where a side has no height, that is how the heights beside it are shared. */
+static inline q3 bilinear(qd w00, qd w10, qd w01, qd w11, qd u1, qd u2) {
+    if (w00 + w10 + w01 + w11 == 0) return vec(u1, u2, 0);
+    const qd y = linear(w00 + w10, w01 + w11, u2);
+    const int flat = (w00 + w10) * (1 - y) + (w01 + w11) * y == 0;
+    const qd at = flat ? 1 - y : y;
+    return vec(linear(w00 * (1 - at) + w01 * at, w10 * (1 - at) + w11 * at, u1), y, 0);
+}
+static inline qd bilinear_pdf(qd w00, qd w10, qd w01, qd w11, qd x, qd y) {
+    const qd sum = w00 + w10 + w01 + w11;
+    if (!(x >= 0 && x <= 1 && y >= 0 && y <= 1)) return 0;
+    return sum == 0 ? 1 : 4 * ((1 - y) * ((1 - x) * w00 + x * w10) + y * ((1 - x) * w01 + x * w11)) / sum;
+}
+
+/* Shirley and Chiu 1997, on the disk of radius 1. */
+static inline q3 concentric(qd u1, qd u2) {
+    const qd d = 2 * u1 - 1;
+    const qd e = 2 * u2 - 1;
+    const qd r = fabsq(d) > fabsq(e) ? d : e;
+    const qd phi = r == 0 ? 0 : fabsq(d) > fabsq(e) ? pi / 4 * (e / d) : pi / 2 - pi / 4 * (d / e);
+    return vec(r * cosq(phi), r * sinq(phi), 0);
+}
+
 static inline qd smoothstep_t(qd u) { /* t^3 (2 - t) = u: bisection to a start, then Newton */
     qd lo = 0;
     qd hi = 1;
@@ -116,43 +218,14 @@ static inline qd smoothstep_t(qd u) { /* t^3 (2 - t) = u: bisection to a start, 
     return t;
 }
 
-#define ST_ID(shape, row, fn, arg, base, coord, grid) ID_##row,
-enum { MCST_ROWS(ST_ID) IDS };
+#include "exact_lights.h"
 
-/* Lobes beyond the list count as microfacets of the formulas below, and fail where they are not; other rows have none.
- */
-static inline int exact_has(const mcst_row *row) {
-    static const int ids[] = {ID_linear,
-                              ID_tent,
-                              ID_exponential,
-                              ID_truncexp,
-                              ID_normal,
-                              ID_logistic,
-                              ID_power,
-                              ID_evenpower,
-                              ID_disk,
-                              ID_concentric,
-                              ID_sphere,
-                              ID_hemisphere,
-                              ID_cosine,
-                              ID_cone,
-                              ID_henyey_greenstein,
-                              ID_rayleigh,
-                              ID_von_mises_fisher,
-                              ID_smoothstep,
-                              ID_triangle};
-    if (row->shape == MCST_IS_LOBE || row->shape == MCST_IS_VLOBE || row->shape == MCST_IS_BRDF) return 1;
-    for (size_t i = 0; i < MCST_COUNT(ids); i++)
-        if (ids[i] == row - mcst_rows) return 1;
-    printf("SKIPPED: %s: exact.h has no truth of 113 bits for it\n", row->name);
-    return 0;
-}
-
-/* A setting: parameters as the header clamps them, and wo. */
+/* A setting: parameters as the header clamps them, and wo; and a light, if it is one. */
 typedef struct {
     int id, half, visible; /* BRDF over half-vectors; 1 visible, 2 bounded */
     qd a, b;
     q3 wo;
+    light light;
 } setting;
 
 static inline setting setting_of(const mcst_row *row, const float *p) {
@@ -171,6 +244,8 @@ static inline setting setting_of(const mcst_row *row, const float *p) {
         s.b = fminf(p[1], 1e9f);
     }
     s.wo = vec(p[3], p[4], p[5]);
+    const given_light given = row_light(s.id, p[0], p[1]);
+    s.light = seen_from_p(&given);
     return s;
 }
 
@@ -214,34 +289,54 @@ static inline qd half_vector_density(const setting *s, q3 h) {
     return (s->id == ID_ggx || s->id == ID_ggx_h ? ggx_d(s->a, s->b, h) : beckmann_d(s->a, s->b, h)) * c;
 }
 
-static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2, q3 *x) {
+static inline q3 line_map(const setting *s, qd u1) {
     const qd a = s->a;
     const qd b = s->b;
     const qd least = 0x1p-25;
     const qd d = 2 * u1 - 1;
-    const qd e = 2 * u2 - 1;
-    *x = vec(0, 0, 0);
+    q3 x = vec(0, 0, 0);
     switch (s->id) {
-    case ID_linear: x->x = u1 > 0 ? u1 * (a + b) / (a + sqrtq(a * a * (1 - u1) + b * b * u1)) : 0; return;
-    case ID_tent: x->x = u1 < 0.5 ? -a * (1 - sqrtq(2 * u1)) : a * (1 - sqrtq(2 * (1 - u1))); return;
-    case ID_exponential: x->x = -log1pq(-u1) / a; return;
-    case ID_truncexp: x->x = a > 0 ? -log1pq(u1 * expm1q(-a * b)) / a : u1 * b; return;
-    case ID_normal: x->x = a + b * normal_quantile(fmaxq(u1, least)); return;
-    case ID_logistic: x->x = a + b * logq(fmaxq(u1, least) / (1 - u1)); return;
-    case ID_power: x->x = u1 > 0 ? expq(logq(u1) / (a + 1)) : 0; return;
-    case ID_evenpower: x->x = d != 0 ? copysignq(expq(logq(fabsq(d)) / (a + 1)), d) : 0; return;
-    case ID_smoothstep: x->x = a + (b - a) * smoothstep_t(u1); return;
+    case ID_linear: x.x = linear(a, b, u1); break;
+    case ID_tent: x.x = u1 < 0.5 ? -a * (1 - sqrtq(2 * u1)) : a * (1 - sqrtq(2 * (1 - u1))); break;
+    case ID_exponential: x.x = -log1pq(-u1) / a; break;
+    case ID_truncexp: x.x = a > 0 ? -log1pq(u1 * expm1q(-a * b)) / a : u1 * b; break;
+    case ID_normal: x = beyond(a, b * normal_quantile(fmaxq(u1, least))); break;
+    case ID_logistic: x = beyond(a, b * logq(fmaxq(u1, least) / (1 - u1))); break;
+    case ID_power: x.x = u1 > 0 ? expq(logq(u1) / (a + 1)) : 0; break;
+    case ID_truncnormal:
+    case ID_trunclogistic: {
+        const ends cut = ends_of(a, b);
+        const qd u = cut.mirrored ? 1 - fmaxq(u1, least) : fmaxq(u1, least);
+        x = s->id == ID_truncnormal ? truncnormal(&cut, u) : trunclogistic(cut, u);
+        break;
+    }
+    case ID_evenpower: x.x = d != 0 ? copysignq(expq(logq(fabsq(d)) / (a + 1)), d) : 0; break;
+    case ID_smoothstep: x.x = a + (b - a) * smoothstep_t(u1); break;
+    default: break;
+    }
+    return x;
+}
+
+static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2, q3 *x) {
+    const qd a = s->a;
+    const qd b = s->b;
+    *x = vec(0, 0, 0);
+    if (row->dim == 1) {
+        *x = line_map(s, u1);
+        return;
+    }
+    switch (s->id) {
     case ID_disk:
         x->x = a * sqrtq(u1) * cosq(2 * pi * u2);
         x->y = a * sqrtq(u1) * sinq(2 * pi * u2);
         return;
-    case ID_concentric: {
-        const qd r = fabsq(d) > fabsq(e) ? d : e;
-        const qd phi = r == 0 ? 0 : fabsq(d) > fabsq(e) ? pi / 4 * (e / d) : pi / 2 - pi / 4 * (d / e);
-        x->x = a * r * cosq(phi);
-        x->y = a * r * sinq(phi);
-        return;
-    }
+    case ID_concentric: *x = times(a, concentric(u1, u2)); return;
+    case ID_bilinear: *x = bilinear(a, b, 1, 3, u1, u2); return;
+    case ID_bilinear_cross: *x = bilinear(a, 0, 0, b, u1, u2); return;
+    case ID_ball:
+    case ID_disk_light:
+    case ID_spherical_rectangle:
+    case ID_spherical_triangle: *x = light_seen(&s->light, u1, u2).w; return;
     case ID_triangle: *x = vec(u1 - fminq(u1, u2) / 2, u2 - fminq(u1, u2) / 2, 0); return;
     case ID_sphere: *x = at_versine(2 * u1, 2 * pi * u2); return;
     case ID_hemisphere: *x = at_versine(u1, 2 * pi * u2); return;
@@ -273,10 +368,10 @@ static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2
     }
 }
 
-static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
+static inline qd line_pdf(const setting *s, q3 x) {
     const qd a = s->a;
     const qd b = s->b;
-    const qd z = b > 0 ? (x.x - a) / b : 0;
+    const qd z = b > 0 ? (x.x - a + x.y) / b : 0;
     switch (s->id) {
     case ID_linear: return x.x >= 0 && x.x <= 1 ? 2 * (a * (1 - x.x) + b * x.x) / (a + b) : 0;
     case ID_tent: return fabsq(x.x) <= a ? (1 - fabsq(x.x) / a) / a : 0;
@@ -284,6 +379,11 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
     case ID_truncexp: return x.x < 0 || x.x > b ? 0 : a > 0 ? a * expq(-a * x.x) / -expm1q(-a * b) : 1 / b;
     case ID_normal: return expq(-z * z / 2) / (b * sqrtq(2 * pi));
     case ID_logistic: return expq(-fabsq(z)) / (b * square(1 + expq(-fabsq(z))));
+    case ID_truncnormal:
+    case ID_trunclogistic: {
+        const ends cut = ends_of(a, b);
+        return cut_pdf(s->id, &cut, x);
+    }
     case ID_power: return x.x < 0 || x.x > 1 ? 0 : x.x > 0 ? (a + 1) * expq(a * logq(x.x)) : a > 0 ? 0 : 1;
     case ID_evenpower:
         return fabsq(x.x) > 1 ? 0 : x.x != 0 ? (a + 1) / 2 * expq(a * logq(fabsq(x.x))) : a > 0 ? 0 : (qd)0.5;
@@ -291,8 +391,23 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
         const qd t = (x.x - a) / (b - a);
         return t >= 0 && t <= 1 ? 2 * t * t * (3 - 2 * t) / (b - a) : 0;
     }
+    default: return 0;
+    }
+}
+
+static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
+    const qd a = s->a;
+    const qd b = s->b;
+    if (row->dim == 1) return line_pdf(s, x);
+    switch (s->id) {
     case ID_disk:
     case ID_concentric: return x.x * x.x + x.y * x.y <= a * a * (1 + (qd)1e-30) ? 1 / (pi * a * a) : 0;
+    case ID_bilinear: return bilinear_pdf(a, b, 1, 3, x.x, x.y);
+    case ID_bilinear_cross: return bilinear_pdf(a, 0, 0, b, x.x, x.y);
+    case ID_ball:
+    case ID_disk_light:
+    case ID_spherical_rectangle:
+    case ID_spherical_triangle: return light_pdf(&s->light, x);
     case ID_triangle: return x.x >= 0 && x.y >= 0 && x.x + x.y <= 1 ? 2 : 0;
     case ID_sphere: return 1 / (4 * pi);
     case ID_hemisphere: return x.z > 0 ? 1 / (2 * pi) : 0;
