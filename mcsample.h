@@ -778,7 +778,7 @@ typedef struct {
  *            sampled w over the rim. MIS is right with that, as light is 0 there.
  * accuracy   pdf and distance within 1e-7 of themselves, for d up to 1e9 radii. The distance is that of the exact
  *            direction of u.
- * cost       4 square roots, 10 divisions, 1 sincos; array forms spend half of these once for all
+ * cost       5 square roots, 10 divisions, 1 sincos; array forms spend half of these once for all
  * functions  mcs_ball_sample, mcs_ball_pdf, mcs_ball_invert, mcs_ball_sample_n for arrays
  * source     the cone is that of Wang 1992, "Physically correct direct lighting for distribution ray tracing" */
 MCS_FN mcs_light mcs_ball_sample(mcs_vec3 p, mcs_vec3 centre, float radius, float u1, float u2);
@@ -804,7 +804,7 @@ MCS_API void mcs_ball_sample_n(mcs_vec3 p, mcs_vec3 centre, float radius, size_t
  *            2^-23/|w.normal|, and where |w.normal| is below 1e-7
  * accuracy   coordinates within 2^-24, pdf and distance within 1e-7 of themselves, for samples whose distance is 1e-4
  *            radii or more
- * cost       2 square roots, 8 divisions; array forms spend half of these once for all
+ * cost       2 square roots, 5 divisions; array forms spend half of these once for all
  * functions  mcs_disk_light_sample, mcs_disk_light_pdf, mcs_disk_light_invert, mcs_disk_light_sample_n for arrays
  * source     Shirley and Chiu 1997, as in [disk] */
 MCS_FN mcs_light mcs_disk_light_sample(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, float radius, float u1, float u2);
@@ -852,18 +852,18 @@ typedef struct {
  * and y of a sample, in [0,1]: the place on the light is c + x edge_x + y edge_y. If the edges are not at right angles,
  * edge_y counts without its part along edge_x in all of this. A parallelogram is two triangles.
  *
- * cost       8 divisions and 6 square roots, mostly in double; up to 8 arctangents to prepare it, 4 to invert
+ * cost       5 divisions and 4 square roots, mostly in double; 3 to 5 arctangents to prepare it, 2 to 4 to invert
  * functions  mcs_spherical_rectangle_make, mcs_spherical_rectangle_sample, mcs_spherical_rectangle_pdf,
  *            mcs_spherical_rectangle_invert, mcs_spherical_rectangle_sample_n for arrays */
 typedef struct {
-    mcsi_vec3_d axis_x, axis_y, normal; /* of unit length; the normal points away from p */
-    double to_plane;                    /* the distance of p from the plane */
-    double x0, x1, y0, y1;              /* the sides seen from p, in units of that distance */
-    double size_y0, size_y1;            /* |y0| and |y1| */
-    double per_x, per_y;                /* 1/(x1 - x0), 1/(y1 - y0) */
-    double before, angle, behind, rest; /* halves of solid angles whose sum is pi: see the bodies */
-    double scale;                       /* of places along x: see there, too */
-    double pdf;                         /* 1/(solid angle), or 0 */
+    mcsi_vec3_d axis_x, axis_y, normal;      /* of unit length; the normal points away from p */
+    double to_plane;                         /* the distance of p from the plane */
+    double x0, x1, y0, y1;                   /* the sides seen from p, in units of that distance */
+    double sin_y0, sin_y1, cos2_y0, cos2_y1; /* sines and squared cosines of the angles from the normal to y0, y1 */
+    double per_x, per_y;                     /* 1/(x1 - x0), 1/(y1 - y0) */
+    double before, angle, behind, rest;      /* halves of solid angles whose sum is pi: see the bodies */
+    double scale;                            /* of places along x: see there, too */
+    double pdf;                              /* 1/(solid angle), or 0 */
 } mcs_spherical_rectangle;
 MCS_FN mcs_spherical_rectangle mcs_spherical_rectangle_make(mcs_vec3 p, mcs_vec3 c, mcs_vec3 edge_x, mcs_vec3 edge_y);
 MCS_FN mcs_light_point mcs_spherical_rectangle_sample(const mcs_spherical_rectangle *l, float u1, float u2);
@@ -880,7 +880,7 @@ MCS_API void mcs_spherical_rectangle_sample_n(const mcs_spherical_rectangle *l, 
  * members x and y of a sample are the weights of a and b, as in [triangle]: the place on the light is
  * x a + y b + (1 - x - y) c, and 1 - x - y is not negative in float either.
  *
- * cost       4 divisions and 2 square roots, mostly in double; 2 arctangents to prepare it, 1 to invert
+ * cost       3 divisions and 2 square roots, mostly in double; 1 arctangent to prepare it, 1 to invert
  * functions  mcs_spherical_triangle_make, mcs_spherical_triangle_sample, mcs_spherical_triangle_pdf,
  *            mcs_spherical_triangle_invert, mcs_spherical_triangle_sample_n for arrays */
 typedef struct {
@@ -4711,6 +4711,14 @@ MCSI_CORE void mcsi_wide_sqrt(mcsi_d *x) {
     *x = MCSI_WIDEN(root) + (*x - MCSI_WIDEN(root) * MCSI_WIDEN(root)) * MCSI_WIDEN(slope);
 }
 
+/* 1/sqrt(x), x in [0, 1e38], but at most 6e18; 2^-52 from 1e-37. That of a float times the series of 1/sqrt(1 - d),
+ * where x r^2 is 1 - d. */
+MCSI_CORE void mcsi_inverse_root(const mcsi_d *x, mcsi_d *result) {
+    const mcsi_d r = MCSI_WIDEN(1.0f / mcsi_sqrt(mcsi_max(MCSI_NARROW(*x), mcs_set(1e-37f))));
+    const mcsi_d d = 1.0 - *x * (r * r);
+    *result = r + (r * d) * (0.5 + 0.375 * d);
+}
+
 MCSI_CORE void mcsi_widen3(const mcs_vec3 *v, mcsi_vec3_d *d) {
     d->x = MCSI_WIDEN(v->x);
     d->y = MCSI_WIDEN(v->y);
@@ -4736,9 +4744,7 @@ MCSI_CORE mcsi_axis mcsi_axis_make(mcs_vec3 p, mcs_vec3 q) {
     const mcsi_vec3_d d = mcsi_from_to(p, q);
     mcsi_axis axis;
     axis.length2 = MCSI_DOT_D(d, d);
-    mcsi_d length = axis.length2;
-    mcsi_wide_sqrt(&length);
-    axis.inverse = 1.0 / length;
+    mcsi_inverse_root(&axis.length2, &axis.inverse);
     axis.n_x = axis.inverse * d.x;
     axis.n_y = axis.inverse * d.y;
     axis.n_z = axis.inverse * d.z;
@@ -4799,12 +4805,12 @@ MCSI_CORE mcsi_ball mcsi_ball_make(mcs_vec3 p, mcs_vec3 centre, mcs_f radius) {
     b.axis = mcsi_axis_make(p, mcsi_sel3(apart, centre, mcsi_vec3(zero, zero, one)));
     const mcsi_d c2 = b.axis.length2 * MCSI_WIDEN(mcsi_sel(apart, one, zero));
     b.c = c2 * b.axis.inverse;
-    const mcs_f far_off = MCSI_NARROW(b.c);
+    const mcs_f far_off = mcsi_sqrt(MCSI_NARROW(c2));
     const mcs_f size = mcsi_max(mcsi_sel(b.ok, radius, one), 1e-15f * far_off);
     const mcsi_d r = MCSI_WIDEN(size);
     b.gap = c2 - r * r;
     b.outside = MCSI_WIDEN(mcsi_sel(MCSI_NARROW(b.gap) > 0.0f, one, zero));
-    const mcsi_d unit = b.outside * b.axis.inverse * b.axis.inverse;
+    const mcsi_d unit = b.outside / (c2 + (1.0 - b.outside));
     mcsi_d cosine = 1.0 - b.outside + b.gap * unit;
     mcsi_wide_sqrt(&cosine);
     b.k = r * r * unit / (1.0 + cosine) + 2.0 * (1.0 - b.outside);
@@ -4886,8 +4892,8 @@ typedef struct {
     mcs_i ok;
     mcsi_axis axis;
     mcsi_vec3_d centre;
-    mcsi_d radius, per_area; /* 1 / the area */
-    mcsi_d further;          /* further away than any point of the disk */
+    mcsi_d radius, area;
+    mcsi_d further; /* further away than any point of the disk */
 } mcsi_disk_light;
 
 MCSI_CORE mcsi_disk_light mcsi_disk_light_make(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, mcs_f radius) {
@@ -4901,7 +4907,7 @@ MCSI_CORE mcsi_disk_light mcsi_disk_light_make(mcs_vec3 p, mcs_vec3 centre, mcs_
     d.axis = mcsi_axis_make(mcsi_origin(), mcsi_sane_direction(normal, &d.ok));
     d.centre = mcsi_to_axis(&d.axis, p, centre);
     d.radius = MCSI_WIDEN(size);
-    d.per_area = 0.3183098861837907 / (d.radius * d.radius); /* 1/pi */
+    d.area = MCSI_PI * (d.radius * d.radius);
     d.further = 2.0 * (MCSI_WIDEN(largest) + d.radius);
     return d;
 }
@@ -4921,27 +4927,29 @@ MCSI_CORE mcs_light mcsi_disk_light_draw(const mcsi_disk_light *d, mcs_f u1, mcs
     const mcsi_d angle =
         0.7853981633974483 * (a + along_x * (b - a)) / (longer + MCSI_WIDEN(mcsi_sel(middle, one, zero)));
     const mcsi_d z = angle * angle;
-    const mcsi_d s_7 = 1.0 - z * (1.0 / 42) * (1.0 - z * (1.0 / 72) * (1.0 - z * (1.0 / 110)));
-    const mcsi_d c_6 = 1.0 - z * (1.0 / 30) * (1.0 - z * (1.0 / 56) * (1.0 - z * (1.0 / 90) * (1.0 - z * (1.0 / 132))));
-    const mcsi_d s = d->radius * longer * angle * (1.0 - z * (1.0 / 6) * (1.0 - z * (1.0 / 20) * s_7));
-    const mcsi_d c = d->radius * longer * (1.0 - z * (1.0 / 2) * (1.0 - z * (1.0 / 12) * c_6));
+    const mcsi_d z2 = z * z;
+    const mcsi_d s_3 = (1.0 / 120 - z * (1.0 / 5040)) + z2 * (1.0 / 362880 - z * (1.0 / 39916800));
+    const mcsi_d c_6 = (1.0 / 40320 - z * (1.0 / 3628800)) + z2 * (1.0 / 479001600);
+    const mcsi_d c_3 = (1.0 / 24 - z * (1.0 / 720)) + z2 * c_6;
+    const mcsi_d s = d->radius * longer * angle * ((1.0 - z * (1.0 / 6)) + z2 * s_3);
+    const mcsi_d c = d->radius * longer * ((1.0 - z * (1.0 / 2)) + z2 * c_3);
     const mcsi_d x = d->centre.x + (s + along_x * (c - s));
     const mcsi_d y = d->centre.y + (c + along_x * (s - c));
     const mcsi_d distance2 = x * x + y * y + d->centre.z * d->centre.z;
     const mcs_i apart = MCSI_NARROW(distance2) >= 1e-36f;
-    mcsi_d distance = distance2 + MCSI_WIDEN(mcsi_sel(apart, zero, one));
-    mcsi_wide_sqrt(&distance);
-    const mcsi_d inverse = 1.0 / distance;
+    mcsi_d inverse;
+    mcsi_inverse_root(&distance2, &inverse);
+    const mcsi_d distance = distance2 * inverse;
     mcsi_vec3_d v;
     v.x = x * inverse;
     v.y = y * inverse;
     v.z = d->centre.z * inverse;
     const mcs_i lit = apart & (mcsi_abs(MCSI_NARROW(v.z)) >= 1e-7f);
-    const mcsi_d counts = MCSI_WIDEN(mcsi_sel(lit, mcsi_with_sign(one, MCSI_NARROW(d->centre.z)), zero));
-    const mcsi_d pdf = distance2 * distance * d->per_area / (counts * d->centre.z + (1.0 - counts * counts));
+    const mcsi_d side = MCSI_WIDEN(mcsi_sel(lit, mcsi_with_sign(one, MCSI_NARROW(d->centre.z)), zero));
+    const mcsi_d pdf = distance2 * distance / (d->area * (side * d->centre.z) + (1.0 - side * side));
     mcs_light light;
     light.w = mcsi_sel3(apart, mcsi_from_axis(&d->axis, &v), mcsi_vec3(zero, zero, one));
-    light.pdf = mcsi_sane_result(ok & lit, MCSI_NARROW(counts * counts * pdf));
+    light.pdf = mcsi_sane_result(ok & lit, MCSI_NARROW(side * side * pdf));
     light.distance = mcsi_sane_result(light.pdf > 0.0f, MCSI_NARROW(distance));
     return light;
 }
@@ -4977,8 +4985,9 @@ MCSI_CORE mcsi_disk_hit mcsi_disk_light_hit(const mcsi_disk_light *d, mcs_vec3 w
     const mcsi_d length3 = length2 * (0.5 + 0.5 * length2); /* its cube, where it is nearly 1 */
     hit.x = MCSI_NARROW(x);
     hit.y = MCSI_NARROW(y);
-    hit.beyond = MCSI_NARROW((x * x + y * y - rim * rim) * d->per_area);
-    hit.density = MCSI_NARROW(t * t * length3 * d->per_area * inverse);
+    const mcsi_d per_area = 1.0 / d->area;
+    hit.beyond = MCSI_NARROW((x * x + y * y - rim * rim) * per_area);
+    hit.density = MCSI_NARROW(t * t * length3 * per_area * inverse);
     return hit;
 }
 MCSI_FN mcs_f mcs_disk_light_pdf(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_vec3 w) {
@@ -5000,22 +5009,15 @@ MCSI_FN mcs_vec2 mcs_disk_light_invert(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 nor
  * They are prepared, and directions inverted, one lane at a time by functions of the scalar pass; what draws and what
  * tells a density are lanes. */
 
-/* sin(x)/x for x in [0, pi], where rest is pi - x; 2^-51. The sine is an entire function of x (pi - x) and vanishes
- * with it: a polynomial of that keeps its digits at both ends. */
-MCSI_CORE void mcsi_sine_over_x(const mcsi_d *x, const mcsi_d *rest, mcsi_d *result) {
-    const mcsi_d v = *x * *rest;
-    const mcsi_d upper = 2.4609342067254438e-07 +
-                         v * (1.8975210143928538e-09 + v * (1.0554905298115053e-11 + v * 4.5903691425510457e-14));
-    *result =
-        *rest * (0.3183098861837907 +
-                 v * (0.032251534433199816 + v * (0.0011602715472374097 + v * (2.1586579370149189e-05 + v * upper))));
-}
-/* 1/sqrt(x), x in [0, 1e38], but at most 6e18; 2^-52 from 1e-37. That of a float times the series of 1/sqrt(1 - d),
- * where x r^2 is 1 - d. */
-MCSI_CORE void mcsi_inverse_root(const mcsi_d *x, mcsi_d *result) {
-    const mcsi_d r = MCSI_WIDEN(1.0f / mcsi_sqrt(mcsi_max(MCSI_NARROW(*x), mcs_set(1e-37f))));
-    const mcsi_d d = 1.0 - *x * (r * r);
-    *result = r + r * (d * (0.5 + 0.375 * d));
+/* sin(x)/v, where v is x rest, for x in [0, pi], and rest is pi - x; 2^-51. The sine is an entire function of v and
+ * vanishes with it: a polynomial keeps its digits at both ends. */
+MCSI_CORE void mcsi_sine_over(const mcsi_d *v, mcsi_d *result) {
+    const mcsi_d v2 = *v * *v;
+    const mcsi_d lower =
+        (0.3183098861837907 + *v * 0.032251534433199816) + v2 * (0.0011602715472374097 + *v * 2.1586579370149189e-05);
+    const mcsi_d upper = (2.4609342067254438e-07 + *v * 1.8975210143928538e-09) +
+                         v2 * (1.0554905298115053e-11 + *v * 4.5903691425510457e-14);
+    *result = lower + v2 * v2 * upper;
 }
 /* s u + t v */
 MCSI_CORE void mcsi_combine(const mcsi_d *s, const mcsi_vec3_d *u, const mcsi_d *t, const mcsi_vec3_d *v,
@@ -5025,11 +5027,17 @@ MCSI_CORE void mcsi_combine(const mcsi_d *s, const mcsi_vec3_d *u, const mcsi_d 
     result->z = *s * u->z + *t * v->z;
 }
 
-/* Copies a prepared light of the scalar pass, which is nothing but doubles, to lane k of one of lanes, and back. */
+/* A prepared light of the scalar pass, which is nothing but doubles, as lane k of one of lanes. In the scalar pass it is
+ * assigned: compilers leave out what a sample does not need. */
+#if MCSI_W == 1
+#define MCSI_PUT_LANE(lanes, one, k) ((lanes) = (one))
+#else
+#define MCSI_PUT_LANE(lanes, one, k) mcsi_put_lane(&(lanes), &(one), sizeof(one), k)
 MCSI_CORE void mcsi_put_lane(void *lanes, const void *one, size_t bytes, int k) {
     for (size_t i = 0; i < bytes; i += sizeof(double))
         MCSI_COPY((char *)lanes + i * MCSI_W + (size_t)k * sizeof(double), (const char *)one + i, sizeof(double));
 }
+#endif
 #ifdef MCSI_PUBLIC
 MCSI_CORE void mcsi_take_lane(const void *lanes, void *one, size_t bytes, int k) {
     for (size_t i = 0; i < bytes; i += sizeof(double))
@@ -5045,21 +5053,36 @@ MCSI_CORE mcsi_scalar_vec3 mcsi_lane3(const mcs_vec3 *v, int k) {
 #endif
 
 #if MCSI_W == 1
-/* The angle of (x, y), y >= 0, in [0, pi]; 2^-51. 0 for (0, 0). It is the arctangent of a quotient up to tan(pi/8). */
-MCS_FN double mcsi_angle_d(double y, double x) {
+/* An angle in [0, pi], and pi less it. */
+typedef struct {
+    double angle, rest;
+} mcsi_half_turn;
+/* The angle of (x, y), y >= 0; 2^-51. 0 for (0, 0). It is a multiple of pi/4, and the arctangent of t, which is at most
+ * tan(pi/8). */
+MCS_FN mcsi_half_turn mcsi_angle_d(double y, double x) {
     const double size = x < 0.0 ? -x : x;
     const int steep = y > size;
-    const double a = steep ? size / y : size > 0.0 ? y / size : 0.0;
-    const int above = a > 0.41421356237309503;
-    const double t = above ? (a - 1.0) / (a + 1.0) : a;
+    const double less = steep ? size : y;
+    const double more = steep ? y : size;
+    const int between = less > 0.41421356237309503 * more;
+    const double above = less - (between ? more : 0.0);
+    const double t = more > 0.0 ? above / (more + (between ? less : 0.0)) : 0.0;
     const double z = t * t;
-    double s = 0.056883492268090105 + z * (-0.043480522157164625 + z * 0.021135373157693245);
-    s = -0.090907730748084138 + z * (0.076899534963068578 + z * (-0.066402339304294086 + z * s));
-    s = -0.14285714180976467 + z * (0.11111106180455945 + z * s);
-    s = -0.33333333333328439 + z * (0.1999999999885511 + z * s);
-    const double angle = (above ? 0.25 * MCSI_PI : 0.0) + (t + t * (z * s));
-    const double turned = steep ? 0.5 * MCSI_PI - angle : angle;
-    return x < 0.0 ? MCSI_PI - turned : turned;
+    const double z2 = z * z;
+    const double z4 = z2 * z2;
+    const double lower =
+        (-0.33333333333328439 + z * 0.1999999999885511) + z2 * (-0.14285714180976467 + z * 0.11111106180455945);
+    const double middle =
+        (-0.090907730748084138 + z * 0.076899534963068578) + z2 * (-0.066402339304294086 + z * 0.056883492268090105);
+    const double upper = -0.043480522157164625 + z * 0.021135373157693245;
+    const double arctangent = t + (t * z) * (lower + z4 * (middle + z4 * upper));
+    const double turned = steep == (x < 0.0) ? arctangent : -arctangent;
+    const int quarter = steep ? 2 - between : between;
+    const int quarters = x < 0.0 ? 4 - quarter : quarter;
+    mcsi_half_turn a;
+    a.angle = 0.25 * MCSI_PI * quarters + turned;
+    a.rest = 0.25 * MCSI_PI * (4 - quarters) - turned;
+    return a;
 }
 MCS_FN mcsi_vec3_d mcsi_make3_d(double x, double y, double z) {
     mcsi_vec3_d v;
@@ -5069,6 +5092,7 @@ MCS_FN mcsi_vec3_d mcsi_make3_d(double x, double y, double z) {
     return v;
 }
 MCS_FN mcsi_vec3_d mcsi_widened_d(mcs_vec3 v) { return mcsi_make3_d((double)v.x, (double)v.y, (double)v.z); }
+MCS_FN mcsi_vec3_d mcsi_times_d(double s, mcsi_vec3_d a) { return mcsi_make3_d(s * a.x, s * a.y, s * a.z); }
 /* a + s b */
 MCS_FN mcsi_vec3_d mcsi_add_d(mcsi_vec3_d a, double s, mcsi_vec3_d b) {
     return mcsi_make3_d(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
@@ -5084,6 +5108,11 @@ MCS_FN double mcsi_unit_d(mcsi_vec3_d *a) {
     const double inverse = ok ? 1.0 / length : 0.0;
     *a = ok ? mcsi_make3_d(a->x * inverse, a->y * inverse, a->z * inverse) : mcsi_make3_d(0.0, 0.0, 1.0);
     return inverse;
+}
+/* Whether a light is good that has a corner and two edges from there. */
+MCS_FN int mcsi_corners_ok(mcsi_vec3_d corner, mcsi_vec3_d edge, mcsi_vec3_d other_edge) {
+    const double area = mcsi_length_d(mcsi_cross_d(edge, other_edge));
+    return area > 0.0 && area <= 1e150 && mcsi_length_d(corner) <= 1e60;
 }
 MCS_FN double mcsi_at_most_d(double x, double most) { return x < most ? x : most; }
 /* The density for half a solid angle. */
@@ -5103,40 +5132,44 @@ MCS_FN double mcsi_per_angle_d(double angle) { return angle > 1e-38 ? 0.5 / angl
  * (d + t)/2 is half the solid angle of the strip before x, from x = -infinity, and (d - t)/2 half of that behind x.
  * Both are known as sums: half that of the strip before or behind the rectangle, and the share of the rectangle's own
  * that u1 gives. `rest` is pi - d. The products of the sines and of the cosines differ by cos(e0) cos(e1), so that with
- * size = 1/(cos(e0) cos(e1)) and q = size sin(before) sin(behind)
+ * p = scale sin(before) sin(behind), for any scale,
  *
- *   x = size sin(before - behind) / (2 sqrt(q (q + 1)))
+ *   x = across/along,   across = scale sin(before - behind)/2,   along^2 = p (p + scale cos(e0) cos(e1))
  *
- * The member `scale` is size/(y1 - y0), as the root is taken of q/(y1 - y0)^2, which is a float for any rectangle.
+ * The member `scale` is 1/sin(d). That makes the squares of both floats for any rectangle, and the last term
+ * p + 1/(y1 - y0).
  *
- * At that x, y is such that h = y/sqrt(1 + x^2 + y^2) is linear in u2. 1 + h and 1 - h are known of both ends without
- * cancellation, so are their means, and sqrt(1 - h^2) is the root of their product. */
+ * At that x, y is such that h = y/sqrt(1 + x^2 + y^2) is linear in u2. At both ends y is tan(e) and
+ *
+ *   h = along sin(e)/r,   1 - h^2 = (along^2 + across^2) cos^2(e)/r^2,   r^2 = along^2 + across^2 cos^2(e)
+ *
+ * 1 - h^2 in between is the mean of those and u2 (1 - u2) times the square of the difference of both h, which cancels
+ * nowhere. w_z^2 is (1 - h^2)/(1 + x^2), where w_z is the cosine of w and the normal. */
 #if MCSI_W > 1
 typedef struct {
     mcsi_vec3_d axis_x, axis_y, normal;
-    mcsi_d to_plane, x0, x1, y0, y1, size_y0, size_y1, per_x, per_y, before, angle, behind, rest, scale, pdf;
+    mcsi_d to_plane, x0, x1, y0, y1, sin_y0, sin_y1, cos2_y0, cos2_y1, per_x, per_y, before, angle, behind, rest, scale,
+        pdf;
 } mcs_spherical_rectangle;
 #endif
 #if MCSI_W == 1
 MCS_FN double mcsi_distance_d(double x, double y) { return mcsi_sqrt_d(1.0 + x * x + y * y); }
 /* Half the solid angle of the strip behind x, of a triangle with a corner at infinity, by Van Oosterom and Strackee.
- * For x < 0 it is what the strip behind -x leaves. r0 r1 + y0 y1 is a difference of squares over a sum where it
- * cancels. */
-MCS_FN double mcsi_half_behind_d(const mcs_spherical_rectangle *l, double x) {
+ * For x < 0 it is what the strip behind -x leaves of `strip`, half that of all the strip. r0 r1 + y0 y1 is a difference
+ * of squares over a sum where it cancels. */
+MCSI_CORE double mcsi_half_behind_d(const mcs_spherical_rectangle *l, double height, double strip, double x) {
     const double size = x < 0.0 ? -x : x;
-    const double height = 1.0 / l->per_y;
     const double r0 = mcsi_distance_d(x, l->y0);
     const double r1 = mcsi_distance_d(x, l->y1);
     const double product = l->y0 * l->y1;
     const double d2 = 1.0 + x * x;
-    const double cosine =
-        product < 0.0 ? d2 * (d2 + l->y0 * l->y0 + l->y1 * l->y1) / (r0 * r1 - product) : r0 * r1 + product;
-    const double angle = mcsi_angle_d(height, cosine + (size * (r0 + r1) + d2));
-    return x < 0.0 ? mcsi_angle_d(height, 1.0 + product) - angle : angle;
+    const double sum = r0 * r1 + (product < 0.0 ? -product : product);
+    const double cosine = product < 0.0 ? d2 * (d2 + l->y0 * l->y0 + l->y1 * l->y1) : sum * sum;
+    const mcsi_half_turn behind = mcsi_angle_d(height * sum, cosine + sum * (size * (r0 + r1) + d2));
+    return x < 0.0 ? strip - behind.angle : behind.angle;
 }
-/* Half the solid angle of the rectangle from x0 to x, whose area is given: that of two triangles, or what other angles
- * leave where that is more exact. */
-MCS_FN double mcsi_half_up_to_d(const mcs_spherical_rectangle *l, double x, double area) {
+/* Half the solid angle of a small rectangle from x0 to x, whose area is given: that of two triangles. */
+MCS_FN double mcsi_half_of_small_d(const mcs_spherical_rectangle *l, double x, double area) {
     const double y0 = l->y0;
     const double y1 = l->y1;
     const double r00 = mcsi_distance_d(l->x0, y0);
@@ -5147,57 +5180,74 @@ MCS_FN double mcsi_half_up_to_d(const mcs_spherical_rectangle *l, double x, doub
     const double across = r00 * r11 + (along + y0 * y1);
     const double below = r10 * across + r11 * (along + y0 * y0) + r00 * (1.0 + x * x + y0 * y1);
     const double above = r01 * across + r00 * (along + y1 * y1) + r11 * (1.0 + l->x0 * l->x0 + y0 * y1);
-    const double angle = mcsi_angle_d(area, below) + mcsi_angle_d(area, above);
-    const double left = ((MCSI_PI - l->rest) - l->before) - mcsi_half_behind_d(l, x);
-    return angle <= 1e-4 ? angle : left > 1e-38 ? left : 1e-38;
+    const mcsi_half_turn half_below = mcsi_angle_d(area, below);
+    const mcsi_half_turn half_above = mcsi_angle_d(area, above);
+    return half_below.angle + half_above.angle;
 }
 /* All members that x0, y0, per_x and per_y say. */
-MCS_FN void mcsi_spherical_rectangle_finish(mcs_spherical_rectangle *l) {
-    l->x1 = l->x0 + 1.0 / l->per_x;
-    l->y1 = l->y0 + 1.0 / l->per_y;
-    l->size_y0 = l->y0 < 0.0 ? -l->y0 : l->y0;
-    l->size_y1 = l->y1 < 0.0 ? -l->y1 : l->y1;
-    l->scale = l->per_y * mcsi_distance_d(0.0, l->y0) * mcsi_distance_d(0.0, l->y1);
-    l->before = mcsi_half_behind_d(l, -l->x0);
-    l->behind = mcsi_half_behind_d(l, l->x1);
-    l->rest = mcsi_angle_d(1.0 / l->per_y, -(1.0 + l->y0 * l->y1));
-    l->angle = mcsi_half_up_to_d(l, l->x1, 1.0 / (l->per_x * l->per_y));
+MCSI_CORE void mcsi_spherical_rectangle_finish(mcs_spherical_rectangle *l) {
+    const double width = 1.0 / l->per_x;
+    const double height = 1.0 / l->per_y;
+    l->x1 = l->x0 + width;
+    l->y1 = l->y0 + height;
+    const double size_0 = mcsi_distance_d(0.0, l->y0);
+    const double size_1 = mcsi_distance_d(0.0, l->y1);
+    const double cos_y0 = 1.0 / size_0;
+    const double cos_y1 = 1.0 / size_1;
+    l->sin_y0 = l->y0 * cos_y0;
+    l->sin_y1 = l->y1 * cos_y1;
+    l->cos2_y0 = cos_y0 * cos_y0;
+    l->cos2_y1 = cos_y1 * cos_y1;
+    l->scale = l->per_y * (size_0 * size_1);
+    const mcsi_half_turn strip = mcsi_angle_d(height, 1.0 + l->y0 * l->y1);
+    l->rest = strip.rest;
+    l->before = mcsi_half_behind_d(l, height, strip.angle, -l->x0);
+    l->behind = mcsi_half_behind_d(l, height, strip.angle, l->x1);
+    l->angle = strip.angle - l->before - l->behind;
+    if (l->angle <= 1e-4) l->angle = mcsi_half_of_small_d(l, l->x1, width * height);
     l->pdf = mcsi_per_angle_d(l->angle);
 }
-/* Returns whether the light is good. A light that is not to be drawn from becomes a small one about its centre. */
-MCS_FN int mcsi_spherical_rectangle_prepare(mcs_spherical_rectangle *l, mcs_vec3 p, mcs_vec3 c, mcs_vec3 edge_x,
-                                            mcs_vec3 edge_y) {
-    const mcsi_vec3_d corner = mcsi_from_to(p, c);
-    const mcsi_vec3_d along_y = mcsi_widened_d(edge_y);
-    l->axis_x = mcsi_widened_d(edge_x);
-    l->normal = mcsi_cross_d(l->axis_x, along_y);
-    mcsi_vec3_d centre = mcsi_add_d(mcsi_add_d(corner, 0.5, l->axis_x), 0.5, along_y);
-    const double volume = MCSI_DOT_D(corner, l->normal);
-    const double per_edge = mcsi_unit_d(&l->axis_x);
-    const double per_area = mcsi_unit_d(&l->normal);
-    const double z = volume < 0.0 ? -volume * per_area : volume * per_area;
-    const int ok = per_area > 0.0 && mcsi_length_d(corner) <= 1e60;
-    l->axis_y = mcsi_cross_d(l->normal, l->axis_x);
-    if (volume < 0.0) l->normal = mcsi_make3_d(-l->normal.x, -l->normal.y, -l->normal.z);
-    const double extent = mcsi_length_d(corner) + mcsi_length_d(along_y) + (ok ? 1.0 / per_edge : 0.0);
-    if (ok && z > 1e-18 * extent) {
-        l->to_plane = z;
-        l->x0 = MCSI_DOT_D(corner, l->axis_x) / z;
-        l->y0 = MCSI_DOT_D(corner, l->axis_y) / z;
-        l->per_x = mcsi_at_most_d(z * per_edge, 1e30);
-        l->per_y = mcsi_at_most_d(z * (per_area / per_edge), 1e30);
-        mcsi_spherical_rectangle_finish(l);
-        return 1;
-    }
-    mcsi_unit_d(&centre);
+/* The place of a light that is not to be drawn from: about the direction of its centre. */
+MCSI_CORE void mcsi_spherical_rectangle_darken(mcs_spherical_rectangle *l, mcsi_vec3_d centre) {
     l->normal = centre;
+    mcsi_unit_d(&l->normal);
     l->axis_x = l->axis_y = mcsi_make3_d(0.0, 0.0, 0.0);
     l->to_plane = 0.0;
     l->x0 = l->y0 = -0.5e-9;
     l->per_x = l->per_y = 1e9;
-    mcsi_spherical_rectangle_finish(l);
-    l->pdf = 0.0;
-    return ok;
+}
+/* A light that is not to be drawn from is small, and its density 0. */
+MCSI_CORE mcs_spherical_rectangle mcsi_spherical_rectangle_prepare(mcs_vec3 p, mcs_vec3 c, mcs_vec3 edge_x,
+                                                                   mcs_vec3 edge_y) {
+    mcs_spherical_rectangle l;
+    const mcsi_vec3_d corner = mcsi_from_to(p, c);
+    const mcsi_vec3_d along_x = mcsi_widened_d(edge_x);
+    const mcsi_vec3_d along_y = mcsi_widened_d(edge_y);
+    const mcsi_vec3_d normal = mcsi_cross_d(along_x, along_y);
+    const double volume = MCSI_DOT_D(corner, normal);
+    const double edge2 = MCSI_DOT_D(along_x, along_x);
+    const double area2 = MCSI_DOT_D(normal, normal);
+    const double extent2 = MCSI_DOT_D(corner, corner) + edge2 + MCSI_DOT_D(along_y, along_y);
+    const int lit = volume * volume > 1e-36 * extent2 * area2;
+    if (lit) {
+        const double turn = volume < 0.0 ? -1.0 : 1.0;
+        const double per_edge = 1.0 / mcsi_sqrt_d(edge2);
+        const double per_area = 1.0 / mcsi_sqrt_d(area2);
+        l.axis_x = mcsi_times_d(per_edge, along_x);
+        l.normal = mcsi_times_d(per_area, normal);
+        l.axis_y = mcsi_cross_d(l.normal, l.axis_x);
+        l.normal = mcsi_times_d(turn, l.normal);
+        l.to_plane = turn * volume * per_area;
+        l.x0 = MCSI_DOT_D(corner, l.axis_x) / l.to_plane;
+        l.y0 = MCSI_DOT_D(corner, l.axis_y) / l.to_plane;
+        l.per_x = mcsi_at_most_d(l.to_plane * per_edge, 1e30);
+        l.per_y = mcsi_at_most_d(l.to_plane * (per_area / per_edge), 1e30);
+    } else {
+        mcsi_spherical_rectangle_darken(&l, mcsi_add_d(mcsi_add_d(corner, 0.5, along_x), 0.5, along_y));
+    }
+    mcsi_spherical_rectangle_finish(&l);
+    if (!lit) l.pdf = 0.0;
+    return l;
 }
 /* u of the direction w; what misses the light is moved to its side. */
 MCS_FN mcs_vec2 mcsi_spherical_rectangle_find(const mcs_spherical_rectangle *l, mcs_vec3 w) {
@@ -5209,7 +5259,11 @@ MCS_FN mcs_vec2 mcsi_spherical_rectangle_find(const mcs_spherical_rectangle *l, 
     const double w_y = MCSI_DOT_D(l->axis_y, direction);
     const double x = w_x < l->x0 * z ? l->x0 : w_x > l->x1 * z ? l->x1 : w_x / z;
     const double y = w_y < l->y0 * z ? l->y0 : w_y > l->y1 * z ? l->y1 : w_y / z;
-    u.x = (float)mcsi_at_most_d(mcsi_half_up_to_d(l, x, (x - l->x0) / l->per_y) / l->angle, 1.0);
+    const double height = 1.0 / l->per_y;
+    const mcsi_half_turn strip = mcsi_angle_d(height, 1.0 + l->y0 * l->y1);
+    double passed = strip.angle - l->before - mcsi_half_behind_d(l, height, strip.angle, x);
+    if (passed <= 1e-4) passed = mcsi_half_of_small_d(l, x, (x - l->x0) * height);
+    u.x = (float)mcsi_at_most_d(passed / l->angle, 1.0);
     const double r = mcsi_distance_d(x, y);
     const double r0 = mcsi_distance_d(x, l->y0);
     const double r1 = mcsi_distance_d(x, l->y1);
@@ -5223,90 +5277,86 @@ MCS_FN mcs_vec2 mcsi_spherical_rectangle_find(const mcs_spherical_rectangle *l, 
 }
 #endif
 
-/* x for u1. */
-MCSI_CORE void mcsi_spherical_rectangle_x(const mcs_spherical_rectangle *l, const mcsi_d *u, mcsi_d *x) {
+/* For x of u1: across, along^2. */
+MCSI_CORE void mcsi_spherical_rectangle_x(const mcs_spherical_rectangle *l, const mcsi_d *u, mcsi_d *across,
+                                          mcsi_d *along2) {
     const mcsi_d before = l->before + *u * l->angle;
     const mcsi_d behind = l->behind + (1.0 - *u) * l->angle;
-    const mcsi_d not_before = l->rest + behind;
-    const mcsi_d not_behind = l->rest + before;
+    const mcsi_d v_before = before * (l->rest + behind);
+    const mcsi_d v_behind = behind * (l->rest + before);
     mcsi_d sine_before;
     mcsi_d sine_behind;
-    mcsi_sine_over_x(&before, &not_before, &sine_before);
-    mcsi_sine_over_x(&behind, &not_behind, &sine_behind);
+    mcsi_sine_over(&v_before, &sine_before);
+    mcsi_sine_over(&v_behind, &sine_behind);
     /* the sine of |before - behind|, which pi exceeds by `rest` and twice the smaller one */
     const mcsi_d t = before - behind;
-    const mcs_f zero = mcs_set(0.0f);
-    const mcsi_d left = MCSI_WIDEN(mcsi_sel(MCSI_NARROW(t) < 0.0f, mcs_set(1.0f), zero));
-    const mcsi_d size = t * (1.0 - 2.0 * left);
-    const mcsi_d not_size = l->rest + 2.0 * (left * before + (1.0 - left) * behind);
+    const mcsi_d sign = MCSI_WIDEN(mcsi_with_sign(mcs_set(1.0f), MCSI_NARROW(t)));
+    const mcsi_d v_t = sign * t * (l->rest + ((1.0 - sign) * before + (1.0 + sign) * behind));
     mcsi_d sine;
-    mcsi_sine_over_x(&size, &not_size, &sine);
-    const mcsi_d product = l->scale * (before * sine_before) * (behind * sine_behind);
-    const mcsi_d q = product * l->per_y;
-    const mcsi_d q_plus_1 = 1.0 + product * (l->y1 - l->y0);
-    mcsi_d root;
-    mcsi_d other_root;
-    mcsi_inverse_root(&q, &root);
-    mcsi_inverse_root(&q_plus_1, &other_root);
-    *x = 0.5 * l->scale * (t * sine) * root * other_root;
+    mcsi_sine_over(&v_t, &sine);
+    const mcsi_d p = l->scale * ((v_before * sine_before) * (v_behind * sine_behind));
+    *across = (0.5 * l->scale) * (sign * (v_t * sine));
+    *along2 = p * (p + l->per_y);
 }
-/* 1 + h and 1 - h at the end y of the line at x, for d2 = 1 + x^2. */
-MCSI_CORE void mcsi_spherical_rectangle_end(const mcsi_d *d2, const mcsi_d *y, const mcsi_d *size_y, mcsi_d *plus,
-                                            mcsi_d *minus) {
-    const mcsi_d r2 = *d2 + *y * *y;
-    mcsi_d per_r;
-    mcsi_inverse_root(&r2, &per_r);
-    const mcsi_d less = *d2 / (r2 * per_r + *size_y); /* r - |y| */
-    *plus = (less + (*size_y + *y)) * per_r;
-    *minus = (less + (*size_y - *y)) * per_r;
+/* For y of u2: h/along, w_z^2. */
+MCSI_CORE void mcsi_spherical_rectangle_y(const mcs_spherical_rectangle *l, const mcsi_d *u, const mcsi_d *across,
+                                          const mcsi_d *along2, mcsi_d *h, mcsi_d *w_z2) {
+    const mcsi_d across2 = *across * *across;
+    const mcsi_d level2 = *along2 / (*along2 + across2); /* 1/(1 + x^2) */
+    const mcsi_d end2_0 = *along2 + across2 * l->cos2_y0;
+    const mcsi_d end2_1 = *along2 + across2 * l->cos2_y1;
+    mcsi_d per_0;
+    mcsi_d per_1;
+    mcsi_inverse_root(&end2_0, &per_0);
+    mcsi_inverse_root(&end2_1, &per_1);
+    const mcsi_d h_0 = l->sin_y0 * per_0;
+    const mcsi_d h_1 = l->sin_y1 * per_1;
+    const mcsi_d span = h_1 - h_0;
+    const mcsi_d not_u = 1.0 - *u;
+    const mcsi_d ends2 = not_u * (l->cos2_y0 * (per_0 * per_0)) + *u * (l->cos2_y1 * (per_1 * per_1));
+    *h = h_0 + *u * span;
+    *w_z2 = *along2 * (ends2 + not_u * *u * level2 * (span * span));
 }
 MCSI_SAMPLE mcs_light_point mcs_spherical_rectangle_sample(const mcs_spherical_rectangle *l, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
     const mcsi_d u = MCSI_WIDEN(mcsi_sane_u(u1, &ok));
     const mcsi_d v = MCSI_WIDEN(mcsi_sane_u(u2, &ok));
-    mcsi_d x;
-    mcsi_spherical_rectangle_x(l, &u, &x);
-    const mcsi_d d2 = 1.0 + x * x;
-    mcsi_d per_d;
-    mcsi_inverse_root(&d2, &per_d);
-    mcsi_d plus0;
-    mcsi_d minus0;
-    mcsi_spherical_rectangle_end(&d2, &l->y0, &l->size_y0, &plus0, &minus0);
-    mcsi_d plus1;
-    mcsi_d minus1;
-    mcsi_spherical_rectangle_end(&d2, &l->y1, &l->size_y1, &plus1, &minus1);
-    const mcsi_d plus = (1.0 - v) * plus0 + v * plus1;
-    const mcsi_d minus = (1.0 - v) * minus0 + v * minus1;
-    const mcsi_d cos2 = plus * minus; /* 1 - h^2 */
-    mcsi_d per_cos;
-    mcsi_inverse_root(&cos2, &per_cos);
-    const mcsi_d h = 0.5 * (plus - minus);
-    const mcsi_d y = h * per_cos * (d2 * per_d);
-    const mcsi_d distance = l->to_plane * (per_cos * (d2 * per_d));
-    const mcsi_d w_z = cos2 * per_cos * per_d;
+    mcsi_d across;
+    mcsi_d along2;
+    mcsi_spherical_rectangle_x(l, &u, &across, &along2);
+    mcsi_d per_along;
+    mcsi_inverse_root(&along2, &per_along);
+    mcsi_d h;
+    mcsi_d w_z2;
+    mcsi_spherical_rectangle_y(l, &v, &across, &along2, &h, &w_z2);
+    mcsi_d r; /* sqrt(1 + x^2 + y^2) */
+    mcsi_inverse_root(&w_z2, &r);
+    const mcsi_d x = across * per_along;
+    const mcsi_d w_y = h * (along2 * per_along);
+    const mcsi_d y = w_y * r;
+    const mcsi_d w_z = w_z2 * r;
     const mcsi_d w_x = x * w_z;
     const mcs_f zero = mcs_set(0.0f);
     const mcs_f one = mcs_set(1.0f);
     mcs_light_point s;
-    s.w.x = MCSI_NARROW(w_x * l->axis_x.x + h * l->axis_y.x + w_z * l->normal.x);
-    s.w.y = MCSI_NARROW(w_x * l->axis_x.y + h * l->axis_y.y + w_z * l->normal.y);
-    s.w.z = MCSI_NARROW(w_x * l->axis_x.z + h * l->axis_y.z + w_z * l->normal.z);
+    s.w.x = MCSI_NARROW(w_x * l->axis_x.x + w_y * l->axis_y.x + w_z * l->normal.x);
+    s.w.y = MCSI_NARROW(w_x * l->axis_x.y + w_y * l->axis_y.y + w_z * l->normal.y);
+    s.w.z = MCSI_NARROW(w_x * l->axis_x.z + w_y * l->axis_y.z + w_z * l->normal.z);
     s.pdf = mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
-    s.distance = mcsi_sane_result(s.pdf > 0.0f, MCSI_NARROW(distance));
+    s.distance = mcsi_sane_result(s.pdf > 0.0f, MCSI_NARROW(l->to_plane * r));
     s.x = mcsi_min(mcsi_max(MCSI_NARROW((x - l->x0) * l->per_x), zero), one);
     s.y = mcsi_min(mcsi_max(MCSI_NARROW((y - l->y0) * l->per_y), zero), one);
     return s;
 }
 #ifdef MCSI_PUBLIC
-MCSI_FN mcs_spherical_rectangle mcs_spherical_rectangle_make(mcs_vec3 p, mcs_vec3 c, mcs_vec3 edge_x, mcs_vec3 edge_y) {
+MCSI_SAMPLE mcs_spherical_rectangle mcs_spherical_rectangle_make(mcs_vec3 p, mcs_vec3 c, mcs_vec3 edge_x,
+                                                                 mcs_vec3 edge_y) {
+    MCSI_REQUIRE(mcsi_corners_ok(mcsi_from_to(p, c), mcsi_widened_d(edge_x), mcsi_widened_d(edge_y)));
     mcs_spherical_rectangle l;
     for (int k = 0; k < MCSI_W; k++) {
-        mcsi_scalar_spherical_rectangle one;
-        const int ok = mcsi_spherical_rectangle_prepare(&one, mcsi_lane3(&p, k), mcsi_lane3(&c, k),
-                                                        mcsi_lane3(&edge_x, k), mcsi_lane3(&edge_y, k));
-        MCSI_REQUIRE(ok);
-        (void)ok;
-        mcsi_put_lane(&l, &one, sizeof one, k);
+        const mcsi_scalar_spherical_rectangle one = mcsi_spherical_rectangle_prepare(
+            mcsi_lane3(&p, k), mcsi_lane3(&c, k), mcsi_lane3(&edge_x, k), mcsi_lane3(&edge_y, k));
+        MCSI_PUT_LANE(l, one, k);
     }
     return l;
 }
@@ -5360,30 +5410,26 @@ typedef struct {
 #if MCSI_W == 1
 /* The normal of the side between two corners, for their distances: s a x (b - a). */
 MCS_FN mcsi_vec3_d mcsi_side_d(double s, mcsi_vec3_d a, mcsi_vec3_d edge) {
-    const mcsi_vec3_d normal = mcsi_cross_d(a, edge);
-    return mcsi_make3_d(s * normal.x, s * normal.y, s * normal.z);
+    return mcsi_times_d(s, mcsi_cross_d(a, edge));
 }
 /* The upper half of the digits of each coordinate: products of two such are exact. */
 MCS_FN mcsi_vec3_d mcsi_high_d(mcsi_vec3_d v) {
-    const mcsi_vec3_d t = mcsi_make3_d(134217729.0 * v.x, 134217729.0 * v.y, 134217729.0 * v.z); /* 2^27 + 1 */
+    const mcsi_vec3_d t = mcsi_times_d(134217729.0, v); /* 2^27 + 1 */
     return mcsi_make3_d(t.x - (t.x - v.x), t.y - (t.y - v.y), t.z - (t.z - v.z));
 }
-/* Six times the volume of the tetrahedron of p and a triangle, signed. It keeps most digits if a is next to p. What
- * cancels between the sides of a thin triangle is exact. */
-MCS_FN double mcsi_volume_d(mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
-    const mcsi_vec3_d to_a = mcsi_from_to(p, a);
-    const mcsi_vec3_d to_b = mcsi_from_to(a, b);
-    const mcsi_vec3_d to_c = mcsi_from_to(a, c);
-    const mcsi_vec3_d high_b = mcsi_high_d(to_b);
-    const mcsi_vec3_d high_c = mcsi_high_d(to_c);
+/* Six times the volume of the tetrahedron of p and a triangle, by two of its edges and the corner next to p, signed.
+ * What cancels between the edges of a thin triangle is exact. */
+MCS_FN double mcsi_volume_d(mcsi_vec3_d edge_b, mcsi_vec3_d edge_c, mcsi_vec3_d corner) {
+    const mcsi_vec3_d high_b = mcsi_high_d(edge_b);
+    const mcsi_vec3_d high_c = mcsi_high_d(edge_c);
     const mcsi_vec3_d high = mcsi_cross_d(high_b, high_c);
-    const mcsi_vec3_d low = mcsi_add_d(mcsi_cross_d(high_b, mcsi_add_d(to_c, -1.0, high_c)), 1.0,
-                                       mcsi_cross_d(mcsi_add_d(to_b, -1.0, high_b), to_c));
-    return MCSI_DOT_D(to_a, high) + MCSI_DOT_D(to_a, low);
+    const mcsi_vec3_d low = mcsi_add_d(mcsi_cross_d(high_b, mcsi_add_d(edge_c, -1.0, high_c)), 1.0,
+                                       mcsi_cross_d(mcsi_add_d(edge_b, -1.0, high_b), edge_c));
+    return MCSI_DOT_D(corner, high) + MCSI_DOT_D(corner, low);
 }
 /* Sets the cosines of half the sides, and returns 1 + a.b + b.c + c.a. That is (a + b).(a + c): the two shorter sums keep
  * its digits where p is between corners. *shorter is half the length of both together. */
-MCS_FN double mcsi_triangle_cosine_d(mcs_spherical_triangle *l, double *shorter) {
+MCSI_CORE double mcsi_triangle_cosine_d(mcs_spherical_triangle *l, double *shorter) {
     const mcsi_vec3_d bc = mcsi_add_d(l->b, 1.0, l->c);
     const mcsi_vec3_d ca = mcsi_add_d(l->c, 1.0, l->a);
     const mcsi_vec3_d ab = mcsi_add_d(l->a, 1.0, l->b);
@@ -5396,39 +5442,39 @@ MCS_FN double mcsi_triangle_cosine_d(mcs_spherical_triangle *l, double *shorter)
     if (l->cos_bc == longest) return MCSI_DOT_D(ca, ab);
     return l->cos_ca == longest ? MCSI_DOT_D(ab, bc) : MCSI_DOT_D(bc, ca);
 }
-/* Returns whether the light is good. A light that is not to be drawn from becomes its centre. */
-MCS_FN int mcsi_spherical_triangle_prepare(mcs_spherical_triangle *l, mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
+/* A light that is not to be drawn from becomes its centre. */
+MCSI_CORE mcs_spherical_triangle mcsi_spherical_triangle_prepare(mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
+    mcs_spherical_triangle l;
     const mcsi_vec3_d to_a = mcsi_from_to(p, a);
     const mcsi_vec3_d to_b = mcsi_from_to(p, b);
     const mcsi_vec3_d to_c = mcsi_from_to(p, c);
-    const mcsi_vec3_d normal = mcsi_cross_d(mcsi_from_to(a, b), mcsi_from_to(a, c));
-    mcsi_vec3_d centre = mcsi_add_d(mcsi_add_d(to_a, 1.0, to_b), 1.0, to_c);
-    const int ok = mcsi_length_d(normal) > 0.0 && mcsi_length_d(centre) <= 1e60;
-    l->a = to_a;
-    l->b = to_b;
-    l->c = to_c;
-    l->per_a = mcsi_unit_d(&l->a);
-    l->per_b = mcsi_unit_d(&l->b);
-    l->per_c = mcsi_unit_d(&l->c);
-    const double volume = l->per_b > l->per_a && l->per_b > l->per_c ? mcsi_volume_d(p, b, c, a)
-                          : l->per_c > l->per_a                      ? mcsi_volume_d(p, c, a, b)
-                                                                     : mcsi_volume_d(p, a, b, c);
+    l.a = to_a;
+    l.b = to_b;
+    l.c = to_c;
+    l.per_a = mcsi_unit_d(&l.a);
+    l.per_b = mcsi_unit_d(&l.b);
+    l.per_c = mcsi_unit_d(&l.c);
+    const mcsi_vec3_d a_or_b = l.per_b > l.per_a ? to_b : to_a;
+    const mcsi_vec3_d next_to_p = l.per_c > l.per_a && l.per_c > l.per_b ? to_c : a_or_b;
+    const double volume = mcsi_volume_d(mcsi_from_to(a, b), mcsi_from_to(a, c), next_to_p);
     const double turn = volume < 0.0 ? -1.0 : 1.0;
-    l->past_a = mcsi_side_d(turn * l->per_b * l->per_c, to_b, mcsi_from_to(b, c));
-    l->past_b = mcsi_side_d(turn * l->per_c * l->per_a, to_c, mcsi_from_to(c, a));
-    l->past_c = mcsi_side_d(turn * l->per_a * l->per_b, to_a, mcsi_from_to(a, b));
-    const double sine = turn * volume * l->per_a * l->per_b * l->per_c;
+    l.past_a = mcsi_side_d(turn * l.per_b * l.per_c, to_b, mcsi_from_to(b, c));
+    l.past_b = mcsi_side_d(turn * l.per_c * l.per_a, to_c, mcsi_from_to(c, a));
+    l.past_c = mcsi_side_d(turn * l.per_a * l.per_b, to_a, mcsi_from_to(a, b));
+    const double sine = turn * volume * (l.per_a * l.per_b * l.per_c);
     double shorter;
-    const double cosine = mcsi_triangle_cosine_d(l, &shorter);
-    l->angle = mcsi_angle_d(sine, cosine);
-    l->rest = mcsi_angle_d(sine, -cosine);
-    l->pdf = mcsi_per_angle_d(l->angle);
-    if (ok && sine > 0.0 && (sine > 1e-8 * shorter || cosine > 1e-8 * shorter)) return 1;
-    mcsi_unit_d(&centre);
-    l->a = l->b = l->c = centre;
-    l->per_a = l->per_b = l->per_c = l->cos_bc = l->cos_ca = l->cos_ab = l->angle = l->rest = 1.0;
-    l->pdf = 0.0;
-    return ok;
+    const double cosine = mcsi_triangle_cosine_d(&l, &shorter);
+    const mcsi_half_turn half = mcsi_angle_d(sine, cosine);
+    l.angle = half.angle;
+    l.rest = half.rest;
+    l.pdf = mcsi_per_angle_d(half.angle);
+    if (sine > 0.0 && (sine > 1e-8 * shorter || cosine > 1e-8 * shorter)) return l;
+    l.a = mcsi_add_d(mcsi_add_d(to_a, 1.0, to_b), 1.0, to_c);
+    mcsi_unit_d(&l.a);
+    l.b = l.c = l.a;
+    l.per_a = l.per_b = l.per_c = l.cos_bc = l.cos_ca = l.cos_ab = l.angle = l.rest = 1.0;
+    l.pdf = 0.0;
+    return l;
 }
 /* u of the direction w. The weights of a and c in w, as far as they are positive, are those of C'; c/a is the positive
  * root of a quadratic equation, whose terms are added with one sign. */
@@ -5444,14 +5490,15 @@ MCS_FN mcs_vec2 mcsi_spherical_triangle_find(const mcs_spherical_triangle *l, mc
     const double root = mcsi_sqrt_d(less * less + 2.0 * l->cos_ca * part_c * mixed);
     const double c = l->cos_bc * (less > 0.0 ? less + root : 2.0 * l->cos_ca * part_c);
     const double a = l->cos_ab * (less > 0.0 ? mixed : root - less);
+    const double v = l->angle * l->rest;
     double sine;
-    mcsi_sine_over_x(&l->angle, &l->rest, &sine);
-    const double half_angle = 0.5 * l->angle;
-    const double not_half = l->rest + half_angle;
+    mcsi_sine_over(&v, &sine);
+    const double half_v = 0.5 * l->angle * (l->rest + 0.5 * l->angle);
     double half_sine;
-    mcsi_sine_over_x(&half_angle, &not_half, &half_sine);
-    half_sine *= half_angle;
-    u.x = (float)(mcsi_angle_d(c * l->angle * sine, a + c * (1.0 - 2.0 * half_sine * half_sine)) / l->angle);
+    mcsi_sine_over(&half_v, &half_sine);
+    half_sine *= half_v;
+    const mcsi_half_turn passed = mcsi_angle_d(c * v * sine, a + c * (1.0 - 2.0 * half_sine * half_sine));
+    u.x = (float)(passed.angle / l->angle);
     mcsi_unit_d(&direction);
     mcsi_vec3_d end = mcsi_make3_d(part_a * l->a.x + part_c * l->c.x, part_a * l->a.y + part_c * l->c.y,
                                    part_a * l->a.z + part_c * l->c.z);
@@ -5465,21 +5512,31 @@ MCS_FN mcs_vec2 mcsi_spherical_triangle_find(const mcs_spherical_triangle *l, mc
 }
 #endif
 
-/* The weights of the unit vectors to a and c in C' for u1. */
+/* The weights of the unit vectors to a and c in C' for u1. The square of its length is a sum without cancellation. */
 MCSI_CORE void mcsi_spherical_triangle_end(const mcs_spherical_triangle *l, const mcsi_d *u, mcsi_d *part_a,
                                            mcsi_d *part_c) {
+    const mcsi_d not_u = 1.0 - *u;
     const mcsi_d share_c = *u * l->angle;
-    const mcsi_d share_a = (1.0 - *u) * l->angle;
+    const mcsi_d share_a = not_u * l->angle;
     const mcsi_d not_c = l->rest + share_a;
     const mcsi_d not_a = l->rest + share_c;
+    const mcsi_d v_c = share_c * not_c;
+    const mcsi_d v_a = share_a * not_a;
     mcsi_d sine_c;
     mcsi_d sine_a;
-    mcsi_sine_over_x(&share_c, &not_c, &sine_c);
-    mcsi_sine_over_x(&share_a, &not_a, &sine_a);
-    const mcsi_d c = l->cos_ab * (*u * sine_c);
-    const mcsi_d a = l->cos_bc * ((1.0 - *u) * sine_a);
-    *part_a = a * (a * l->cos_ca + c);
-    *part_c = c * (c * l->cos_ca + a);
+    mcsi_sine_over(&v_c, &sine_c);
+    mcsi_sine_over(&v_a, &sine_a);
+    const mcsi_d c = (l->cos_ab * *u * not_c) * sine_c;
+    const mcsi_d a = (l->cos_bc * not_u * not_a) * sine_a;
+    const mcsi_d weight_a = a * (a * l->cos_ca + c);
+    const mcsi_d weight_c = c * (c * l->cos_ca + a);
+    const mcsi_d less = weight_a - weight_c;
+    const mcsi_d twice = 2.0 * l->cos_ca;
+    const mcsi_d length2 = less * less + (twice * weight_a) * (twice * weight_c);
+    mcsi_d per_length;
+    mcsi_inverse_root(&length2, &per_length);
+    *part_a = weight_a * per_length;
+    *part_c = weight_c * per_length;
 }
 MCSI_SAMPLE mcs_light_point mcs_spherical_triangle_sample(const mcs_spherical_triangle *l, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
@@ -5490,24 +5547,22 @@ MCSI_SAMPLE mcs_light_point mcs_spherical_triangle_sample(const mcs_spherical_tr
     mcsi_spherical_triangle_end(l, &u, &part_a, &part_c);
     mcsi_vec3_d end;
     mcsi_combine(&part_a, &l->a, &part_c, &l->c, &end);
-    const mcsi_d length2 = MCSI_DOT_D(end, end);
-    mcsi_d per_length;
-    mcsi_inverse_root(&length2, &per_length);
     mcsi_vec3_d sum;
-    sum.x = l->b.x + per_length * end.x;
-    sum.y = l->b.y + per_length * end.y;
-    sum.z = l->b.z + per_length * end.z;
+    sum.x = l->b.x + end.x;
+    sum.y = l->b.y + end.y;
+    sum.z = l->b.z + end.z;
     const mcsi_d k2 = 0.25 * MCSI_DOT_D(sum, sum);
-    const mcsi_d square = v * (v + (1.0 - v) / k2);
+    const mcsi_d share = v * ((1.0 - v) + v * k2);
+    const mcsi_d square = share * k2;
     mcsi_d root;
     mcsi_inverse_root(&square, &root);
-    const mcsi_d q = square * root * per_length;
-    const mcsi_d part_b = 1.0 - 2.0 * v * (1.0 - k2) - q * MCSI_DOT_D(end, l->b);
+    const mcsi_d q = share * root; /* sqrt(share/k2) */
+    const mcsi_d part_b = (1.0 - 2.0 * v * (1.0 - k2)) - q * (2.0 * k2 - 1.0);
     mcsi_vec3_d w;
     mcsi_combine(&part_b, &l->b, &q, &end, &w);
-    const mcsi_d at_a = q * part_a * l->per_a;
+    const mcsi_d at_a = q * (part_a * l->per_a);
     const mcsi_d at_b = part_b * l->per_b;
-    const mcsi_d per_sum = 1.0 / (at_a + at_b + q * part_c * l->per_c);
+    const mcsi_d per_sum = 1.0 / (at_a + at_b + q * (part_c * l->per_c));
     mcs_light_point s;
     s.w = mcsi_vec3(MCSI_NARROW(w.x), MCSI_NARROW(w.y), MCSI_NARROW(w.z));
     s.pdf = mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
@@ -5517,15 +5572,13 @@ MCSI_SAMPLE mcs_light_point mcs_spherical_triangle_sample(const mcs_spherical_tr
     return s;
 }
 #ifdef MCSI_PUBLIC
-MCSI_FN mcs_spherical_triangle mcs_spherical_triangle_make(mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
+MCSI_SAMPLE mcs_spherical_triangle mcs_spherical_triangle_make(mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
+    MCSI_REQUIRE(mcsi_corners_ok(mcsi_from_to(p, a), mcsi_from_to(a, b), mcsi_from_to(a, c)));
     mcs_spherical_triangle l;
     for (int k = 0; k < MCSI_W; k++) {
-        mcsi_scalar_spherical_triangle one;
-        const int ok = mcsi_spherical_triangle_prepare(&one, mcsi_lane3(&p, k), mcsi_lane3(&a, k), mcsi_lane3(&b, k),
-                                                       mcsi_lane3(&c, k));
-        MCSI_REQUIRE(ok);
-        (void)ok;
-        mcsi_put_lane(&l, &one, sizeof one, k);
+        const mcsi_scalar_spherical_triangle one =
+            mcsi_spherical_triangle_prepare(mcsi_lane3(&p, k), mcsi_lane3(&a, k), mcsi_lane3(&b, k), mcsi_lane3(&c, k));
+        MCSI_PUT_LANE(l, one, k);
     }
     return l;
 }
@@ -5602,7 +5655,7 @@ MCSI_LOOP void mcsi_disk_light_loop(mcsi_scalar_vec3 p, mcsi_scalar_vec3 centre,
 #define MCSI_LOOP_OF_LIGHT(NAME)                                                                                      \
     MCSI_LOOP void mcsi_##NAME##_loop(const mcsi_scalar_##NAME *l, const mcsi_batch *call) {                          \
         mcs_##NAME lanes;                                                                                             \
-        for (int k = 0; k < MCSI_W; k++) mcsi_put_lane(&lanes, l, sizeof *l, k);                                      \
+        for (int k = 0; k < MCSI_W; k++) MCSI_PUT_LANE(lanes, *l, k);                                                 \
         MCSI_EACH(b, call) { mcsi_out_light_point(&b, mcs_##NAME##_sample(&lanes, mcsi_in(&b, 0), mcsi_in(&b, 1))); } \
     }
 MCSI_CORE void mcsi_out_light_point(const mcsi_batch *b, mcs_light_point s) {
@@ -11333,6 +11386,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_D
 #undef MCSI_Q
 #undef MCSI_LANE
+#undef MCSI_PUT_LANE
 #undef MCSI_WIDEN
 #undef MCSI_NARROW
 #undef MCSI_INT_WIDEN
@@ -11827,7 +11881,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_side MCSI_(side)
 #define mcsi_side_load MCSI_(side_load)
 #define mcsi_sincos_turns MCSI_(sincos_turns)
-#define mcsi_sine_over_x MCSI_(sine_over_x)
+#define mcsi_sine_over MCSI_(sine_over)
 #define mcsi_slope_brdf MCSI_(slope_brdf)
 #define mcsi_slope_draw MCSI_(slope_draw)
 #define mcsi_slope_h_sample MCSI_(slope_h_sample)
@@ -11846,9 +11900,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_sobol_loop MCSI_(sobol_loop)
 #define mcsi_sobol_reversed MCSI_(sobol_reversed)
 #define mcsi_sphere_loop MCSI_(sphere_loop)
-#define mcsi_spherical_rectangle_end MCSI_(spherical_rectangle_end)
 #define mcsi_spherical_rectangle_loop MCSI_(spherical_rectangle_loop)
 #define mcsi_spherical_rectangle_x MCSI_(spherical_rectangle_x)
+#define mcsi_spherical_rectangle_y MCSI_(spherical_rectangle_y)
 #define mcsi_spherical_triangle_end MCSI_(spherical_triangle_end)
 #define mcsi_spherical_triangle_loop MCSI_(spherical_triangle_loop)
 #define mcsi_spread MCSI_(spread)
@@ -12495,7 +12549,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_side
 #undef mcsi_side_load
 #undef mcsi_sincos_turns
-#undef mcsi_sine_over_x
+#undef mcsi_sine_over
 #undef mcsi_slope_brdf
 #undef mcsi_slope_draw
 #undef mcsi_slope_h_sample
@@ -12514,9 +12568,9 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_sobol_loop
 #undef mcsi_sobol_reversed
 #undef mcsi_sphere_loop
-#undef mcsi_spherical_rectangle_end
 #undef mcsi_spherical_rectangle_loop
 #undef mcsi_spherical_rectangle_x
+#undef mcsi_spherical_rectangle_y
 #undef mcsi_spherical_triangle_end
 #undef mcsi_spherical_triangle_loop
 #undef mcsi_spread
