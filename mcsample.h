@@ -2098,8 +2098,8 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * lobe has no cosine here and below. The reflection is then evaluated on a grid of 8 x 8 points in each heavy tile: at
  * most 32 tiles, those that by their mean direction or a corner may weigh more than 1/128 of all.
  *
- * A share of the samples (p->brdf_share) comes from the lobe itself, by mcs_ggx_vndf, mcs_ward or mcs_phong; the
- * density is that of the mixture. What the lobe sends below the surface is lost: its density is 0. The share grows with
+ * A share of the samples (p->brdf_share) comes from the lobe itself, by mcs_ggx_vndf, mcs_ward, mcs_phong or
+ * mcs_ashikhmin; the density is that of the mixture. What the lobe sends below the surface is lost: its density is 0. The share grows with
  * T/A, the mean solid angle of a tile over that of the lobe, A = 4 pi alpha_x alpha_y cos(theta_o). It grows with R/S,
  * too: the mean radiance of the tile about the mirror direction, over what the product reflects; that is, with how much
  * of the answer the lobe would find. With R/S within [1/4096, 1], c = 1 (GGX) or 3 (the others, which have no tails),
@@ -2131,15 +2131,15 @@ typedef struct {
 } mcs_tiles;                       /* more lies behind it: see mcsi_tiles_offsets */
 
 /* The shape of a lobe. */
-typedef enum { MCS_PROFILE_GGX, MCS_PROFILE_GAUSS, MCS_PROFILE_PHONG } mcs_profile;
+typedef enum { MCS_PROFILE_GGX, MCS_PROFILE_GAUSS, MCS_PROFILE_PHONG, MCS_PROFILE_ASHIKHMIN } mcs_profile;
 
 /* What the surface does with light. It only steers the samples: a poor match raises the variance, it never biases.
  *
- *   profile              for                    alpha_x, alpha_y
- *   MCS_PROFILE_GGX      GGX                    as in mcs_ggx_make
- *   MCS_PROFILE_GAUSS    Ward, Beckmann         as in their _make
- *                        Ashikhmin-Shirley      sqrt(2/(nu + 2)), sqrt(2/(nv + 2))
- *   MCS_PROFILE_PHONG    Phong                  sqrt(1/(2 n + 4)), both */
+ *   profile                  for                    alpha_x, alpha_y
+ *   MCS_PROFILE_GGX          GGX                    as in mcs_ggx_make
+ *   MCS_PROFILE_GAUSS        Ward, Beckmann         as in their _make
+ *   MCS_PROFILE_PHONG        Phong                  sqrt(1/(2 n + 4)), both
+ *   MCS_PROFILE_ASHIKHMIN    Ashikhmin-Shirley      sqrt(2/(nu + 2)), sqrt(2/(nv + 2)) */
 typedef struct {
     mcs_frame frame; /* the surface in world space, orthonormal; n is its normal */
     mcs_vec3 wo;     /* the unit direction to the eye, in this frame; wo.z > 0 */
@@ -2160,9 +2160,10 @@ typedef struct {
     mcs_frame frame;
     mcs_vec3 wo;
     mcs_profile profile;
-    mcs_ggx ggx; /* by the profile, one of these three */
+    mcs_ggx ggx; /* by the profile, one of these four */
     mcs_ward gauss;
     mcs_phong phong;
+    mcs_ashikhmin ashikhmin;
 } mcsi_lobe;
 /* The nodes of a grid on the light of a tile, along a side and in all, and the most grids of a product. Private. */
 enum { MCSI_NODES = 8, MCSI_GRID = MCSI_NODES * MCSI_NODES, MCSI_GRIDS = 32 };
@@ -9996,6 +9997,7 @@ MCS_FN mcsi_surface mcsi_surface_make(const mcs_env *e, const mcs_reflection *r)
     return s;
 }
 #endif
+#ifdef MCSI_LOOPS
 /* (1 + x/256)^-256: nearly exp(-x), x >= 0, and never less. */
 MCSI_CORE mcs_f mcsi_falloff(mcs_f x) {
     mcs_f p = 1.0f / (1.0f + 0.00390625f * mcsi_min(x, mcs_set(64.0f))); /* subnormal products would be slow */
@@ -10018,7 +10020,7 @@ MCSI_CORE mcsi_blurred_lobe mcsi_blurred_lobe_make(const mcsi_surface *s, mcs_ve
     l.h2 = l.h.x * l.h.x + l.h.y * l.h.y + l.h.z * l.h.z;
     return l;
 }
-/* Ward's lobe (MCS_WARD_GMD), which stands for Beckmann's and Ashikhmin-Shirley's, too. */
+/* Ward's lobe (MCS_WARD_GMD), which stands for Beckmann's, too. */
 MCSI_CORE mcs_f mcsi_blurred_gauss(const mcsi_blurred_lobe *l, mcs_f cosine) {
     const mcs_f least = mcs_set(FLT_MIN);
     const mcs_f z2 = l->h.z * l->h.z;
@@ -10033,6 +10035,14 @@ MCSI_CORE mcs_f mcsi_blurred_phong(const mcsi_blurred_lobe *l, mcs_f cosine, flo
     const mcs_f off2 = l->h.x * l->h.x + l->h.y * l->h.y + z * z;
     return (n + 2.0f) * MCSI_1_2PI * mcsi_falloff(0.5f * n * off2) * cosine;
 }
+/* As mcs_ashikhmin_eval has it, times the cosine: no Gaussian falls like a power of a cosine. */
+MCSI_CORE mcs_f mcsi_blurred_ashikhmin(const mcsi_blurred_lobe *l, mcs_f cosine, float wo_z) {
+    const mcs_f zero = mcs_set(0.0f);
+    const mcs_ashikhmin m =
+        mcs_ashikhmin_make(mcsi_max(2.0f / l->ax2 - 2.0f, zero), mcsi_max(2.0f / l->ay2 - 2.0f, zero));
+    const mcs_f pdf = mcsi_ashikhmin_h_density(&m, l->h) / (2.0f * mcsi_sqrt(l->h2));
+    return pdf * cosine / mcsi_max(cosine, mcs_set(wo_z));
+}
 MCSI_CORE mcs_f mcsi_blurred_ggx(const mcsi_blurred_lobe *l, mcs_vec3 w, mcsi_scalar_vec3 wo) {
     const mcs_f least = mcs_set(FLT_MIN);
     const mcs_f slopes = l->h.x * l->h.x * l->ay2 + l->h.y * l->h.y * l->ax2 + l->h.z * l->h.z * l->aa;
@@ -10046,6 +10056,7 @@ MCSI_CORE mcs_f mcsi_blurred_value(const mcsi_surface *s, mcs_vec3 w, mcs_f spre
     const mcsi_blurred_lobe l = mcsi_blurred_lobe_make(s, w, spread);
     if (s->profile == MCS_PROFILE_GAUSS) return mcsi_blurred_gauss(&l, w.z);
     if (s->profile == MCS_PROFILE_PHONG) return mcsi_blurred_phong(&l, w.z, s->wo.z);
+    if (s->profile == MCS_PROFILE_ASHIKHMIN) return mcsi_blurred_ashikhmin(&l, w.z, s->wo.z);
     return mcsi_blurred_ggx(&l, w, s->wo);
 }
 /* ---- [product] values: the reflection towards tiles and their corners ---- */
@@ -10081,7 +10092,6 @@ MCSI_CORE mcs_f mcsi_corner_value(const mcs_frame *axes, const mcsi_surface *s, 
     }
     return mcsi_sane_value(f);
 }
-#ifdef MCSI_LOOPS
 /* Reflection towards n tiles. */
 MCSI_LOOP void mcsi_tile_values_loop(const mcsi_surface *s, size_t n, const float *tile, float *value) {
     const mcs_frame axes = mcsi_spread_frame(&s->axes);
@@ -10544,7 +10554,7 @@ MCSI_CORE float mcsi_grid_density(const float *grid, float t1, float t2) {
 
 /* ---- [product] narrow lobes: samples from the lobe itself ----
  * If the lobe is narrower than a cell, a share of the samples comes from the lobe itself (mcs_ggx_vndf, mcs_ward,
- * mcs_phong); the density is that of the mixture. What the lobe sends below the surface is lost. */
+ * mcs_phong, mcs_ashikhmin); the density is that of the mixture. What the lobe sends below the surface is lost. */
 
 /* Solid angle of a tile. */
 MCS_FN float mcsi_tile_solid_angle(const mcs_tiles *t, const mcs_env *e, mcsi_tile tile) {
@@ -10590,6 +10600,9 @@ MCSI_CORE mcsi_lobe mcsi_lobe_make(const mcs_reflection *r, const mcsi_surface *
     switch (l.profile) {
     case MCS_PROFILE_GAUSS: l.gauss = mcs_ward_make(ax, ay, MCS_WARD_GMD); break;
     case MCS_PROFILE_PHONG: l.phong = mcs_phong_make(mcsi_max(0.5f / ax / ay - 2.0f, 0.0f)); break;
+    case MCS_PROFILE_ASHIKHMIN:
+        l.ashikhmin = mcs_ashikhmin_make(mcsi_max(2.0f / ax / ax - 2.0f, 0.0f), mcsi_max(2.0f / ay / ay - 2.0f, 0.0f));
+        break;
     default: l.ggx = mcs_ggx_make(ax, ay);
     }
     return l;
@@ -10600,6 +10613,7 @@ MCSI_CORE mcs_vec3 mcsi_lobe_draw(const mcsi_lobe *l, float u1, float u2, int32_
     switch (l->profile) {
     case MCS_PROFILE_GAUSS: b = mcs_ward_sample(&l->gauss, l->wo, u1, u2); break;
     case MCS_PROFILE_PHONG: b = mcs_phong_sample(&l->phong, l->wo, u1, u2); break;
+    case MCS_PROFILE_ASHIKHMIN: b = mcs_ashikhmin_sample(&l->ashikhmin, l->wo, u1, u2); break;
     default: b = mcs_ggx_vndf_sample(&l->ggx, l->wo, u1, u2);
     }
     *kept &= b.pdf > 0.0f;
@@ -10613,6 +10627,7 @@ MCSI_APART float mcsi_lobe_pdf(const mcsi_lobe *l, mcs_vec3 w) {
     switch (l->profile) {
     case MCS_PROFILE_GAUSS: return mcs_ward_pdf(&l->gauss, l->wo, w);
     case MCS_PROFILE_PHONG: return mcs_phong_pdf(&l->phong, l->wo, w);
+    case MCS_PROFILE_ASHIKHMIN: return mcs_ashikhmin_pdf(&l->ashikhmin, l->wo, w);
     default: return mcs_ggx_vndf_pdf(&l->ggx, l->wo, w);
     }
 }
@@ -11146,6 +11161,9 @@ MCSI_CORE void mcsi_lobe_draw_n(const mcsi_lobe *l, size_t n, const float *u1, c
     switch (l->profile) {
     case MCS_PROFILE_GAUSS: mcs_ward_sample_n(&l->gauss, l->wo, n, u1, u2, b->x, b->y, b->z, b->pdf, NULL); break;
     case MCS_PROFILE_PHONG: mcs_phong_sample_n(&l->phong, l->wo, n, u1, u2, b->x, b->y, b->z, b->pdf, NULL); break;
+    case MCS_PROFILE_ASHIKHMIN:
+        mcs_ashikhmin_sample_n(&l->ashikhmin, l->wo, n, u1, u2, b->x, b->y, b->z, b->pdf, NULL);
+        break;
     default: mcs_ggx_vndf_sample_n(&l->ggx, l->wo, n, u1, u2, b->x, b->y, b->z, b->pdf, NULL);
     }
     for (size_t k = 0; k < n; k++) {
@@ -11170,6 +11188,9 @@ MCSI_CORE void mcsi_lobe_mix_n(const mcsi_lobe *l, float share, size_t n, const 
     switch (l->profile) {
     case MCS_PROFILE_GAUSS: mcs_ward_pdf_n(&l->gauss, l->wo, n, turned.x, turned.y, turned.z, turned.pdf); break;
     case MCS_PROFILE_PHONG: mcs_phong_pdf_n(&l->phong, l->wo, n, turned.x, turned.y, turned.z, turned.pdf); break;
+    case MCS_PROFILE_ASHIKHMIN:
+        mcs_ashikhmin_pdf_n(&l->ashikhmin, l->wo, n, turned.x, turned.y, turned.z, turned.pdf);
+        break;
     default: mcs_ggx_vndf_pdf_n(&l->ggx, l->wo, n, turned.x, turned.y, turned.z, turned.pdf);
     }
     for (size_t k = 0; k < n; k++) pdf[k] = mcs_mix_pdf(share, turned.pdf[k], pdf[k]);
@@ -11662,6 +11683,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_bilinear_loop MCSI_(bilinear_loop)
 #define mcsi_bits MCSI_(bits)
 #define mcsi_blend MCSI_(blend)
+#define mcsi_blurred_ashikhmin MCSI_(blurred_ashikhmin)
 #define mcsi_blurred_gauss MCSI_(blurred_gauss)
 #define mcsi_blurred_ggx MCSI_(blurred_ggx)
 #define mcsi_blurred_lobe MCSI_(blurred_lobe)
@@ -12330,6 +12352,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_bilinear_loop
 #undef mcsi_bits
 #undef mcsi_blend
+#undef mcsi_blurred_ashikhmin
 #undef mcsi_blurred_gauss
 #undef mcsi_blurred_ggx
 #undef mcsi_blurred_lobe

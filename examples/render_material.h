@@ -34,10 +34,11 @@ static material material_make(lobe_kind kind, float p_lobe, vec3 base, vec3 spec
     m.alpha_x = shape_x;
     m.alpha_y = shape_y;
     m.profile = kind == PHONG ? MCS_PROFILE_PHONG : MCS_PROFILE_GGX;
-    if (kind == WARD || kind == ASHIKHMIN) m.profile = MCS_PROFILE_GAUSS;
+    if (kind == WARD) m.profile = MCS_PROFILE_GAUSS;
     /* The width about the mirror direction is half that of a half-vector. */
     if (kind == PHONG) m.alpha_x = m.alpha_y = sqrtf(0.5f / (shape_x + 2));
     if (kind == ASHIKHMIN) {
+        m.profile = MCS_PROFILE_ASHIKHMIN;
         m.alpha_x = sqrtf(2 / (shape_x + 2));
         m.alpha_y = sqrtf(2 / (shape_y + 2));
     }

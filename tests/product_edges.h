@@ -209,11 +209,12 @@ static void check_bad_frames(void) {
 }
 
 static void test_extremes(void) {
-    static const extreme_map maps[] = {
-        {SUN, 64, 32, MCS_PROFILE_GGX},       {ONE_TEXEL, 41, 21, MCS_PROFILE_GGX}, {CONSTANT, 30, 20, MCS_PROFILE_GGX},
-        {BLACK_MAP, 30, 20, MCS_PROFILE_GGX}, {CONSTANT, 1, 1, MCS_PROFILE_GGX},    {POLES, 64, 32, MCS_PROFILE_GGX},
-        {SPARSE, 100, 200, MCS_PROFILE_GGX},  {SUN, 64, 32, MCS_PROFILE_GAUSS},     {SUN, 64, 32, MCS_PROFILE_PHONG}};
-    static const char *const profile_name[] = {"", ", Gauss", ", Phong"};
+    static const extreme_map maps[] = {{SUN, 64, 32, MCS_PROFILE_GGX},      {ONE_TEXEL, 41, 21, MCS_PROFILE_GGX},
+                                       {CONSTANT, 30, 20, MCS_PROFILE_GGX}, {BLACK_MAP, 30, 20, MCS_PROFILE_GGX},
+                                       {CONSTANT, 1, 1, MCS_PROFILE_GGX},   {POLES, 64, 32, MCS_PROFILE_GGX},
+                                       {SPARSE, 100, 200, MCS_PROFILE_GGX}, {SUN, 64, 32, MCS_PROFILE_GAUSS},
+                                       {SUN, 64, 32, MCS_PROFILE_PHONG},    {SUN, 64, 32, MCS_PROFILE_ASHIKHMIN}};
+    static const char *const profile_name[] = {"", ", Gauss", ", Phong", ", A.-S."};
     mcst_group("product, extremes");
     for (int a = 0; a < (int)(sizeof maps / sizeof *maps); a++)
         if (mcst_case("%u x %u, %s%s", maps[a].w, maps[a].h, picture_name[maps[a].kind], profile_name[maps[a].profile]))

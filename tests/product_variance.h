@@ -23,10 +23,12 @@ static int draw_from(const sampler *d, int kind, float u1, float u2, mcs_vec3 *w
     if (r->matte >= 1) return 1;
     const mcs_ward gauss = mcs_ward_make(r->alpha_x, r->alpha_y, MCS_WARD_GMD);
     const mcs_phong phong = mcs_phong_make((float)d->s->power);
+    const mcs_ashikhmin ashikhmin = mcs_ashikhmin_make((float)d->s->nu, (float)d->s->nv);
     const mcs_ggx ggx = mcs_ggx_make(r->alpha_x, r->alpha_y);
-    const mcs_brdf b = r->profile == MCS_PROFILE_GAUSS   ? mcs_ward_sample(&gauss, r->wo, u1, u2)
-                       : r->profile == MCS_PROFILE_PHONG ? mcs_phong_sample(&phong, r->wo, u1, u2)
-                                                         : mcs_ggx_vndf_sample(&ggx, r->wo, u1, u2);
+    const mcs_brdf b = r->profile == MCS_PROFILE_GAUSS       ? mcs_ward_sample(&gauss, r->wo, u1, u2)
+                       : r->profile == MCS_PROFILE_PHONG     ? mcs_phong_sample(&phong, r->wo, u1, u2)
+                       : r->profile == MCS_PROFILE_ASHIKHMIN ? mcs_ashikhmin_sample(&ashikhmin, r->wo, u1, u2)
+                                                             : mcs_ggx_vndf_sample(&ggx, r->wo, u1, u2);
     *w = mcs_to_world(&r->frame, b.wi);
     return b.pdf > 0;
 }
@@ -85,7 +87,7 @@ static variances variance_of(const sampler *d, uint32_t count) {
     return v;
 }
 
-enum { ROWS = 14, TWELVE = 12 };
+enum { ROWS = 17, TWELVE = 12 };
 /* Rows of the table; half of the geometric means of MIS / product that own maps gave when this was written, and of the
  * worst of them: weights may be changed a little, but not lose a factor. */
 static const struct {
@@ -99,7 +101,9 @@ static const struct {
                  {"GGX", MCS_PROFILE_GGX, 0.05f, 19.4, 0},        {"GGX", MCS_PROFILE_GGX, 0.02f, 1.64, 0},
                  {"Gauss", MCS_PROFILE_GAUSS, 0.3f, 81, 6.9},     {"Gauss", MCS_PROFILE_GAUSS, 0.1f, 13.8, 1.6},
                  {"Gauss", MCS_PROFILE_GAUSS, 0.05f, 2.1, 0.056}, {"Phong", MCS_PROFILE_PHONG, 0.3f, 8.2, 1.2},
-                 {"Phong", MCS_PROFILE_PHONG, 0.1f, 26, 2.5},     {"Phong", MCS_PROFILE_PHONG, 0.05f, 5.6, 0.28}};
+                 {"Phong", MCS_PROFILE_PHONG, 0.1f, 26, 2.5},     {"Phong", MCS_PROFILE_PHONG, 0.05f, 5.6, 0.28},
+                 {"A.-S.", MCS_PROFILE_ASHIKHMIN, 0.3f, 120, 11}, {"A.-S.", MCS_PROFILE_ASHIKHMIN, 0.1f, 26, 3.4},
+                 {"A.-S.", MCS_PROFILE_ASHIKHMIN, 0.05f, 3, 0.07}};
 
 /* Sums of logarithms, then geometric means. */
 typedef struct {

@@ -572,6 +572,8 @@ static void test_same_products(void) {
         shade value;
     } maps[] = {{64, 32, v_sky},    {50, 37, v_random}, {7, 5, v_thirds},
                 {40, 70, v_region}, {33, 30, v_black},  {32, 16, v_constant}};
+    static const mcs_profile profiles[] = {MCS_PROFILE_GAUSS, MCS_PROFILE_PHONG, MCS_PROFILE_GGX,
+                                           MCS_PROFILE_GAUSS, MCS_PROFILE_GAUSS, MCS_PROFILE_ASHIKHMIN};
     static float weight[2 * 32 * 32];
     for (size_t k = 0; k < sizeof maps / sizeof *maps; k++)
         for (uint32_t rows = 16; rows <= 32; rows *= 2) {
@@ -594,7 +596,7 @@ static void test_same_products(void) {
                 r.alpha_x = i == 2 ? 0.03f : i == 5 ? 1e-3f : 0.4f;
                 r.alpha_y = r.alpha_x;
                 r.matte = i == 0 ? 1.0f : 0.2f;
-                r.profile = i == 1 ? MCS_PROFILE_PHONG : i == 2 ? MCS_PROFILE_GGX : MCS_PROFILE_GAUSS;
+                r.profile = profiles[i];
                 s.r = &r;
                 check_same(mcs_product_bytes(rows), product_builds, &s, "product", p.w, (uint32_t)i);
             }

@@ -659,6 +659,8 @@ static void test_arrays(void) {
                  {{"Gauss 0.003", 3e-3f, 3e-3f, 0, MCS_PROFILE_GAUSS}, 0.949, 0.951, SUN, 0},
                  {{"Phong", 0.11f, 0.11f, 0, MCS_PROFILE_PHONG}, 1e-4, 1e-3, POLES, 0},
                  {{"Phong", 3e-3f, 3e-3f, 0, MCS_PROFILE_PHONG}, 0.949, 0.951, SUN, 0},
+                 {{"A.-S. 163, 10", 0.11f, 0.41f, 0, MCS_PROFILE_ASHIKHMIN}, 1e-4, 0.1, SPARSE, 0},
+                 {{"A.-S. 222220", 3e-3f, 3e-3f, 0, MCS_PROFILE_ASHIKHMIN}, 0.949, 0.951, SUN, 0},
                  {{"alpha 0.001, light below", 1e-3f, 1e-3f, 0, MCS_PROFILE_GGX}, 0, 0, ONE_TEXEL, 1},
                  {{"alpha 0.5, light below", 0.5f, 0.5f, 0, MCS_PROFILE_GGX}, 0, 0, ONE_TEXEL, 1},
                  {{"alpha 0.01, black", 0.01f, 0.01f, 0, MCS_PROFILE_GGX}, 0.2, 0.951, BLACK_MAP, 0}};

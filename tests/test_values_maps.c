@@ -178,6 +178,9 @@ static void share_of_the_lobe(void) {
     static const float alphas[][2] = {{1, 1},         {0.08f, 0.08f}, {0.03f, 0.03f},
                                       {0.02f, 0.01f}, {0.01f, 0.01f}, {1e-3f, 1e-3f}};
     static const float mattes[] = {0, 0.25f, 1};
+    static const mcs_profile profiles[] = {MCS_PROFILE_GGX, MCS_PROFILE_GAUSS, MCS_PROFILE_PHONG,
+                                           MCS_PROFILE_ASHIKHMIN};
+    enum { PROFILES = (int)(sizeof profiles / sizeof *profiles) };
     float light[32 * 16];
     for (int i = 0; i < 32 * 16; i++) light[i] = (float)(1 + i % 5);
     const mcs_image image = mcs_image_make(light, 32, 16, 1);
@@ -191,7 +194,7 @@ static void share_of_the_lobe(void) {
     CHECK(mcs_tiles_build(t, tiles.bytes, e, 16) == MCS_OK, "tiles");
     for (int i = 0; i < 6; i++)
         for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++) {
+            for (int k = 0; k < PROFILES; k++) {
                 const mcs_vec3 up = {0, 0, 1};
                 /* towards light of 3 and of 1: as much as is reflected in all, and less */
                 const mcs_vec3 wo[] = {{0.6f, 0.01f, 0.8f}, {0.48f, 0.36f, 0.8f}};
@@ -202,9 +205,9 @@ static void share_of_the_lobe(void) {
                 r.alpha_x = alphas[i][0];
                 r.alpha_y = alphas[i][1];
                 r.matte = mattes[j];
-                r.profile = k == 0 ? MCS_PROFILE_GGX : k == 1 ? MCS_PROFILE_GAUSS : MCS_PROFILE_PHONG;
+                r.profile = profiles[k];
                 CHECK(mcs_product_build(p, memory.bytes, t, e, &r, NULL) == MCS_OK, "product");
-                const ld lobe = (ld)alphas[i][0] * (ld)alphas[i][1] * (k == 2 ? 1 : 0.8L);
+                const ld lobe = (ld)alphas[i][0] * (ld)alphas[i][1] * (profiles[k] == MCS_PROFILE_PHONG ? 1 : 0.8L);
                 const ld m = (k ? 3 : 1) / (14 * 512.0L * lobe) - 0.007L;
                 const ld of_width = m > 0 ? fminl((m + m * m) / (1 + m + m * m), 0.95L) : 0;
                 const ld want = (1 - (ld)mattes[j]) * of_width * sqrtl(mirrored_part(p, e, light, &r));

@@ -326,9 +326,10 @@ static scene scene_make(const material *m, const map *e, int point) {
     s.like.frame = s.frame;
     s.like.wo = s.wo;
     s.like.matte = m->kind == MATTE;
-    s.like.profile = m->kind == PHONG                          ? MCS_PROFILE_PHONG
-                     : m->kind == WARD || m->kind == ASHIKHMIN ? MCS_PROFILE_GAUSS
-                                                               : MCS_PROFILE_GGX;
+    s.like.profile = m->kind == PHONG       ? MCS_PROFILE_PHONG
+                     : m->kind == WARD      ? MCS_PROFILE_GAUSS
+                     : m->kind == ASHIKHMIN ? MCS_PROFILE_ASHIKHMIN
+                                            : MCS_PROFILE_GGX;
     s.like.alpha_x = alpha_of(m->kind, m->a);
     s.like.alpha_y = alpha_of(m->kind, m->kind == PHONG ? m->a : m->b);
     return s;

@@ -111,8 +111,9 @@ static mcs_reflection coat_reflection(const coat *c, const mcs_frame *frame, mcs
     r.alpha_x = m->a;
     r.alpha_y = m->b;
     r.profile = MCS_PROFILE_GGX;
-    if (m->lobe == LOBE_WARD || m->lobe == LOBE_ASHIKHMIN) r.profile = MCS_PROFILE_GAUSS;
+    if (m->lobe == LOBE_WARD) r.profile = MCS_PROFILE_GAUSS;
     if (m->lobe == LOBE_ASHIKHMIN) {
+        r.profile = MCS_PROFILE_ASHIKHMIN;
         r.alpha_x = sqrtf(2 / (m->a + 2));
         r.alpha_y = sqrtf(2 / (m->b + 2));
     }

@@ -170,6 +170,33 @@ static void check_found(void) {
     free(memory_of_it);
     picture_free(&m);
 }
+/* The tail of Ashikhmin-Shirley's lobe along its wide axis, from a grazing eye: the lamp there is seen by half-vectors
+ * of slope 2.2, where cos^10 has 1e-4 left and the Gaussian of the same width 1e-12. A sample was worth 1e6 times the
+ * answer when that Gaussian stood for the lobe; now it is less than the answer. */
+static void check_tail(void) {
+    picture m = picture_make("lamps", CLIMB_W, CLIMB_H);
+    mcs_product *memory_of_it = (mcs_product *)memory(mcs_product_bytes(TILE_ROWS));
+    const lamp mirrored = {63, 118, 4, 3, log10(1.5000047)};
+    const lamp in_the_tail = {26, 94, 4, 9, log10(6529.61168)};
+    trial t;
+    memset(&t, 0, sizeof t);
+    t.kind = ASHIKHMIN;
+    t.a = log10(0.0199526231);
+    t.b = log10(sqrt(2 / 12.0));
+    t.normal_z = 0.611074517;
+    t.normal_turn = 0.00622489342;
+    t.eye_z = 0.0500695336;
+    t.eye_turn = 0.207424908;
+    t.background = log10(0.0157938664);
+    t.lamps = 2;
+    t.lamp[0] = mirrored;
+    t.lamp[1] = in_the_tail;
+    const worth v = trial_worth(&t, &m, memory_of_it);
+    const double score = score_of(&v, &m);
+    CHECK(score <= 10, "a sample is %.3g times the answer", score);
+    free(memory_of_it);
+    picture_free(&m);
+}
 
 /* The options of this program are taken out; the others are left. Returns how many there are. */
 static int own_options(int argc, char **argv, char *files, size_t size) {
@@ -207,6 +234,7 @@ int main(int argc, char **argv) {
     if (table || each) return mcst_finish();
     mcst_group("fireflies, climbing");
     if (mcst_case("a lamp below the horizon")) check_found();
+    if (mcst_case("a lamp in the tail of Ashikhmin-Shirley")) check_tail();
     for (int kind = 0; kind < KINDS; kind++)
         if (mcst_case("%s", materials_of[kind])) attack((material_kind)kind);
     mcst_close_group();

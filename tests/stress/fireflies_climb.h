@@ -98,9 +98,9 @@ static worth trial_worth(const trial *t, picture *m, mcs_product *memory_of_it) 
     s.made_of.matte = (float)t->matte;
     s.made_of.a = (float)a;
     s.made_of.b = (float)b;
-    if (t->kind == PHONG || t->kind == ASHIKHMIN) { /* below exponents of 10 a Gaussian is no match at all */
-        s.made_of.a = (float)fmax(2 / (a * a), 10);
-        s.made_of.b = (float)fmax(2 / (b * b), 10);
+    if (t->kind == PHONG || t->kind == ASHIKHMIN) { /* exponents */
+        s.made_of.a = (float)(2 / (a * a) - 2);
+        s.made_of.b = (float)(2 / (b * b) - 2);
     }
     s.r.frame = mcs_frame_make(from_angles(t->normal_z, t->normal_turn));
     s.r.wo = from_angles(t->eye_z, t->eye_turn);

@@ -6,7 +6,7 @@
 
 /* The variance is that of MIS at most, where it is not smaller than its own errors. Of lobes that are narrower than the
  * cells of grids, MIS takes one sample for certain where the product's share is a matter of chance: what they exceed
- * MIS by is what was found, with half of it added. So it is with Ashikhmin-Shirley, which a Gaussian does not fit. */
+ * MIS by is what was found, with half of it added. */
 #define ERROR 0.005
 static const material materials[] = {
     {"matte", MATTE, 0, 0, 1, 1.1, ERROR},
@@ -18,7 +18,7 @@ static const material materials[] = {
     {"Ward 0.2, 0.05", WARD, 0.2f, 0.05f, 0, 5, 0.1},
     {"Phong 50", PHONG, 50, 50, 0, 1.1, 0.1},
     {"Phong 500", PHONG, 500, 500, 0, 3, 0.6},
-    {"A.-S. 100, 10", ASHIKHMIN, 100, 10, 0, 12, 1.5},
+    {"A.-S. 100, 10", ASHIKHMIN, 100, 10, 0, 1.1, ERROR},
     {"matte, GGX 0.1", GGX, 0.1f, 0.1f, 0.5f, 1.1, ERROR},
 };
 enum { MATERIALS = (int)(sizeof materials / sizeof *materials), NORMALS = 16, EYES = 3 };

@@ -3,6 +3,7 @@
  * prove. */
 #ifndef MCST_FIREFLIES_WORTH_H
 #define MCST_FIREFLIES_WORTH_H
+#include <float.h>
 #include <math.h>
 #include "arena.h"
 #include "registry.h"
@@ -124,7 +125,7 @@ static inline void reflection_set(point *s) {
         break;
     case ASHIKHMIN:
         s->ashikhmin = mcs_ashikhmin_make(o->a, o->b);
-        s->r.profile = MCS_PROFILE_GAUSS;
+        s->r.profile = MCS_PROFILE_ASHIKHMIN;
         s->r.alpha_x = (float)sqrt(2 / ((double)o->a + 2));
         s->r.alpha_y = (float)sqrt(2 / ((double)o->b + 2));
         break;
@@ -216,9 +217,14 @@ static inline double lobe_scale(const point *s, mcs_vec3 w) {
     }
     const double ax = (double)s->r.alpha_x;
     const double ay = (double)s->r.alpha_y;
-    const double q = (x * x / (ax * ax) + y * y / (ay * ay)) / (z * z);
+    double q = (x * x / (ax * ax) + y * y / (ay * ay)) / (z * z);
     const double scale = fmin(ax, ay) * z / sqrt(1 + (x * x + y * y) / (z * z));
     if (s->made_of.kind == GGX) return scale * sqrt(1 + q);
+    if (s->made_of.kind == ASHIKHMIN) { /* cos^power(theta_h) is exp(-q), too */
+        const double flat = fmax(x * x + y * y, DBL_MIN);
+        const double power = ((double)s->made_of.a * x * x + (double)s->made_of.b * y * y) / flat;
+        q = 0.5 * power * log1p(flat / (z * z));
+    }
     return s->m->sparse ? scale / fmax(sqrt(q), 1) : q > 49 ? 1 : scale;
 }
 /* Adds a texel: its middle, where nothing changes much within it; else cells, each by two Gauss points each way; where
