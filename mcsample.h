@@ -10035,13 +10035,19 @@ MCSI_CORE mcs_f mcsi_blurred_phong(const mcsi_blurred_lobe *l, mcs_f cosine, flo
     const mcs_f off2 = l->h.x * l->h.x + l->h.y * l->h.y + z * z;
     return (n + 2.0f) * MCSI_1_2PI * mcsi_falloff(0.5f * n * off2) * cosine;
 }
-/* As mcs_ashikhmin_eval has it, times the cosine: no Gaussian falls like a power of a cosine. */
+/* As mcs_ashikhmin_eval has it, times the cosine, for nu + 2 = 2/alpha_x^2: no Gaussian falls like a power of a cosine.
+ */
 MCSI_CORE mcs_f mcsi_blurred_ashikhmin(const mcsi_blurred_lobe *l, mcs_f cosine, float wo_z) {
-    const mcs_f zero = mcs_set(0.0f);
-    const mcs_ashikhmin m =
-        mcs_ashikhmin_make(mcsi_max(2.0f / l->ax2 - 2.0f, zero), mcsi_max(2.0f / l->ay2 - 2.0f, zero));
-    const mcs_f pdf = mcsi_ashikhmin_h_density(&m, l->h) / (2.0f * mcsi_sqrt(l->h2));
-    return pdf * cosine / mcsi_max(cosine, mcs_set(wo_z));
+    const mcs_f least = mcs_set(FLT_MIN);
+    const mcs_f ax2 = mcsi_min(l->ax2, mcs_set(1.0f));
+    const mcs_f ay2 = mcsi_min(l->ay2, mcs_set(1.0f));
+    const mcs_f x2 = l->h.x * l->h.x;
+    const mcs_f y2 = l->h.y * l->h.y;
+    const mcs_f exponents = (1.0f - ax2) * ay2 * x2 + (1.0f - ay2) * ax2 * y2;
+    const mcs_f power = 2.0f * exponents / mcsi_max(ax2 * ay2 * (x2 + y2), least);
+    const mcs_f norm2 = (2.0f - ax2) * (2.0f - ay2) / mcsi_max(ax2 * ay2 * l->h2, least);
+    const mcs_f peak = 0.25f * MCSI_1_PI * mcsi_sqrt(norm2) * cosine / mcsi_max(cosine, mcs_set(wo_z));
+    return peak * mcsi_cos_power(power, mcsi_tan2(l->h));
 }
 MCSI_CORE mcs_f mcsi_blurred_ggx(const mcsi_blurred_lobe *l, mcs_vec3 w, mcsi_scalar_vec3 wo) {
     const mcs_f least = mcs_set(FLT_MIN);
