@@ -4720,11 +4720,6 @@ MCSI_CORE void mcsi_inverse_root(const mcsi_d *x, mcsi_d *result) {
     *result = r + (r * d) * (0.5 + 0.375 * d);
 }
 
-MCSI_CORE void mcsi_widen3(const mcs_vec3 *v, mcsi_vec3_d *d) {
-    d->x = MCSI_WIDEN(v->x);
-    d->y = MCSI_WIDEN(v->y);
-    d->z = MCSI_WIDEN(v->z);
-}
 MCSI_CORE mcsi_vec3_d mcsi_from_to(mcs_vec3 p, mcs_vec3 q) {
     mcsi_vec3_d d;
     d.x = MCSI_WIDEN(q.x) - MCSI_WIDEN(p.x);
@@ -5364,8 +5359,7 @@ MCSI_SAMPLE mcs_spherical_rectangle mcs_spherical_rectangle_make(mcs_vec3 p, mcs
 MCSI_FN mcs_f mcs_spherical_rectangle_pdf(const mcs_spherical_rectangle *l, mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     w = mcsi_sane_direction(w, &ok);
-    mcsi_vec3_d d;
-    mcsi_widen3(&w, &d);
+    const mcsi_vec3_d d = mcsi_from_to(mcsi_origin(), w);
     const mcsi_d x = MCSI_DOT_D(d, l->axis_x);
     const mcsi_d y = MCSI_DOT_D(d, l->axis_y);
     const mcsi_d z = MCSI_DOT_D(d, l->normal);
@@ -5586,8 +5580,7 @@ MCSI_SAMPLE mcs_spherical_triangle mcs_spherical_triangle_make(mcs_vec3 p, mcs_v
 MCSI_FN mcs_f mcs_spherical_triangle_pdf(const mcs_spherical_triangle *l, mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     w = mcsi_sane_direction(w, &ok);
-    mcsi_vec3_d d;
-    mcsi_widen3(&w, &d);
+    const mcsi_vec3_d d = mcsi_from_to(mcsi_origin(), w);
     const mcs_f from_a = MCSI_NARROW(MCSI_DOT_D(l->past_a, d));
     const mcs_f from_b = MCSI_NARROW(MCSI_DOT_D(l->past_b, d));
     const mcs_f from_c = MCSI_NARROW(MCSI_DOT_D(l->past_c, d));
@@ -9990,7 +9983,7 @@ MCS_FN mcsi_surface mcsi_surface_make(const mcs_env *e, const mcs_reflection *r)
     s.axes.s = mcsi_to_local(&e->frame, r->frame.s);
     s.axes.t = mcsi_to_local(&e->frame, r->frame.t);
     s.axes.n = mcsi_to_local(&e->frame, r->frame.n);
-    s.profile = r->profile;
+    s.profile = (uint32_t)r->profile <= MCS_PROFILE_ASHIKHMIN ? r->profile : MCS_PROFILE_GGX;
     s.ax2 = ax * ax;
     s.ay2 = ay * ay;
     s.matte = mcsi_sane_parameter(r->matte >= 0.0f, r->matte, 0.0f, 1.0f);
@@ -12002,7 +11995,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_warps_loop MCSI_(warps_loop)
 #define mcsi_weighted MCSI_(weighted)
 #define mcsi_wide_sqrt MCSI_(wide_sqrt)
-#define mcsi_widen3 MCSI_(widen3)
 #define mcsi_with_sign MCSI_(with_sign)
 
 /* MCSI_W is the number of lanes of a pass, MCS_(x) the public name x of that width, MCSI_(x) a private one. */
@@ -12671,7 +12663,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_warps_loop
 #undef mcsi_weighted
 #undef mcsi_wide_sqrt
-#undef mcsi_widen3
 #undef mcsi_with_sign
 #endif
 
