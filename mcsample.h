@@ -4981,9 +4981,8 @@ MCSI_CORE mcsi_disk_hit mcsi_disk_light_hit(const mcsi_disk_light *d, mcs_vec3 w
     const mcsi_d length3 = length2 * (0.5 + 0.5 * length2); /* its cube, where it is nearly 1 */
     hit.x = MCSI_NARROW(x);
     hit.y = MCSI_NARROW(y);
-    const mcsi_d per_area = 1.0 / d->area;
-    hit.beyond = MCSI_NARROW((x * x + y * y - rim * rim) * per_area);
-    hit.density = MCSI_NARROW(t * t * length3 * per_area * inverse);
+    hit.beyond = MCSI_NARROW((x * x + y * y - rim * rim) / d->area);
+    hit.density = MCSI_NARROW(t * t * length3 / d->area * inverse);
     return hit;
 }
 MCSI_FN mcs_f mcs_disk_light_pdf(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_vec3 w) {
@@ -5164,7 +5163,7 @@ MCSI_CORE double mcsi_half_behind_d(const mcs_spherical_rectangle *l, double hei
     const mcsi_half_turn behind = mcsi_angle_d(height * sum, cosine + sum * (size * (r0 + r1) + d2));
     return x < 0.0 ? strip - behind.angle : behind.angle;
 }
-/* Half the solid angle of a small rectangle from x0 to x, whose area is given: that of two triangles. */
+/* The same of a rectangle from x0 to x that is a small part of its strip: that of two triangles, by its area. */
 MCS_FN double mcsi_half_of_small_d(const mcs_spherical_rectangle *l, double x, double area) {
     const double y0 = l->y0;
     const double y1 = l->y1;
@@ -5200,7 +5199,7 @@ MCSI_CORE void mcsi_spherical_rectangle_finish(mcs_spherical_rectangle *l) {
     l->before = mcsi_half_behind_d(l, height, strip.angle, -l->x0);
     l->behind = mcsi_half_behind_d(l, height, strip.angle, l->x1);
     l->angle = strip.angle - l->before - l->behind;
-    if (l->angle <= 1e-4) l->angle = mcsi_half_of_small_d(l, l->x1, width * height);
+    if (l->angle <= 1e-4 * strip.angle) l->angle = mcsi_half_of_small_d(l, l->x1, width * height);
     l->pdf = mcsi_per_angle_d(l->angle);
 }
 /* The place of a light that is not to be drawn from: about the direction of its centre. */
@@ -5258,7 +5257,7 @@ MCS_FN mcs_vec2 mcsi_spherical_rectangle_find(const mcs_spherical_rectangle *l, 
     const double height = 1.0 / l->per_y;
     const mcsi_half_turn strip = mcsi_angle_d(height, 1.0 + l->y0 * l->y1);
     double passed = strip.angle - l->before - mcsi_half_behind_d(l, height, strip.angle, x);
-    if (passed <= 1e-4) passed = mcsi_half_of_small_d(l, x, (x - l->x0) * height);
+    if (passed <= 1e-4 * strip.angle) passed = mcsi_half_of_small_d(l, x, (x - l->x0) * height);
     u.x = (float)mcsi_at_most_d(passed / l->angle, 1.0);
     const double r = mcsi_distance_d(x, y);
     const double r0 = mcsi_distance_d(x, l->y0);
@@ -5463,7 +5462,8 @@ MCSI_CORE mcs_spherical_triangle mcsi_spherical_triangle_prepare(mcs_vec3 p, mcs
     l.angle = half.angle;
     l.rest = half.rest;
     l.pdf = mcsi_per_angle_d(half.angle);
-    if (sine > 0.0 && (sine > 1e-8 * shorter || cosine > 1e-8 * shorter)) return l;
+    const double least = 1e-8 * shorter;
+    if (shorter > 1e-8 && sine > 0.0 && (sine > least || cosine > least)) return l;
     l.a = mcsi_add_d(mcsi_add_d(to_a, 1.0, to_b), 1.0, to_c);
     mcsi_unit_d(&l.a);
     l.b = l.c = l.a;
@@ -5521,8 +5521,12 @@ MCSI_CORE void mcsi_spherical_triangle_end(const mcs_spherical_triangle *l, cons
     mcsi_d sine_a;
     mcsi_sine_over(&v_c, &sine_c);
     mcsi_sine_over(&v_a, &sine_a);
-    const mcsi_d c = (l->cos_ab * *u * not_c) * sine_c;
-    const mcsi_d a = (l->cos_bc * not_u * not_a) * sine_a;
+    mcsi_d c = (l->cos_ab * *u * not_c) * sine_c;
+    mcsi_d a = (l->cos_bc * not_u * not_a) * sine_a;
+    /* A power of 2 brings their sum between 1 and 2, as squares of squares follow. */
+    const mcsi_d scale = MCSI_WIDEN(mcsi_from_bits(0x7f000000 - (mcsi_bits(MCSI_NARROW(a + c)) & 0x7f800000)));
+    c = scale * c;
+    a = scale * a;
     const mcsi_d weight_a = a * (a * l->cos_ca + c);
     const mcsi_d weight_c = c * (c * l->cos_ca + a);
     const mcsi_d less = weight_a - weight_c;
