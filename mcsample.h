@@ -2099,11 +2099,11 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * most 32 tiles, those that by their mean direction or a corner may weigh more than 1/128 of all.
  *
  * A share of the samples (p->brdf_share) comes from the lobe itself, by mcs_ggx_vndf, mcs_ward, mcs_phong or
- * mcs_ashikhmin; the density is that of the mixture. What the lobe sends below the surface is lost: its density is 0. The share grows with
- * T/A, the mean solid angle of a tile over that of the lobe, A = 4 pi alpha_x alpha_y cos(theta_o). It grows with R/S,
- * too: the mean radiance of the tile about the mirror direction, over what the product reflects; that is, with how much
- * of the answer the lobe would find. With R/S within [1/4096, 1], c = 1 (GGX) or 3 (the others, which have no tails),
- * m = c T/(14 A) - 0.007 and x = m + m^2, the share is
+ * mcs_ashikhmin; the density is that of the mixture. What the lobe sends below the surface is lost: its density is 0.
+ * The share grows with T/A, the mean solid angle of a tile over that of the lobe, A = 4 pi alpha_x alpha_y
+ * cos(theta_o). It grows with R/S, too: the mean radiance of the tile about the mirror direction, over what the product
+ * reflects; that is, with how much of the answer the lobe would find. With R/S within [1/4096, 1], c = 1 (GGX) or 3
+ * (the others, whose tails are thinner), m = c T/(14 A) - 0.007 and x = m + m^2, the share is
  *
  *   (1 - matte) sqrt(R/S) x/(1 + x)      x/(1 + x) being at most 0.95
  *
@@ -2279,9 +2279,9 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *   m       mean of f over the light that comes through: sum of L V f over sum of L V. A sixth of the samples so
  *           follows the light alone.
  *   V       the share of the tile's rays that came through, with 16 more that did as those about it
- *   Va      the same share of the rays to the tile and its neighbours, as what a tile sees they are likely to see: few
- *           rays so tell of many tiles. The four beside it count 3/4, those at its corners 9/16. It has 2 more that came
- *           through as V0 has it, 1/4 or the V of a larger region (mcs_region_inherit).
+ *   Va      the same share of the rays to the tile and its neighbours, as what a tile sees they are likely to see. So
+ *           few rays tell of many tiles. The four beside it count 3/4, those at its corners 9/16. It has 2 more that
+ *           came through as V0 has it: 1/4, or the V of a larger region (mcs_region_inherit).
  *
  * So all light can be drawn, whatever was learned. Nothing is biased, as no table knows the ray of a sample that was
  * drawn from it: the rays of a pass wait in `fresh` until it is over.
@@ -2313,10 +2313,10 @@ MCS_API void mcs_region_decay(mcs_region *g, float keep);
 MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger);
 /* V of tile k, 0 where k is no tile. */
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
-/* Whether r gains by the table of the region, 1 or 0; to be asked before the table is built. It does if it has any matte
- * part, or a lobe of 8 tiles or more: of 2 rows^2 alpha_x alpha_y, whatever wo is (alpha 0.125 with 16 rows). A lobe of
- * 1 to 8 tiles gains where at most half the rays came through, a smaller one nowhere: where the answer is 0 before any
- * ray, nothing need be learned. */
+/* Whether r gains by the table of the region, 1 or 0; to be asked before the table is built. It does if it has any
+ * matte part, or a lobe of 8 tiles or more: of 2 rows^2 alpha_x alpha_y, whatever wo is (alpha 0.125 with 16 rows). A
+ * lobe of 1 to 8 tiles gains where at most half the rays came through, a smaller one nowhere: where the answer is 0
+ * before any ray, nothing need be learned. */
 MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r);
 #endif
 
@@ -5022,8 +5022,8 @@ MCSI_CORE void mcsi_combine(const mcsi_d *s, const mcsi_vec3_d *u, const mcsi_d 
     result->z = *s * u->z + *t * v->z;
 }
 
-/* A prepared light of the scalar pass, which is nothing but doubles, as lane k of one of lanes. In the scalar pass it is
- * assigned: compilers leave out what a sample does not need. */
+/* A prepared light of the scalar pass, which is nothing but doubles, as lane k of one of lanes. In the scalar pass it
+ * is assigned: compilers leave out what a sample does not need. */
 #if MCSI_W == 1
 #define MCSI_PUT_LANE(lanes, one, k) ((lanes) = (one))
 #else
@@ -5421,8 +5421,8 @@ MCS_FN double mcsi_volume_d(mcsi_vec3_d edge_b, mcsi_vec3_d edge_c, mcsi_vec3_d 
                                        mcsi_cross_d(mcsi_add_d(edge_b, -1.0, high_b), edge_c));
     return MCSI_DOT_D(corner, high) + MCSI_DOT_D(corner, low);
 }
-/* Sets the cosines of half the sides, and returns 1 + a.b + b.c + c.a. That is (a + b).(a + c): the two shorter sums keep
- * its digits where p is between corners. *shorter is half the length of both together. */
+/* Sets the cosines of half the sides, and returns 1 + a.b + b.c + c.a. That is (a + b).(a + c): the two shorter sums
+ * keep its digits where p is between corners. *shorter is half the length of both together. */
 MCSI_CORE double mcsi_triangle_cosine_d(mcs_spherical_triangle *l, double *shorter) {
     const mcsi_vec3_d bc = mcsi_add_d(l->b, 1.0, l->c);
     const mcsi_vec3_d ca = mcsi_add_d(l->c, 1.0, l->a);
