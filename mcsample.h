@@ -5422,8 +5422,8 @@ MCS_FN double mcsi_volume_d(mcsi_vec3_d edge_b, mcsi_vec3_d edge_c, mcsi_vec3_d 
     return MCSI_DOT_D(corner, high) + MCSI_DOT_D(corner, low);
 }
 /* Sets the cosines of half the sides, and returns 1 + a.b + b.c + c.a. That is (a + b).(a + c): the two shorter sums
- * keep its digits where p is between corners. *shorter is half the length of both together. */
-MCSI_CORE double mcsi_triangle_cosine_d(mcs_spherical_triangle *l, double *shorter) {
+ * keep its digits where p is between corners. *half_sum is half the length of both together. */
+MCSI_CORE double mcsi_triangle_cosine_d(mcs_spherical_triangle *l, double *half_sum) {
     const mcsi_vec3_d bc = mcsi_add_d(l->b, 1.0, l->c);
     const mcsi_vec3_d ca = mcsi_add_d(l->c, 1.0, l->a);
     const mcsi_vec3_d ab = mcsi_add_d(l->a, 1.0, l->b);
@@ -5432,7 +5432,7 @@ MCSI_CORE double mcsi_triangle_cosine_d(mcs_spherical_triangle *l, double *short
     l->cos_ab = 0.5 * mcsi_length_d(ab);
     const double longer = l->cos_ca > l->cos_ab ? l->cos_ca : l->cos_ab;
     const double longest = l->cos_bc > longer ? l->cos_bc : longer;
-    *shorter = l->cos_bc + l->cos_ca + l->cos_ab - longest;
+    *half_sum = l->cos_bc + l->cos_ca + l->cos_ab - longest;
     if (l->cos_bc == longest) return MCSI_DOT_D(ca, ab);
     return l->cos_ca == longest ? MCSI_DOT_D(ab, bc) : MCSI_DOT_D(bc, ca);
 }
@@ -5456,14 +5456,14 @@ MCSI_CORE mcs_spherical_triangle mcsi_spherical_triangle_prepare(mcs_vec3 p, mcs
     l.past_b = mcsi_side_d(turn * l.per_c * l.per_a, to_c, mcsi_from_to(c, a));
     l.past_c = mcsi_side_d(turn * l.per_a * l.per_b, to_a, mcsi_from_to(a, b));
     const double sine = turn * volume * (l.per_a * l.per_b * l.per_c);
-    double shorter;
-    const double cosine = mcsi_triangle_cosine_d(&l, &shorter);
-    const mcsi_half_turn half = mcsi_angle_d(sine, cosine);
-    l.angle = half.angle;
-    l.rest = half.rest;
-    l.pdf = mcsi_per_angle_d(half.angle);
-    const double least = 1e-8 * shorter;
-    if (shorter > 1e-8 && sine > 0.0 && (sine > least || cosine > least)) return l;
+    double half_sum;
+    const double cosine = mcsi_triangle_cosine_d(&l, &half_sum);
+    const mcsi_half_turn half_angle = mcsi_angle_d(sine, cosine);
+    l.angle = half_angle.angle;
+    l.rest = half_angle.rest;
+    l.pdf = mcsi_per_angle_d(half_angle.angle);
+    const double least = 1e-8 * half_sum;
+    if (half_sum > 1e-8 && sine > 0.0 && (sine > least || cosine > least)) return l;
     l.a = mcsi_add_d(mcsi_add_d(to_a, 1.0, to_b), 1.0, to_c);
     mcsi_unit_d(&l.a);
     l.b = l.c = l.a;

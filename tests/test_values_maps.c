@@ -178,8 +178,8 @@ static void share_of_the_lobe(void) {
     static const float alphas[][2] = {{1, 1},         {0.08f, 0.08f}, {0.03f, 0.03f},
                                       {0.02f, 0.01f}, {0.01f, 0.01f}, {1e-3f, 1e-3f}};
     static const float mattes[] = {0, 0.25f, 1};
-    static const mcs_profile profiles[] = {MCS_PROFILE_GGX, MCS_PROFILE_GAUSS, MCS_PROFILE_PHONG,
-                                           MCS_PROFILE_ASHIKHMIN, (mcs_profile)4};
+    static const mcs_profile profiles[] = {MCS_PROFILE_GGX, MCS_PROFILE_GAUSS, MCS_PROFILE_PHONG, MCS_PROFILE_ASHIKHMIN,
+                                           (mcs_profile)4};
     enum { PROFILES = (int)(sizeof profiles / sizeof *profiles) };
     float light[32 * 16];
     for (int i = 0; i < 32 * 16; i++) light[i] = (float)(1 + i % 5);
