@@ -2278,10 +2278,10 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *           as if alpha^2 were larger by 0.01.
  *   m       mean of f over the light that comes through: sum of L V f over sum of L V. A sixth of the samples so
  *           follows the light alone.
- *   V       the share of the tile's rays that came through, with 16 more that did as those about it
- *   Va      the same share of the rays to the tile and its neighbours, as what a tile sees they are likely to see. So
- *           few rays tell of many tiles. The four beside it count 3/4, those at its corners 9/16. It has 2 more that
- *           came through as V0 has it: 1/4, or the V of a larger region (mcs_region_inherit).
+ *   V       the share of the tile's rays that came through. 16 more are added, of which the share Va did.
+ *   Va      the share of the rays to the tile and its eight neighbours, which are likely to see the same: few rays so
+ *           tell of many tiles. Rays to the four beside it count 3/4, to those at its corners 9/16. 2 more are added,
+ *           of which the share V0 came through: 1/4, or the V of a larger region (mcs_region_inherit).
  *
  * So all light can be drawn, whatever was learned. Nothing is biased, as no table knows the ray of a sample that was
  * drawn from it: the rays of a pass wait in `fresh` until it is over.
@@ -5462,6 +5462,7 @@ MCSI_CORE mcs_spherical_triangle mcsi_spherical_triangle_prepare(mcs_vec3 p, mcs
     l.angle = half_angle.angle;
     l.rest = half_angle.rest;
     l.pdf = mcsi_per_angle_d(half_angle.angle);
+    /* p next to a side, or to two: cosines there have lost their digits. */
     const double least = 1e-8 * half_sum;
     if (half_sum > 1e-8 && sine > 0.0 && (sine > least || cosine > least)) return l;
     l.a = mcsi_add_d(mcsi_add_d(to_a, 1.0, to_b), 1.0, to_c);
@@ -10670,8 +10671,7 @@ MCSI_CORE mcsi_region_lists mcsi_region_lists_of(mcs_region *g) {
 /* What a ray to the next tile counts. */
 #define MCSI_NEXT_COUNTS 0.75f
 #endif
-/* A list of tiles, [cols][rows], at tile k: its number and, each 3/4 of it, those above and below. Columns end at the
- * poles. */
+/* Rays, [cols][rows], of tile k and 3/4 of those of the tiles above and below it. Columns end at the poles. */
 MCSI_CORE mcs_f mcsi_column_about(const float *list, size_t rows, size_t k) {
     mcs_f above = mcs_load(list + k - 1);
     mcs_f below = mcs_load(list + k + 1);
@@ -10679,7 +10679,7 @@ MCSI_CORE mcs_f mcsi_column_about(const float *list, size_t rows, size_t k) {
     if ((k + MCSI_W) % rows == 0) MCSI_LANE(below, MCSI_W - 1) = 0.0f;
     return mcs_load(list + k) + MCSI_NEXT_COUNTS * (above + below);
 }
-/* The same and 3/4 of the columns on both sides. These go round the map. */
+/* The same, and 3/4 of the same for the tiles left and right of it. Rows go round the map. */
 MCSI_CORE mcs_f mcsi_about(const float *list, size_t rows, size_t k) {
     const size_t n = 2 * rows * rows;
     const mcs_f left = mcsi_column_about(list, rows, (k >= rows ? k : k + n) - rows);

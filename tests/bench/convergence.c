@@ -59,6 +59,7 @@ static int print_all(const map *maps, int count, const result *all) {
     print_slopes(maps, count, all);
     print_variances(maps, count, all);
     print_points(maps, count, all);
+    print_gains(count, all);
     print_targets(maps, count, all);
     print_doubts(count, all);
     return print_references(count, all);

@@ -258,6 +258,13 @@ static double seconds_per_sample(const result *r, int how) {
     return r->of[how][INDEPENDENT][BLOCK_LEVEL].seconds / BLOCK;
 }
 
+/* Mean squared error of the best kind of MIS in the same time, over that of a strategy. */
+static double gain_over_mis(const result *r, int how) {
+    double mis = HUGE_VAL;
+    for (int k = MIS_BALANCE; k <= ONE_SAMPLE; k++) mis = fmin(mis, variance_of(r, k) * seconds_per_sample(r, k));
+    return mis / (variance_of(r, how) * seconds_per_sample(r, how));
+}
+
 /* A shading point as a renderer meets it: one set-up, then the few samples that the point is given. */
 static void print_points(const map *maps, int count, const result *all) {
     static const strategy shown[] = {PRODUCT_1, PRODUCT_4, PRODUCT_16, PRODUCT_64};
@@ -275,19 +282,37 @@ static void print_points(const map *maps, int count, const result *all) {
     for (int m = 0; m < MATERIALS; m++) {
         for (int e = 0; e < count; e++) {
             const result *r = &all[m * count + e];
-            double mis = HUGE_VAL;
-            for (int k = MIS_BALANCE; k <= ONE_SAMPLE; k++)
-                mis = fmin(mis, variance_of(r, k) * seconds_per_sample(r, k));
             printf("%-18s %-10s", materials[m].name, maps[e].name);
             for (int k = 0; k < SHOWN; k++) {
                 const int how = (int)shown[k];
                 const double samples = pow(4, k);
                 const double t = seconds_per_sample(r, how);
                 const double v = variance_of(r, how);
-                printf(" %-5.3g %-8.3g %-6.3g", 1e6 * samples * t, 100 * sqrt(v / samples), mis / (v * t));
+                printf(" %-5.3g %-8.3g %-6.3g", 1e6 * samples * t, 100 * sqrt(v / samples), gain_over_mis(r, how));
             }
             printf("\n");
         }
+    }
+}
+/* The same over the maps: geometric mean and worst. */
+static void print_gains(int count, const result *all) {
+    static const strategy shown[] = {PRODUCT_1, PRODUCT_4, PRODUCT_16, PRODUCT_64};
+    printf("\n%-29s", "MIS/it, mean / worst map");
+    for (int k = 0; k < 4; k++) printf(" %-17s", strategy_name[shown[k]]);
+    printf("\n");
+    for (int m = 0; m < MATERIALS; m++) {
+        printf("%-29s", materials[m].name);
+        for (int k = 0; k < 4; k++) {
+            double mean = 0;
+            double worst = HUGE_VAL;
+            for (int e = 0; e < count; e++) {
+                const double gain = gain_over_mis(&all[m * count + e], (int)shown[k]);
+                mean += log(gain) / count;
+                worst = fmin(worst, gain);
+            }
+            printf(" %6.3g / %-8.3g", exp(mean), worst);
+        }
+        printf("\n");
     }
 }
 

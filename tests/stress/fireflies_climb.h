@@ -98,7 +98,7 @@ static worth trial_worth(const trial *t, picture *m, mcs_product *memory_of_it) 
     s.made_of.matte = (float)t->matte;
     s.made_of.a = (float)a;
     s.made_of.b = (float)b;
-    if (t->kind == PHONG) s.made_of.a = (float)fmax(2 / (a * a), 10);
+    if (t->kind == PHONG) s.made_of.a = (float)fmax(2 / (a * a), 10); /* nothing is known of smaller ones */
     if (t->kind == ASHIKHMIN) {
         s.made_of.a = (float)(2 / (a * a) - 2);
         s.made_of.b = (float)(2 / (b * b) - 2);
