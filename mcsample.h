@@ -776,8 +776,9 @@ typedef struct {
  *            mcs_frame_make has for that direction. A centre within 1e-18 of p has the direction +z.
  * density    1/(2 pi k); from outside 0 where w misses the ball by more than an angle of 2^-20, as rounding may move a
  *            sampled w over the rim. MIS is right with that, as light is 0 there.
- * accuracy   pdf and distance within 1e-7 of themselves, for d up to 1e9 radii. The distance is that of the exact
- *            direction of u.
+ * accuracy   pdf and distance within 1e-7 of themselves, for d up to 1e9 radii and p at least 1e-8 d from the surface.
+ *            Nearer to the surface they are those of a point within 3e-16 d of p, which may be on its other side. The
+ *            distance is that of the exact direction of u.
  * cost       5 square roots, 10 divisions, 1 sincos; array forms spend half of these once for all
  * functions  mcs_ball_sample, mcs_ball_pdf, mcs_ball_invert, mcs_ball_sample_n for arrays
  * source     the cone is that of Wang 1992, "Physically correct direct lighting for distribution ray tracing" */
@@ -4856,10 +4857,14 @@ MCSI_SAMPLE mcs_light mcs_ball_sample(mcs_vec3 p, mcs_vec3 centre, mcs_f radius,
     return mcsi_ball_draw(&b, u1, u2);
 }
 #ifdef MCSI_PUBLIC
-/* w in the frame about the centre. */
+/* w in the frame about the centre, brought to unit length: a length off by a few ulp would look like the other side of
+ * the rim. */
 MCSI_CORE mcs_vec3 mcsi_ball_local(const mcsi_ball *b, mcs_vec3 w) {
     const mcsi_vec3_d v = mcsi_to_axis(&b->axis, mcsi_origin(), w);
-    return mcsi_vec3(MCSI_NARROW(v.x), MCSI_NARROW(v.y), MCSI_NARROW(v.z));
+    mcsi_d length2 = MCSI_DOT_D(v, v);
+    mcsi_d inverse;
+    mcsi_inverse_root(&length2, &inverse);
+    return mcsi_vec3(MCSI_NARROW(inverse * v.x), MCSI_NARROW(inverse * v.y), MCSI_NARROW(inverse * v.z));
 }
 /* A direction at the angle d beyond the rim has 1 - cos = k + d sin + d^2/2, about. d is 2^-23, and float takes it
  * within 8e-7 tan of half the angle of the rim. */

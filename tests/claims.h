@@ -21,7 +21,7 @@ static const char *const mcst_claim_sentences[] = {
     "coordinates within half an ulp of the exact map, for u of 0 and of 2^-125 and more; pdf exact",
     /* [lights] */
     "every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24",
-    "pdf and distance within 1e-7 of themselves, for d up to 1e9 radii.",
+    "pdf and distance within 1e-7 of themselves, for d up to 1e9 radii and p at least 1e-8 d from the surface.",
     "coordinates within 2^-24, pdf and distance within 1e-7 of themselves, for samples whose distance is 1e-4 radii or "
     "more",
     "w within 1.1 x 2^-24 of the exact map by coordinate, places on the light within 1.1 x 2^-24, pdf within 2e-7 and "

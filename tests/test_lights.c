@@ -215,6 +215,27 @@ static void away_from_origin(mcs_pcg32 *r) {
     }
 }
 
+/* Lengths that MCS_ASSERT takes for 1 do not move a direction over the rim of a ball: by 1e-4 of its 1 - cos it stays
+ * inside, or outside. */
+static void rim_by_lengths(mcs_pcg32 *r) {
+    const mcs_vec3 zero = {0, 0, 0};
+    const float lengths[4] = {0.9996f, 1 - 0x1p-20f, 1 + 0x1p-20f, 1.0004f};
+    for (int i = 0; i < 20000; i++) {
+        const mcs_vec3 c = any_place(r, 4);
+        const float radius = (float)((double)o_len(wide(c)) * (1 - pick(r, 1e-6, 0.99)));
+        const float u2 = any_u(r);
+        const o_vec3 in = o_ball_map(wide(c), (ld)radius, 0.9999L, (ld)u2);
+        const o_vec3 out = o_ball_map(wide(c), (ld)radius, 1.0001L, (ld)u2);
+        const ld length = (ld)lengths[i % 4];
+        const mcs_vec3 w_in = {(float)(length * in.x), (float)(length * in.y), (float)(length * in.z)};
+        const mcs_vec3 w_out = {(float)(length * out.x), (float)(length * out.y), (float)(length * out.z)};
+        const float pdf = mcs_ball_sample(zero, c, radius, 0.5f, u2).pdf;
+        CHECK(mcs_ball_pdf(zero, c, radius, w_in) == pdf && mcs_ball_pdf(zero, c, radius, w_out) == 0,
+              "radius %.9g, length %.9Lg, u2 %a: %.9g inside, %.9g outside", (double)radius, length, (double)u2,
+              (double)mcs_ball_pdf(zero, c, radius, w_in), (double)mcs_ball_pdf(zero, c, radius, w_out));
+    }
+}
+
 /* --- no light at all ---------------------------------------------------------------------------------------------- */
 
 /* pdf 0, and a unit direction to a place on the light. */
@@ -426,6 +447,7 @@ int main(int argc, char **argv) {
     if (mcst_contracts()) puts("SKIPPED: the bits of balls and disks that are moved, as this build contracts a*b + c");
     else if (mcst_case("balls and disks, moved with p")) moved_together(&r);
     if (mcst_case("balls and disks, away from the origin")) away_from_origin(&r);
+    if (mcst_case("the rim of balls, by lengths")) rim_by_lengths(&r);
     if (mcst_case("no light")) no_lights();
     if (mcst_case("a disk too faint")) faint_disk();
     if (mcst_case("balls and disks, bad places")) bad_places();
