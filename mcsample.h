@@ -188,6 +188,7 @@
  * These change how functions are compiled.
  *
  * MCS_MAX_LANES       The widest unit that array functions use on x86: 4 is SSE2, 8 is AVX2, 16, the default, AVX-512.
+ *                     With 8 and 16, a processor that lacks AVX2 takes the points of arrays one by one.
  * MCS_ASSERT          Called with conditions on arguments; see "Mistakes" above. assert is a good value.
  * MCS_FN              The linkage of every public function, static inline by default. Defined as nothing, it makes a
  *                     library of a C file that includes this one. Defined as inline, it lets a C++ module export them.
@@ -2540,12 +2541,26 @@ MCS_FN double mcsi_sqrt_d(double x) {
 #endif
 #endif
 
+/* On x86 array functions ask the processor what it has beyond the flags of the build, and passes for AVX2 and AVX-512
+ * compile the body again. The library of MSVC lacks the query. */
+#define MCSI_TARGET_AVX2 "avx2,fma"
+#define MCSI_TARGET_AVX512 "avx512f,avx512dq,avx512bw,avx512vl"
+#if defined(MCSI_BATCH) && !defined(MCSI_DECLARED) && !defined(MCS_NO_WIDE) && defined(MCSI_X86) && !defined(_MSC_VER)
+#if !defined(__AVX2__) && MCS_MAX_LANES >= 8
+#define MCSI_PICK_AVX2
+#endif
+#if !defined(__AVX512F__) && MCS_MAX_LANES >= 16
+#define MCSI_PICK_AVX512
+#endif
+#endif
+
 /* The base is the pass of loops that every processor runs for which this file is compiled. MCSI_BASE(loop) is a loop of
  * it, and MCSI_BASE_W is its number of lanes, 0 where there are no loops. Maps use loops without array functions, too,
- * and the scalar ones will do. */
+ * and the scalar ones will do. So they do for processors without AVX2 where it is asked for: a pass of 4 lanes would
+ * make each include longer by a fifth. */
 #if defined(MCSI_DECLARED)
 #define MCSI_BASE_W 0
-#elif defined(MCS_NO_WIDE) || !defined(MCSI_BATCH)
+#elif defined(MCS_NO_WIDE) || !defined(MCSI_BATCH) || defined(MCSI_PICK_AVX2)
 #define MCSI_BASE(name) mcsi_##name
 #define MCSI_BASE_W 1
 #elif defined(__AVX512F__) && MCS_MAX_LANES >= 16
@@ -2559,30 +2574,20 @@ MCS_FN double mcsi_sqrt_d(double x) {
 #define MCSI_BASE_W 4
 #endif
 
-/* On x86 array functions ask the processor what it has beyond the base, and two more passes compile the body for AVX2
- * and AVX-512. The library of MSVC lacks the query. */
-#define MCSI_TARGET_AVX2 "avx2,fma"
-#define MCSI_TARGET_AVX512 "avx512f,avx512dq,avx512bw,avx512vl"
-#if defined(MCSI_X86) && MCSI_BASE_W >= 4 && !defined(_MSC_VER)
-#if !defined(__AVX2__) && MCS_MAX_LANES >= 8
-#define MCSI_PICK_AVX2
-#endif
-#if !defined(__AVX512F__) && MCS_MAX_LANES >= 16
-#define MCSI_PICK_AVX512
-#endif
-#endif
 #define MCSI_CPU_HAS_AVX2 (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
 #define MCSI_CPU_HAS_AVX512 \
     (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw"))
 
 #if MCSI_BASE_W > 0
+/* So few points are taken one by one, which costs less than the narrowest vector. */
+#define MCSI_FEW (MCSI_BASE_W == 4 || MCSI_BASE_W == 8 ? 1 : 2)
 /* Lanes of the pass for a call of n points: the narrowest that takes them at once, or the widest there is. */
 MCS_FN int mcsi_lanes_for(size_t n) {
 #if defined(MCSI_PICK_AVX512)
     if (n > 8 && MCSI_CPU_HAS_AVX512) return 16;
 #endif
 #if defined(MCSI_PICK_AVX2)
-    if (n > 4 && MCSI_CPU_HAS_AVX2) return 8;
+    if (n > MCSI_FEW && MCSI_CPU_HAS_AVX2) return 8;
 #endif
     (void)n;
     return MCSI_BASE_W;
@@ -11453,7 +11458,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
  * or private, stands twice in this table: it is defined before the passes and undefined behind them. */
 #ifndef MCSI_PASSES
 #define MCSI_PASSES
-#if MCSI_PACKETS >= 4 || MCSI_BASE_W >= 4
+#if MCSI_PACKETS >= 4 || MCSI_BASE_W >= 4 || defined(MCSI_PICK_AVX2)
 /* What the names of the body stand for in the passes for more than one lane. */
 #define mcs_ashikhmin MCS_(ashikhmin)
 #define mcs_ashikhmin_eval MCS_(ashikhmin_eval)
@@ -12694,11 +12699,13 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define MCSI_TRY_AVX2(n, loop, args)
 #endif
 #define MCSI_WIDE(n, loop, args) MCSI_TRY_AVX512(n, loop, args) MCSI_TRY_AVX2(n, loop, args) MCSI_BASE(loop) args
-/* So few points are taken one by one, which costs less than the narrowest vector. */
-#define MCSI_FEW (MCSI_BASE_W < 16 ? 1 : 2)
+#if MCSI_BASE_W == 1
+#define MCSI_BATCH_LOOP(loop, args) MCSI_WIDE(n, loop, args)
+#else
 #define MCSI_BATCH_LOOP(loop, args)      \
     if (n <= MCSI_FEW) mcsi_##loop args; \
     else MCSI_WIDE(n, loop, args)
+#endif
 
 #ifdef MCSI_TABLES
 MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner) {

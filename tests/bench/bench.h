@@ -118,7 +118,7 @@ static inline void bench_start(int argc, char **argv, const char *name) {
         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")
             ? ", AVX-512"
         : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? ", AVX2"
-                                                                          : ", SSE2";
+                                                                          : ", no AVX2";
 #endif
     snprintf(bench.title, sizeof bench.title, "%s; %s; %s%s%s", BENCH_COMPILER, BENCH_FLAGS, cpu, units,
              bench.quick ? "; quick run" : "");
