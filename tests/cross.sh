@@ -9,7 +9,7 @@
 set -u
 LC_ALL=C
 export LC_ALL
-all='x87 s390x i386 gcc-O3 clang-O2 clang-O3 gcc-O2 contract aarch64 arm riscv64 fast-math gcc-O1 clang-O1 gcc-O0 clang-O0 mingw
+all='x87 s390x i386 gcc-O3 clang-O2 clang-O3 gcc-O2 contract nehalem aarch64 arm riscv64 fast-math gcc-O1 clang-O1 gcc-O0 clang-O0 mingw
     nvcc' # the longest first
 root=${BUILD:-build}/cross began=${BEGAN:-$(date +%s)}
 MCS_TEST_SCALE=${MCS_TEST_SCALE:-0.02}
@@ -220,6 +220,7 @@ if have i686-linux-gnu-gcc; then ia32='i686-linux-gnu-gcc -static'; fi
 # the build time; the C library of another machine is linked in. s390x evaluates floats as double under -std=c99, as -std=gnu99
 # does not. Each run of .ci/run waits for it, so it has what the order of bytes could be seen in: the bits of every function, and files;
 # without packets, whose text is that of the array forms. ppc64, which has that order too, has the usual tests.
+# nehalem is x86 without AVX2: its arrays, and the builds of maps and products, take their points one by one.
 job() {
     dir=$root/$1
     mkdir -p "$dir" || exit 1
@@ -231,6 +232,7 @@ job() {
     riscv64) try riscv64 qemu-riscv64 "$usual" riscv64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
     s390x) try s390x qemu-s390x "bits hdr env_files env_input" s390x-linux-gnu-gcc -std=gnu99 -O1 -static $exact -DMCST_ARRAYS ;;
     ppc64) try ppc64 qemu-ppc64 "$usual env env_input env_files" powerpc64-linux-gnu-gcc -std=c99 -O1 -static $exact ;;
+    nehalem) try nehalem 'qemu-x86_64 -cpu Nehalem' bits gcc -std=c99 -O1 -static $exact -DMCST_ARRAYS ;;
     i386) try i386 "" "$usual env env_input env_memory env_files" $ia32 -std=c99 -O1 -msse2 -mfpmath=sse $exact ;;
     x87) x87 ;;
     mingw)
