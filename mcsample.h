@@ -3206,9 +3206,11 @@ MCS_FN float mcsi_project(double a, double b, float t) {
 
 /* In lanes, the structs of part I. */
 #if MCSI_W > 1
+#ifdef MCSI_PUBLIC
 typedef struct {
     mcs_f x, y;
 } mcs_vec2;
+#endif
 typedef struct {
     mcs_f x, y, z;
 } mcs_vec3;
@@ -3348,7 +3350,8 @@ MCSI_CORE void mcsi_out(const mcsi_batch *b, int k, mcs_f v) {
 }
 #else
 /* The first lanes of a vector, from and to memory; the other lanes repeat the first. AVX and AVX-512 have instructions
- * for that. Their mask is a vector or a number. */
+ * for that, whose mask is a vector or a number. Stores of AVX are without: on AMD they are microcode, and two stores of
+ * 4 lanes, which may overlap, take half of the time. */
 #if MCSI_W > 4 && defined(MCSI_MASKED)
 typedef float mcsi_masked_f __attribute__((ext_vector_type(MCSI_W)));
 typedef mcsi_bool mcsi_mask __attribute__((ext_vector_type(MCSI_W)));
@@ -3361,29 +3364,17 @@ MCSI_CORE mcsi_mask mcsi_mask_of(size_t count) {
 MCSI_CORE mcs_f mcsi_load_first(const float *p, size_t count) {
     return (mcs_f)__builtin_masked_load(mcsi_mask_of(count), p, (mcsi_masked_f)mcs_set(p[0]));
 }
-MCSI_CORE void mcsi_store_first(float *p, mcs_f v, size_t count) {
-    __builtin_masked_store(mcsi_mask_of(count), (mcsi_masked_f)v, p);
-}
 #elif defined(MCSI_AVX512)
 MCSI_CORE uint16_t mcsi_mask_of(size_t count) { return (uint16_t)((1u << count) - 1); }
 MCSI_CORE mcs_f mcsi_load_first(const float *p, size_t count) {
     return __builtin_ia32_loadups512_mask(p, mcs_set(p[0]), mcsi_mask_of(count));
 }
-MCSI_CORE void mcsi_store_first(float *p, mcs_f v, size_t count) {
-    __builtin_ia32_storeups512_mask(p, v, mcsi_mask_of(count));
-}
 #elif defined(MCSI_AVX)
-typedef float mcsi_masked_f __attribute__((vector_size(32))); /* what clang takes for the pointer of these two */
-MCSI_CORE mcs_i mcsi_mask_of(size_t count) {
-    const mcs_i lane = {0, 1, 2, 3, 4, 5, 6, 7};
-    return lane < (int32_t)count;
-}
+typedef float mcsi_masked_f __attribute__((vector_size(32))); /* what clang takes for the pointer */
 MCSI_CORE mcs_f mcsi_load_first(const float *p, size_t count) {
-    const mcs_i mask = mcsi_mask_of(count);
+    const mcs_i lane = {0, 1, 2, 3, 4, 5, 6, 7};
+    const mcs_i mask = lane < (int32_t)count;
     return mcsi_sel(mask, __builtin_ia32_maskloadps256((const mcsi_masked_f *)(const void *)p, mask), mcs_set(p[0]));
-}
-MCSI_CORE void mcsi_store_first(float *p, mcs_f v, size_t count) {
-    __builtin_ia32_maskstoreps256((mcsi_masked_f *)(void *)p, mcsi_mask_of(count), v);
 }
 #else
 MCSI_CORE mcs_f mcsi_load_first(const float *p, size_t count) {
@@ -3392,13 +3383,28 @@ MCSI_CORE mcs_f mcsi_load_first(const float *p, size_t count) {
     for (size_t lane = 1; lane < MCSI_W; lane++) MCSI_LANE(v, lane) = p[lane < count ? lane : 0];
     return v;
 }
+#endif
 MCSI_CORE void mcsi_store_first(float *p, mcs_f v, size_t count) {
+#if MCSI_W == 16 && defined(MCSI_MASKED)
+    __builtin_masked_store(mcsi_mask_of(count), (mcsi_masked_f)v, p);
+#elif defined(MCSI_AVX512)
+    __builtin_ia32_storeups512_mask(p, v, mcsi_mask_of(count));
+#else
+#if defined(MCSI_AVX)
+    if (count >= 4) {
+        const mcs_i lanes = {0, 1, 2, 3, 4, 5, 6, 7};
+        const mcs_f last = __builtin_ia32_permvarsf256(v, lanes + (int32_t)(count - 4));
+        MCSI_COPY(p, &v, 4 * sizeof *p);
+        MCSI_COPY(p + count - 4, &last, 4 * sizeof *p);
+        return;
+    }
+#endif
     MCSI_UNROLL
-    for (size_t lane = 0; lane < MCSI_W; lane++) {
+    for (size_t lane = 0; lane < 4; lane++) {
         if (lane < count) p[lane] = MCSI_LANE(v, lane);
     }
-}
 #endif
+}
 /* The lanes of input array k. */
 MCSI_CORE mcs_f mcsi_in(const mcsi_batch *b, int k) {
     const size_t left = b->n - b->i;
@@ -4857,11 +4863,11 @@ MCSI_CORE mcs_light mcsi_ball_draw(const mcsi_ball *b, mcs_f u1, mcs_f u2) {
     light.distance = mcsi_sane_result(ok, mcsi_ball_distance(b, u1));
     return light;
 }
+#ifdef MCSI_PUBLIC
 MCSI_SAMPLE mcs_light mcs_ball_sample(mcs_vec3 p, mcs_vec3 centre, mcs_f radius, mcs_f u1, mcs_f u2) {
     const mcsi_ball b = mcsi_ball_make(p, centre, radius);
     return mcsi_ball_draw(&b, u1, u2);
 }
-#ifdef MCSI_PUBLIC
 /* w in the frame about the centre, brought to unit length: a length off by a few ulp would look like the other side of
  * the rim. */
 MCSI_CORE mcs_vec3 mcsi_ball_local(const mcsi_ball *b, mcs_vec3 w) {
@@ -4959,12 +4965,12 @@ MCSI_CORE mcs_light mcsi_disk_light_draw(const mcsi_disk_light *d, mcs_f u1, mcs
     light.distance = mcsi_sane_result(light.pdf > 0.0f, MCSI_NARROW(distance));
     return light;
 }
+#ifdef MCSI_PUBLIC
 MCSI_SAMPLE mcs_light mcs_disk_light_sample(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, mcs_f radius, mcs_f u1,
                                             mcs_f u2) {
     const mcsi_disk_light d = mcsi_disk_light_make(p, centre, normal, radius);
     return mcsi_disk_light_draw(&d, u1, u2);
 }
-#ifdef MCSI_PUBLIC
 /* Where a direction hits the plane of the disk: the point from the centre, and the density there if it is of the disk.
  * `ahead` is not set where the plane is not hit, or further away than the disk is. */
 typedef struct {
