@@ -2580,7 +2580,7 @@ MCS_FN double mcsi_sqrt_d(double x) {
 
 #if MCSI_BASE_W > 0
 /* So few points are taken one by one, which costs less than the narrowest vector. */
-#define MCSI_FEW (MCSI_BASE_W == 4 || MCSI_BASE_W == 8 ? 1 : 2)
+#define MCSI_FEW (MCSI_BASE_W < 16 ? 1 : 2)
 /* Lanes of the pass for a call of n points: the narrowest that takes them at once, or the widest there is. */
 MCS_FN int mcsi_lanes_for(size_t n) {
 #if defined(MCSI_PICK_AVX512)
