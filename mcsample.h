@@ -1055,8 +1055,8 @@ typedef struct {
     mcs_vec3 n; /* the local z axis, the normal */
 } mcs_frame;
 
-/* The frame of the unit normal n. s and t turn smoothly with n, except where n.z changes its sign. A bad n gives the
- * axes of the world; an n that is not of unit length gives a frame that is skewed. */
+/* The frame of the unit normal n. s and t turn smoothly with n, except where n.z changes its sign, which a z of -0 has.
+ * A bad n gives the axes of the world; an n that is not of unit length gives a frame that is skewed. */
 MCS_FN mcs_frame mcs_frame_make(mcs_vec3 n);
 /* The frame of the unit normal n whose s lies along the tangent as far as n allows: s is the tangent less its part
  * along n, brought to unit length, each coordinate within 2^-23. The tangent may have any length. One that is 0 or not
@@ -5762,7 +5762,8 @@ MCSI_FN mcs_f mcs_cone_from_sin2(mcs_f sin2) {
 }
 #endif
 MCSI_CORE mcs_i mcsi_cone_ok(mcs_f k) { return (k >= 1e-30f) & (k <= 2.0f); }
-/* With t = k u1, 2 - t is (2 - k) + k (1 - u1), which keeps its digits where k is 2. */
+/* The sine is the root of t (2 - t), where t = k u1. About t = 1 the rounding of t moves both factors, and their product
+ * hardly at all. Near t = 2 the second one keeps its digits as (2 - k) + k (1 - u1). */
 MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_cone_ok(k);
     MCSI_REQUIRE(ok);
@@ -5770,7 +5771,8 @@ MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
     u1 = mcsi_sane_u(u1, &ok);
     u2 = mcsi_sane_u(u2, &ok);
     const mcs_f t = k * u1;
-    return mcsi_around_z(ok, mcsi_sqrt(t * ((2.0f - k) + k * (1.0f - u1))), 1.0f - t, u2, MCSI_1_2PI / k);
+    const mcs_f rest = mcsi_sel(t < 1.5f, 2.0f - t, (2.0f - k) + k * (1.0f - u1));
+    return mcsi_around_z(ok, mcsi_sqrt(t * rest), 1.0f - t, u2, MCSI_1_2PI / k);
 }
 #ifdef MCSI_PUBLIC
 /* A sampled direction may be rounded to just outside of the rim. */

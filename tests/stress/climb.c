@@ -324,6 +324,24 @@ static const struct {
       {0x1.50dc1ap-21f, 0x1.4974cap-1f},
       {0, 0, 1},
       {0, {0, 0, 0}, {{0, 0, 0}}, 0}}},
+    {"cone", /* 2 - t with roundings of its own */
+     {{0x1.ed0e62p-1f, 0, 0, 0, 0, 1}, {0x1.ffff96p-1f, 0x1.d3ff8ep-3f}, {0, 0, 1}, {0, {0, 0, 0}, {{0, 0, 0}}, 0}}},
+    {"ball", /* a direction within the rim whose length is off by 11 ulp */
+     {{0},
+      {0x1.fffffep-1f, 0x1.cf1d68p-2f},
+      {-0x1.768cbap-1f, -0x1.1411ccp-2f, -0x1.40a124p-1f},
+      {ID_ball,
+       {-0x1.2711c6p-7f, -0x1.959c06p-30f, 0x1.d4a966p-15f},
+       {{-0x1.79af78p-5f, 0x1.7fad26p-4f, 0x1.5c0ec8p-9f}, {0, 0, 1}, {0, 0, 0}},
+       0x1.9ccf22p-4f}}},
+    {"disk_light", /* a normal whose z is -0 */
+     {{0},
+      {0x1.3008aep-1f, 0x1.2f5c5ap-1f},
+      {0x1.be14bep-7f, -0x1.77d492p-1f, 0x1.5ba168p-1f},
+      {ID_disk_light,
+       {0, 0, 0},
+       {{0x1.af67fp+15f, -0x1.57a23p+20f, 0x1.16fca8p+20f}, {0x1.ffffe8p-1f, 0x1.398fa6p-10f, -0.0f}, {0, 0, 0}},
+       0x1.85dd2ap+23f}}},
     {"spherical_triangle", /* a sliver next to p: 1 + a.b + b.c + c.a cancels */
      {{0},
       {0x1.bd159cp-1, 0x1.53c50ap-2},

@@ -22,6 +22,8 @@ typedef struct {
     qd distance, x, y;
 } place;
 
+static inline q3 minus(q3 a, q3 b) { return add(a, times(-1, b)); }
+
 static inline void put3(float v[3], float x, float y, float z) {
     v[0] = x;
     v[1] = y;
@@ -53,20 +55,20 @@ static inline light seen_from_p(const given_light *g) {
     light l;
     l.id = g->id;
     l.r = g->r;
+    const q3 p = vec(g->p[0], g->p[1], g->p[2]);
     for (int i = 0; i < 3; i++) {
         const int is_place = i == 0 || g->id == ID_spherical_triangle; /* else an edge or a normal */
-        const qd from = is_place ? 1 : 0;
-        l.at[i] = vec(g->at[i][0] - from * g->p[0], g->at[i][1] - from * g->p[1], g->at[i][2] - from * g->p[2]);
+        const q3 at = vec(g->at[i][0], g->at[i][1], g->at[i][2]);
+        l.at[i] = is_place ? minus(at, p) : at;
     }
     return l;
 }
 
 static inline q3 unit(q3 v) { return times(1 / len(v), v); }
-static inline q3 minus(q3 a, q3 b) { return add(a, times(-1, b)); }
 static inline qd angle_between(q3 a, q3 b) { return atan2q(len(cross(a, b)), dot(a, b)); }
-/* v in the frame of the unit vector n, as Duff et al. 2017 build it. */
+/* v in the frame of the unit vector n, as Duff et al. 2017 build it: -0 has a sign, too. */
 static inline q3 in_frame(q3 n, q3 v) {
-    const qd sign = n.z < 0 ? -1 : 1;
+    const qd sign = copysignq(1, n.z);
     const qd a = -1 / (sign + n.z);
     const q3 s = vec(1 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x);
     const q3 t = vec(n.x * n.y * a, sign + n.y * n.y * a, -n.y);
