@@ -23,7 +23,7 @@
  *     float     u1  = mcs_pcg32_float(&rng);
  *     float     u2  = mcs_pcg32_float(&rng);
  *     mcs_brdf  s   = mcs_ggx_bounded_sample(&m, wo, u1, u2);
- *     if (s.pdf > 0) radiance += s.weight * incoming(s.wi);    // weight is f cos(theta_i) / pdf
+ *     if (s.pdf > 0) radiance += s.weight * incoming(s.wi);    // weight is f cos(theta_i) / pdf; wi is local
  *
  * ---- Conventions ----
  *
@@ -118,8 +118,8 @@
  *   [square]      a bilinear density on the unit square                    cosines over a light of four corners
  *   [disk]        points on a disk                                         lenses, round lights
  *   [triangle]    points on a triangle                                     lights made of triangles
- *   [lights]      directions towards balls, disks, rectangles, triangles   lights, seen from a shaded point
- *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte surfaces, the sun
+ *   [lights]      directions towards balls, disks, rectangles, triangles   area lights, seen from a shaded point
+ *   [sphere]      directions: sphere, hemisphere, cosine, cone             matte (Lambertian) surfaces, the sun
  *   [media]       henyey_greenstein, rayleigh, von_mises_fisher            fog, skin, clear air; guiding
  *   [frame]       local and world coordinates                              every shaded point
  *   [microfacet]  half-vectors, mirroring, Schlick's Fresnel               BRDFs of your own
@@ -128,7 +128,7 @@
  *   [glass]       GGX microfacets that reflect and refract                 frosted glass, ice
  *   [mis]         weights of two strategies                                a light and a lobe together
  *   [tables]      densities given as numbers                               one of many lights, measured curves
- *   [env]         environment maps                                         light from all around
+ *   [env]         environment maps (equirectangular)                       light from all around
  *   [product]     map times lobe times cosine                              light from all around on a given surface
  *   [region]      what a part of a scene learns of its light               the same where things stand in the way
  *   [reservoir]   one or k of the candidates that come along               many lights, resampling
@@ -820,8 +820,9 @@ MCS_API void mcs_disk_light_sample_n(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 norma
 
 /* ---- spherical_rectangle and spherical_triangle: lights that are prepared for a point p ----
  * Directions are uniform in the solid angle of the light, and the maps are continuous: neither the distance nor the
- * cosine at the light is left in the estimate. Lights are seen from both sides. Small, distant, thin and grazing ones
- * are as exact as others. A light is what the floats say that are given.
+ * cosine at the light is left in the estimate. Lights are seen from both sides: where one shines to one side alone,
+ * leave out samples whose w meets its back. Small, distant, thin and grazing lights are as exact as others. A light is
+ * what the floats say that are given.
  *
  * density    1/(solid angle); 0 in directions that miss the light, and for bad input. It is a member of the prepared
  *            light, too, for those who know that a ray hits. Where p is in the plane of the light, all densities are 0,
@@ -948,7 +949,8 @@ MCS_API void mcs_hemisphere_sample_n(size_t n, const float *u1, const float *u2,
                                      float *pdf);
 #endif
 
-/* ---- cosine: in proportion to z. Prefer it to hemisphere for matte surfaces. ----
+/* ---- cosine: in proportion to z. Prefer it to hemisphere for matte surfaces: their f is albedo/pi, a sample's weight
+ * f cos/pdf the albedo. ----
  * z          sqrt(1 - u1), which is above 0: the polar disk, projected up
  * density    z/pi
  * functions  mcs_cosine_sample, mcs_cosine_pdf, mcs_cosine_invert, mcs_cosine_sample_n for arrays */
@@ -1121,7 +1123,7 @@ MCS_FN float mcs_fresnel_dielectric(float cos_i, float eta);
 MCS_FN float mcs_fresnel_conductor(float cos_i, float eta, float k);
 /* w refracted at h, a half-vector or the normal. Both w and the result point away from the surface, on two sides of it.
  * w may be on either side of h, and lengths within (1/2, 2) do not matter. (0, 0, 0) says that there is none, because
- * the reflection is total. */
+ * the reflection is total. Refraction changes radiance by the square of the index: see "light" in [glass]. */
 MCS_FN mcs_vec3 mcs_refract(mcs_vec3 w, mcs_vec3 h, float eta);
 
 #endif
@@ -1965,8 +1967,8 @@ typedef struct {
     uint32_t incomplete;             /* 1 where the image had a floor */
     float turn, inner;               /* private: width of a column, and of its part within the margins */
     /* World directions of the map's x, y, z, orthonormal. build makes it the axes; it may be changed at any time but
-     * for products built with it. Seen from inside, +z up, columns run to the left: a mirrored frame (t negated) shows
-     * a photograph as it was taken. */
+     * for products built with it. Where +y is up in the world, take mcs_frame_make of (0, 1, 0). Seen from inside, with
+     * the map's z up, columns run to the left: a mirrored frame (t negated) shows a photograph as it was taken. */
     mcs_frame frame;
     uint64_t checksum; /* private: of all but the frame */
 } mcs_env;
@@ -2720,9 +2722,11 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
  *              before its loop, within #ifdef MCSI_BATCHES. MCSI_CORE before what is private. MCSI_REQUIRE tells
  *              bad parameters; [sane] makes bad input harmless.
  *   part V     a #define and an #undef in [names] for each of its names, private ones too; X_sample_n in [arrays].
- *   tests      a row in registry.h, its truth in oracle.h and stress/exact.h, its hashes in bits.txt: what is missing
- *              fails by name. Nothing asks for a sentence in claims.h, radii in stress/floats.c, a text in
- *              bench/throughput.c, slips in mutants.txt, and its line in README.md. */
+ *   tests      a row in registry.h, and above it a grid, a domain, chi-square sets and claims, where none there fit its
+ *              parameters; its truth in oracle.h and stress/exact.h; its hashes in bits.txt, by test_bits --print: what
+ *              is missing fails by name. The limits in hygiene.sh go up. Nothing asks for a sentence in claims.h, its
+ *              name in test_values.c, radii in stress/floats.c, a text in bench/throughput.c, slips in mutants.txt, a
+ *              picture in examples/gallery_samplers.h, and its line in README.md. */
 #if MCSI_W == MCSI_BASE_W && !defined(MCSI_LOOPS)
 #define MCSI_LOOPS
 #endif
@@ -9084,7 +9088,7 @@ MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes) {
 typedef struct {
     uint32_t begin, mass;
 } mcsi_row_part;
-/* The whole map, whose `share` is NULL, or a rectangle of texels. Its row i is row row0 + i of the map. uniform: it is
+/* The whole map, whose `part` is NULL, or a rectangle of texels. Its row i is row row0 + i of the map. uniform: it is
  * drawn as even light per solid angle. */
 typedef struct {
     mcsi_cdf rows;
@@ -9196,7 +9200,10 @@ MCSI_CORE mcsi_draw mcsi_draw_start(float u1, float u2) {
     return mcsi_draw_make(rest1, rest2, ok ? 1.0 : 0.0);
 }
 
-/* -- row -- */
+/* -- row --
+ * To choose rows in another way, change both functions and mcs_env_invert. Their shares are made by
+ * mcsi_env_build_row_sums and mcs_env_window_build, read by tiles of products, too (mcsi_env_rows), and checked by
+ * mcsi_env_lists_ok. Where the bytes of a map change, so does MCSI_ENV_VERSION. */
 
 /* Density of a texel per share of row i, which has light. */
 MCSI_CORE double mcsi_window_row_density(const mcsi_window *r, uint32_t i) {
