@@ -158,7 +158,7 @@ cuda: ## the same bits, chi-square and rates on a graphics processor, or only th
 	$(SAY)
 	+@if command -v $(NVCC) >/dev/null; then $(SUBMAKE) cuda-binaries && $(CUDA)/bits && MCS_TEST_SCALE=0.1 $(CUDA)/samplers; \
 	else echo 'SKIPPED: ALL OF IT: $(NVCC) is not installed'; fi
-	@$(TOOK) "programs in $(CUDA)"
+	@$(TOOK) "$$(if command -v $(NVCC) >/dev/null; then echo 'programs in $(CUDA)'; else echo 'nothing is built'; fi)"
 
 analyze: ## valgrind, memory sanitizer, -fanalyzer, clang-tidy, cppcheck; many minutes; build/analyze; ONLY=name picks one
 	$(SAY)

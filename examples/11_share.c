@@ -61,7 +61,9 @@ int main(void) {
         differ +=
             !(a.w.x == b.w.x && a.w.y == b.w.y && a.w.z == b.w.z && a.pdf == b.pdf && a.col == b.col && a.row == b.row);
     }
-    printf("%zu bytes: check %d, %d of %d samples differ; cut short: %d; no table: %d\n", bytes, whole, differ, draws,
-           cut, other);
+    printf("a table of %zu bytes: status %d, expected %d; %d of %d samples differ\n", bytes, whole, MCS_OK, differ,
+           draws);
+    printf("cut short: status %d, expected %d; no table: status %d, expected %d\n", cut, MCS_ERR_MEMORY, other,
+           MCS_ERR_FORMAT);
     return !(whole == MCS_OK && differ == 0 && cut == MCS_ERR_MEMORY && other == MCS_ERR_FORMAT);
 }

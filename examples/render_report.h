@@ -98,8 +98,14 @@ static void print_objects(const options *o, const outcome *result) {
     }
 }
 
+static void print_files(const options *o) {
+    if (o->given[O_PART]) printf("files: %s-STRATEGY-%u-of-%u.sums, for --merge\n", o->out, o->part, o->parts);
+    else printf("files: %s-STRATEGY.png and .hdr\n", o->out);
+}
+
 static void print_tables(const options *o, unsigned count, const outcome *result) {
     puts("samples: light samples; efficiency: 1 / (std error^2 x cpu s)");
+    print_files(o);
     if (count < 2 || o->spp < 2 || o->given[O_PART]) return;
     print_comparison(o, result);
     if (o->wanted[MIS]) print_objects(o, result);
