@@ -8607,7 +8607,7 @@ MCS_FN int mcsi_image_fits(const mcs_image *im) {
     const uint64_t most = PTRDIFF_MAX / sizeof(float) / ((uint64_t)im->h + 1);
     const uint64_t row = im->row_stride < 0 ? -(uint64_t)im->row_stride : (uint64_t)im->row_stride;
     const uint64_t step = im->pixel_stride ? (uint64_t)im->pixel_stride : im->channels;
-    if (im->pixel_stride < 0 || step < im->channels || step > most || step * im->w > most) return 0;
+    if (im->pixel_stride < 0 || step < im->channels || step > most / im->w) return 0;
     return !row || (row >= (im->w - 1) * step + im->channels && row <= most);
 }
 MCS_FN mcs_status mcsi_image_check(const mcs_image *im) {

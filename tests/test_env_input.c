@@ -331,6 +331,10 @@ static void test_refused(void) {
     CHECK(build_from(env_in(&a), need, pixels, big, big, 4, 0) == MCS_ERR_SIZE, "2^64 texels");
     CHECK(build_from(env_in(&a), need, pixels, big, 1, big, 0) < 0, "2^64 floats in a row");
     CHECK(build_from(env_in(&a), need, pixels, w, h, 1, SIZE_MAX / 2) < 0, "a stride beyond memory");
+    mcs_image wide = mcs_image_make(pixels, 32, 1, 1);
+    wide.pixel_stride = PTRDIFF_MAX / 16 + 1;
+    CHECK(mcs_env_mean(&wide) == 0 && mcs_env_build(env_in(&a), SIZE_MAX, &wide) == MCS_ERR_SIZE,
+          "a row of 2^64 floats, by the stride of its pixels");
     CHECK(untouched(at, need + 8) && arena_intact(&a), "a refused build wrote");
     arena_free(&a);
 }
