@@ -2313,7 +2313,7 @@ MCS_API void mcs_region_add_ray(mcs_region *g, uint32_t k, int through);
 MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other);
 /* Lets all that was collected count `keep` times as much, 0 to 1: for scenes that change. */
 MCS_API void mcs_region_decay(mcs_region *g, float keep);
-/* The V of a larger region, one that g is a part of, become the V0 of g. */
+/* The V of a larger region, one that g is a part of, or of g itself, become the V0 of g. */
 MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger);
 /* V of tile k, 0 where k is no tile. */
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
@@ -10681,7 +10681,7 @@ typedef struct {
     float *square;  /* sums of squared reflections towards each tile */
     float *rays;    /* that were sent */
     float *through; /* those that came through */
-    float *prior;   /* V of the region above */
+    float *prior;   /* V0: V of the larger region */
 } mcsi_region_lists;
 MCSI_CORE size_t mcsi_region_tiles(const mcs_region *g) { return (size_t)g->rows * g->rows * 2; }
 MCSI_CORE mcsi_region_lists mcsi_region_lists_of(mcs_region *g) {
@@ -10711,7 +10711,7 @@ MCSI_CORE mcs_f mcsi_about(const float *list, size_t rows, size_t k) {
     const mcs_f right = mcsi_column_about(list, rows, k + rows < n ? k + rows : k + rows - n);
     return mcsi_column_about(list, rows, k) + MCSI_NEXT_COUNTS * (left + right);
 }
-/* V of tile k. The list of rays has those that came through behind it, then the V of the region above. */
+/* V of tile k. The list of rays has those that came through behind it, then V0. */
 MCSI_CORE mcs_f mcsi_visibility(const float *rays, size_t rows, size_t k) {
     const float *through = rays + 2 * rows * rows;
     const float *prior = through + 2 * rows * rows;
@@ -10729,10 +10729,12 @@ MCSI_LOOP void mcsi_region_points_loop(const mcsi_surface *s, size_t n, const fl
         mcs_store(square + i, mcs_load(square + i) + value * value);
     }
 }
-/* Multiplies the light of all tiles by their V. */
-MCSI_LOOP void mcsi_see_loop(size_t rows, const float *rays, float *light) {
-    for (size_t k = 0; k < 2 * rows * rows; k += MCSI_W)
-        mcs_store(light + k, mcs_load(light + k) * mcsi_visibility(rays, rows, k));
+/* The light of all tiles times their V; V alone where light is NULL. seen may be the V of the larger region. */
+MCSI_LOOP void mcsi_see_loop(size_t rows, const float *rays, const float *light, float *seen) {
+    for (size_t k = 0; k < 2 * rows * rows; k += MCSI_W) {
+        const mcs_f v = mcsi_visibility(rays, rows, k);
+        mcs_store(seen + k, light ? mcs_load(light + k) * v : v);
+    }
 }
 /* Root mean squares. */
 MCSI_LOOP void mcsi_region_values_loop(float points, size_t n, const float *square, float *value) {
@@ -10742,7 +10744,7 @@ MCSI_LOOP void mcsi_region_values_loop(float points, size_t n, const float *squa
 #endif
 #if MCSI_W == 1
 MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square);
-MCS_FN void mcsi_see_n(size_t rows, const float *rays, float *light);
+MCS_FN void mcsi_see_n(size_t rows, const float *rays, const float *light, float *seen);
 MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value);
 
 MCS_API size_t mcs_region_bytes(uint32_t rows) {
@@ -10761,8 +10763,7 @@ MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles
 MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger) {
     MCS_ASSERT(g->rows == larger->rows);
     const mcsi_region_lists l = mcsi_region_lists_of(g);
-    for (size_t k = 0; k < l.n; k++) l.prior[k] = 1.0f;
-    mcsi_see_n(g->rows, MCSI_READ(float, larger, sizeof *larger) + l.n, l.prior);
+    mcsi_see_n(g->rows, MCSI_READ(float, larger, sizeof *larger) + l.n, NULL, l.prior);
 }
 MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
     MCS_ASSERT(g->rows == t->rows);
@@ -10819,8 +10820,8 @@ MCS_FN void mcsi_product_see(mcs_product *p, const mcs_tiles *t, const mcs_regio
     const size_t n = mcsi_tiles_count(t);
     const float *light = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light);
     float *seen = MCSI_WRITE(float, p, p->at.light);
-    MCSI_COPY(seen, light, n * sizeof *seen);
-    if (g) mcsi_see_n(g->rows, MCSI_READ(float, g, sizeof *g) + n, seen);
+    if (g) mcsi_see_n(g->rows, MCSI_READ(float, g, sizeof *g) + n, light, seen);
+    else MCSI_COPY(seen, light, n * sizeof *seen);
 }
 MCSI_CORE float mcsi_sum_of_products(const float *a, const float *b, size_t n) {
     float sum = 0.0f;
@@ -12749,8 +12750,8 @@ MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l) { MCSI_WIDE(l->rows 
 MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square) {
     MCSI_WIDE(n, region_points_loop, (s, n, tile, square));
 }
-MCS_FN void mcsi_see_n(size_t rows, const float *rays, float *light) {
-    MCSI_WIDE(2 * rows * rows, see_loop, (rows, rays, light));
+MCS_FN void mcsi_see_n(size_t rows, const float *rays, const float *light, float *seen) {
+    MCSI_WIDE(2 * rows * rows, see_loop, (rows, rays, light, seen));
 }
 MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value) {
     MCSI_WIDE(n, region_values_loop, (points, n, square, value));

@@ -125,6 +125,27 @@ static void check_visibility(void) {
     region_free(&up);
     scene_free(&m);
 }
+/* V0 become the V of another region, or of the region itself; those of arrays may be contracted otherwise. */
+static void check_inherit(void) {
+    scene m = scene_make(SMOOTH, 64, 32, 16);
+    learned l[2] = {region_make(&m), region_make(&m)};
+    for (uint32_t i = 0; i < 6; i++) {
+        float v[2 * 16 * 16];
+        learned *to = &l[i % 4 / 2];
+        const learned *from = &l[i % 2];
+        add_rays(to, 3000, 30 + i);
+        for (uint32_t k = 0; k < count_of(&m); k++) v[k] = mcs_region_visibility(from->g, k);
+        mcs_region_inherit(to->g, from->g);
+        for (uint32_t k = 0; k < count_of(&m); k++) {
+            const double v0 = (double)*rays_of(to->g, 2 * count_of(&m) + k);
+            CHECK(fabs(v0 - (double)v[k]) <= 8 * eps * (double)v[k], "tile %u: V0 %g, not %g%s", k, v0, (double)v[k],
+                  to == from ? ", of the region itself" : "");
+        }
+    }
+    region_free(&l[0]);
+    region_free(&l[1]);
+    scene_free(&m);
+}
 /* What is added to a tile that does not exist, and what a surface reflects that is seen from below, changes nothing. */
 static void check_ignored(void) {
     scene m = scene_make(SUN, 64, 32, 16);
@@ -694,6 +715,7 @@ int main(int argc, char **argv) {
     mcst_start(argc, argv);
     mcst_group("region, what it has learned");
     if (mcst_case("visibility")) check_visibility();
+    if (mcst_case("inherited")) check_inherit();
     if (mcst_case("what is ignored")) check_ignored();
     if (mcst_case("merge")) check_merge();
     if (mcst_case("decay")) check_decay();
