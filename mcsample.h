@@ -2296,7 +2296,7 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *
  *   g          a region, in memory of yours like a product; it holds no pointers
  *   points     Reflections above the surface; others are not added. Without any, f is 1.
- *   rays       Shadow rays, of samples of any kind. A tile counts up to 2^24.
+ *   rays       Shadow rays, of samples of any kind. A tile counts up to 2^24, and so does g->rays. Merged counts go on.
  *   threads    Let each have regions of its own and merge them. Rays add up exactly, in any order; points in a fixed
  *              order only.
  *   cost       Bytes: 16 + 16 rows cols (8208 with 16 rows). README.md has times. */
@@ -10775,14 +10775,17 @@ MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_e
     mcsi_region_points_n(&s, l.n, MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light), l.square);
     g->points += 1.0f;
 }
+/* Beyond 2^24 a float would stay as it is: then the rays that come through must not be counted either. */
+MCSI_CORE void mcsi_region_count(float *rays, float *through, int is_through) {
+    if (*rays >= 16777216.0f) return;
+    *rays += 1.0f;
+    if (is_through) *through += 1.0f;
+}
 MCS_API void mcs_region_add_ray(mcs_region *g, uint32_t k, int through) {
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     if (k >= l.n) return;
-    g->rays += 1.0f;
-    l.rays[k] += 1.0f;
-    if (!through) return;
-    g->through += 1.0f;
-    l.through[k] += 1.0f;
+    mcsi_region_count(&g->rays, &g->through, through);
+    mcsi_region_count(&l.rays[k], &l.through[k], through);
 }
 MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other) {
     MCS_ASSERT(g->rows == other->rows);

@@ -125,6 +125,24 @@ static void check_visibility(void) {
     region_free(&up);
     scene_free(&m);
 }
+/* A tile, and the region, that have 2^24 rays count no more, neither those that come through: V stays. */
+static void check_full(void) {
+    scene m = scene_make(SMOOTH, 64, 32, 16);
+    learned l = region_make(&m);
+    const float full = 0x1p24f;
+    for (int i = 0; i < 8; i++) mcs_region_add_ray(l.g, 5, i == 0);
+    for (int i = 0; i < 21; i++) mcs_region_merge(l.g, l.g);
+    const float v = mcs_region_visibility(l.g, 5);
+    for (int i = 0; i < 1000; i++) mcs_region_add_ray(l.g, 5, 1);
+    const float *rays = rays_of(l.g, 5);
+    CHECK(rays[0] == full && rays[count_of(&m)] == full / 8 && mcs_region_visibility(l.g, 5) == v,
+          "%g of %g rays came through", (double)rays[count_of(&m)], (double)rays[0]);
+    CHECK(l.g->rays == full && l.g->through == full / 8, "in all %g of %g", (double)l.g->through, (double)l.g->rays);
+    mcs_region_add_ray(l.g, 6, 1);
+    CHECK(rays[1] == 1 && rays[count_of(&m) + 1] == 1 && l.g->rays == full, "another tile is full, too");
+    region_free(&l);
+    scene_free(&m);
+}
 /* V0 become the V of another region, or of the region itself; those of arrays may be contracted otherwise. */
 static void check_inherit(void) {
     scene m = scene_make(SMOOTH, 64, 32, 16);
@@ -715,6 +733,7 @@ int main(int argc, char **argv) {
     mcst_start(argc, argv);
     mcst_group("region, what it has learned");
     if (mcst_case("visibility")) check_visibility();
+    if (mcst_case("a full count")) check_full();
     if (mcst_case("inherited")) check_inherit();
     if (mcst_case("what is ignored")) check_ignored();
     if (mcst_case("merge")) check_merge();
