@@ -11319,7 +11319,7 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
 /* Adds n candidates of weight w in all, of which i is to be kept. The first weight is never left, whatever u is. */
 MCS_FN int mcsi_reservoir_take(mcs_reservoir *r, double n, double w, uint32_t i, double u) {
     MCSI_REQUIRE(u >= 0.0 && u < 1.0);
-    const double total = r->total + w;
+    const double total = (r->total > 0.0 ? r->total : 0.0) + w;
     const int taken = w > 0.0 && (total <= w || !(u * total >= w));
     r->total = total <= DBL_MAX ? total : DBL_MAX;
     r->n += n;
@@ -11333,7 +11333,7 @@ MCS_FN int mcs_reservoir_merge(mcs_reservoir *r, const mcs_reservoir *other, dou
     return mcsi_reservoir_take(r, other->n, other->total > 0.0 ? other->total : 0.0, other->i, u);
 }
 MCS_FN float mcs_reservoir_weight(const mcs_reservoir *r, float target) {
-    if (!(r->n > 0.0 && target > 0.0f && target <= FLT_MAX)) return 0.0f;
+    if (!(r->n > 0.0 && r->total > 0.0 && target > 0.0f && target <= FLT_MAX)) return 0.0f;
     const double weight = r->total / r->n / (double)target;
     return weight < (double)FLT_MAX ? (float)weight : FLT_MAX;
 }

@@ -382,6 +382,11 @@ static void bad_one(void) {
             const int moved = mcs_reservoir_merge(&to, &other, u);
             CHECK(to.n == 7 && to.total > 0 && to.total <= DBL_MAX, "total %g", odd_total[t]);
             CHECK(moved == (to.i == 9) && (t > 2 || !moved), "total %g: %d", odd_total[t], moved);
+            const float weight = mcs_reservoir_weight(&other, 1.0f);
+            CHECK(t > 2 ? weight == FLT_MAX : weight == 0, "total %g weighs %g", odd_total[t], (double)weight);
+            mcs_reservoir_add(&other, 5, 2.0f, u);
+            CHECK(t > 2 ? other.total == DBL_MAX : other.total == 2 && other.i == 5, "total %g: %g with 2 more",
+                  odd_total[t], other.total);
         }
     }
     const mcs_reservoir empty = {0, 0, 0};
