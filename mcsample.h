@@ -2088,7 +2088,8 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * 16 is enough for most: a tile then spans 11 degrees. More rows make products better and slower to build.
  *
  * Builders return MCS_OK, also where all is black; MCS_ERR_ARG for NULL or memory that is not aligned; MCS_ERR_SIZE for
- * a number of rows other than 16, 32 and 64; MCS_ERR_MEMORY for too few bytes. After an error nothing was written.
+ * a number of rows other than 16, 32 and 64, and for a region of another number than the tiles; MCS_ERR_MEMORY for too
+ * few bytes. After an error nothing was written.
  *
  * Support: every direction above the surface from which light comes can be drawn. A tile that may reach above the
  * horizon, by the distance of its corners from the mean direction of its light, weighs at least a ten-thousandth of
@@ -2294,7 +2295,8 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  * Narrow lobes gain by a table only where much is hidden: mcs_region_pays tells whether to take it, or the map with
  * mcs_mis_power.
  *
- *   g          a region, in memory of yours like a product; it holds no pointers
+ *   g          a region, in memory of yours like a product; it holds no pointers. MCS_ASSERT tells tiles and regions of
+ *              another number of rows.
  *   points     Reflections above the surface; others are not added. Without any, f is 1.
  *   rays       Shadow rays, of samples of any kind. A tile counts up to 2^24, and so does g->rays. Merged counts go on.
  *   threads    Let each have regions of its own and merge them. Rays add up exactly, in any order; points in a fixed
@@ -2309,7 +2311,7 @@ MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles
 MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r);
 /* Adds a shadow ray towards tile k; through: whether the light is seen. Nothing is added where k is no tile. */
 MCS_API void mcs_region_add_ray(mcs_region *g, uint32_t k, int through);
-/* Adds all that `other` has collected, over as many tiles. */
+/* Adds all that `other`, which may be g, has collected. */
 MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other);
 /* Lets all that was collected count `keep` times as much, 0 to 1: for scenes that change. */
 MCS_API void mcs_region_decay(mcs_region *g, float keep);
@@ -10852,9 +10854,9 @@ MCS_FN void mcsi_product_reflect(mcs_product *p, const mcs_region *g) {
 }
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r, const mcs_region *g) {
+    if (t && g && g->rows != t->rows) return MCS_ERR_SIZE;
     const mcs_status status = mcsi_product_start(p, bytes, t ? mcs_product_bytes(t->rows) : 0, t, e, r);
     if (status) return status;
-    MCS_ASSERT(!g || g->rows == t->rows);
     const mcsi_surface s = mcsi_surface_make(e, r);
     p->dark = !s.reflects;
     if (p->dark) return MCS_OK;
@@ -10892,9 +10894,9 @@ MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const
 }
 MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                             const mcs_region *g) {
+    if (t && g && g->rows != t->rows) return MCS_ERR_SIZE;
     const mcs_status status = mcsi_product_start(p, bytes, t ? mcs_product_table_bytes(t->rows) : 0, t, e, g);
     if (status) return status;
-    MCS_ASSERT(g->rows == t->rows);
     mcsi_product_see(p, t, g);
     mcsi_product_reflect(p, g);
     mcsi_product_finish(p, t);

@@ -283,14 +283,8 @@ static void check_regions(const mcs_tiles *t, const mcs_tiles *larger, const mcs
     mcs_region_add_point(big, t, e, r);
     CHECK(asserted > 0, "a point by other tiles");
     asserted = 0;
-    mcs_product_build_region(p, sizeof room, t, e, big);
-    CHECK(asserted > 0, "a table by other tiles");
-    asserted = 0;
     mcs_region_inherit(g, big);
     CHECK(asserted > 0, "inherits from another size");
-    asserted = 0;
-    mcs_product_build(p, sizeof room, t, e, r, big);
-    CHECK(asserted > 0, "a product with another size");
     free(g);
     free(big);
 }

@@ -565,6 +565,14 @@ static void check_refused(void) {
               mcs_product_build_region(p, b.bytes, t, e, NULL) == MCS_ERR_ARG,
           "NULL");
     CHECK(mcs_product_build_region((mcs_product *)(void *)(b.at + 4), b.bytes, t, e, l.g) == MCS_ERR_ARG, "misaligned");
+    arena c = arena_make(mcs_product_bytes(16));
+    const surface s = surface_make(normals[4], local_wo(0.5, 0.1), lobes[2]);
+    scene finer = scene_make(SUN, 64, 32, 32);
+    learned other = region_make(&finer);
+    CHECK(mcs_product_build_region(p, b.bytes, t, e, other.g) == MCS_ERR_SIZE &&
+              mcs_product_build((mcs_product *)(void *)c.at, c.bytes, t, e, &s.r, other.g) == MCS_ERR_SIZE,
+          "a region of more rows");
+    CHECK(arena_intact(&b) && arena_intact(&c) && untouched(c.at, c.bytes), "a region of more rows, yet wrote");
     CHECK(untouched(a.at, a.bytes) && untouched(b.at, b.bytes), "refused arguments, yet wrote");
     for (int i = 0; i < (int)(sizeof wrong / sizeof *wrong); i++)
         CHECK(mcs_region_bytes(wrong[i]) == 0 && mcs_product_table_bytes(wrong[i]) == 0, "%u rows", wrong[i]);
@@ -575,9 +583,12 @@ static void check_refused(void) {
               mcs_product_table_bytes(64) < mcs_product_bytes(64),
           "bytes of products");
     region_free(&l);
+    region_free(&other);
     arena_free(&a);
     arena_free(&b);
+    arena_free(&c);
     scene_free(&m);
+    scene_free(&finer);
 }
 /* The same bytes whatever the memory held: of a region, of its table, of a product with it. */
 static void check_same_bytes(void) {
