@@ -8197,7 +8197,8 @@ MCS_API size_t mcs_pwc2_bytes(uint32_t w, uint32_t h) {
     if (w == 0 || h == 0 || w > MCSI_PWC2_MAX || h > MCSI_PWC2_MAX || (size_t)-1 / w / h < 128) return 0;
     return sizeof(mcs_pwc2) + mcs_pwc_bytes(h) + h * mcs_pwc_bytes(w);
 }
-/* A row weighs the mean of its cells. One with a cell that is not zero must not weigh nothing. */
+/* A row weighs the mean of its cells. One with a cell that is not zero must not weigh nothing. Where all means are tiny,
+ * they are taken 2^100 times, so that floats hold them with all digits. */
 MCS_API mcs_status mcs_pwc2_build(mcs_pwc2 *t, size_t bytes, const float *f, uint32_t w, uint32_t h) {
     const mcs_status status = mcsi_table_check(t, bytes, f, mcs_pwc2_bytes(w, h));
     if (status) return status;
@@ -8206,13 +8207,19 @@ MCS_API mcs_status mcs_pwc2_build(mcs_pwc2 *t, size_t bytes, const float *f, uin
     mcs_pwc *rows = MCSI_WRITE(mcs_pwc, t, sizeof *t);
     rows->shift = mcsi_guide_shift(h, 1);
     const mcsi_pwc_offsets o = mcsi_pwc_layout(h, rows->shift);
+    double top = 0.0;
     for (uint32_t row = 0; row < h; row++) {
         mcs_pwc *columns = MCSI_WRITE(mcs_pwc, t, mcsi_pwc2_offset(t, row));
         mcs_pwc_build(columns, mcs_pwc_bytes(w), f + (size_t)row * w, w);
-        const float least = columns->uniform ? 0.0f : 1.4e-45f;
-        mcsi_put_weight(MCSI_WRITE(uint32_t, rows, o.sums) + row, mcsi_max((float)(columns->total / w), least));
         t->bad += columns->bad;
         t->total += columns->total;
+        top = columns->total > top ? columns->total : top;
+    }
+    const double scale = top / w < 1e-20 ? 1267650600228229401496703205376.0 : 1.0;
+    for (uint32_t row = 0; row < h; row++) {
+        const mcs_pwc *columns = mcsi_pwc2_columns(t, row);
+        const float least = columns->uniform ? 0.0f : 1.4e-45f;
+        mcsi_put_weight(MCSI_WRITE(uint32_t, rows, o.sums) + row, mcsi_max((float)(columns->total / w * scale), least));
     }
     mcsi_pwc_pad(rows, o.vertices, o.pwc_bytes);
     mcsi_pwc_fill(rows, h, 0);

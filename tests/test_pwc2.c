@@ -7,10 +7,10 @@
 #include <float.h>
 #include <math.h>
 
-enum { SIZES = 7, FILLS = 7, MOST = 70 * 90 };
+enum { SIZES = 7, FILLS = 8, MOST = 70 * 90 };
 static const uint32_t sizes[SIZES][2] = {{1, 1}, {1, 9}, {9, 1}, {2, 3}, {6, 5}, {70, 90}, {33, 4}};
-static const char *const fill_name[FILLS] = {"random",        "steep",       "one cell",     "zeros",
-                                             "huge and tiny", "bad entries", "one tiny cell"};
+static const char *const fill_name[FILLS] = {"random",        "steep",       "one cell",      "zeros",
+                                             "huge and tiny", "bad entries", "one tiny cell", "all tiny"};
 static float list[MOST];
 static const long double step = 0x1p-24L;    /* of u, and the rounding of a float below 1 */
 static const long double quantum = 0x1p-31L; /* of shares */
@@ -26,7 +26,8 @@ static float entry(int fill, uint32_t i, uint32_t n) {
     case 3: return 0;
     case 4: return extreme[mcs_hash(i, 3) % 6];
     case 5: return bad[mcs_hash(i, 4) % 7];
-    default: return i == n / 2 ? 1e-45f : i == 0 ? 1.0f : 0.0f;
+    case 6: return i == n / 2 ? 1e-45f : i == 0 ? 1.0f : 0.0f;
+    default: return u < 0.9f ? 0 : 1e-44f * u;
     }
 }
 static uint32_t fill_list(int fill, uint32_t n) {
