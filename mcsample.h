@@ -7977,8 +7977,8 @@ MCSI_CORE mcsi_pwc_offsets mcsi_pwc_layout(uint32_t n, uint32_t shift) {
     o.sums = sizeof(mcs_pwc);
     o.guide = o.sums + ((size_t)n + 1) * sizeof(uint32_t);
     o.vertices = o.guide + (size_t)mcsi_guide_length(shift) * sizeof(uint32_t);
-    o.pwc_bytes = (o.vertices + 7) / 8 * 8;
-    o.pwl_bytes = (o.vertices + ((size_t)n + 1) * sizeof(float) + 7) / 8 * 8;
+    o.pwc_bytes = (size_t)mcsi_up8(o.vertices);
+    o.pwl_bytes = (size_t)mcsi_up8(o.vertices + ((size_t)n + 1) * sizeof(float));
     return o;
 }
 MCSI_CORE mcsi_cdf mcsi_pwc_cdf(const mcs_pwc *t) {
@@ -8131,14 +8131,15 @@ MCSI_CORE size_t mcsi_pwc_fetch(const mcs_pwc *t, size_t k, size_t n, const floa
     }
     return n - k < block ? n : k + block;
 }
+/* Draw k of an array. */
+MCSI_CORE void mcsi_put_cell(mcs_cell c, size_t k, float *x, float *pdf) {
+    if (x) x[k] = c.x;
+    if (pdf) pdf[k] = c.pdf;
+}
 MCS_API void mcs_pwc_sample_n(const mcs_pwc *t, size_t n, const float *u, float *x, float *pdf) {
-    for (size_t k = 0; k < n;) {
-        for (const size_t end = mcsi_pwc_fetch(t, k, n, u, 0); k < end; k++) {
-            const mcs_cell c = mcs_pwc_sample(t, u[k]);
-            if (x) x[k] = c.x;
-            if (pdf) pdf[k] = c.pdf;
-        }
-    }
+    for (size_t k = 0; k < n;)
+        for (const size_t end = mcsi_pwc_fetch(t, k, n, u, 0); k < end; k++)
+            mcsi_put_cell(mcs_pwc_sample(t, u[k]), k, x, pdf);
 }
 #endif
 MCS_API size_t mcs_discrete_bytes(uint32_t n) { return mcs_pwc_bytes(n); }
@@ -8352,13 +8353,9 @@ MCS_API float mcs_pwl_invert(const mcs_pwl *t, float x) {
 #ifndef MCS_NO_BATCH
 MCS_API void mcs_pwl_sample_n(const mcs_pwl *t, size_t n, const float *u, float *x, float *pdf) {
     const size_t vertices = mcsi_pwc_layout(t->cells.n, t->cells.shift).vertices;
-    for (size_t k = 0; k < n;) {
-        for (const size_t end = mcsi_pwc_fetch(&t->cells, k, n, u, vertices); k < end; k++) {
-            const mcs_cell c = mcs_pwl_sample(t, u[k]);
-            if (x) x[k] = c.x;
-            if (pdf) pdf[k] = c.pdf;
-        }
-    }
+    for (size_t k = 0; k < n;)
+        for (const size_t end = mcsi_pwc_fetch(&t->cells, k, n, u, vertices); k < end; k++)
+            mcsi_put_cell(mcs_pwl_sample(t, u[k]), k, x, pdf);
 }
 #endif
 
@@ -8371,9 +8368,8 @@ typedef struct {
     float pmf;
 } mcsi_column;
 MCSI_CORE const mcsi_column *mcsi_columns(const mcs_alias *t) { return MCSI_READ(mcsi_column, t, sizeof *t); }
-MCS_API size_t mcs_alias_bytes(uint32_t n) { /* the largest do not fit the size_t of a 32-bit machine */
-    const uint64_t bytes = sizeof(mcs_alias) + (uint64_t)n * sizeof(mcsi_column);
-    return n && n <= MCSI_CELLS_MAX && (size_t)bytes == bytes ? (size_t)bytes : 0;
+MCS_API size_t mcs_alias_bytes(uint32_t n) {
+    return n && n <= MCSI_CELLS_MAX ? sizeof(mcs_alias) + n * sizeof(mcsi_column) : 0;
 }
 /* What a column still has to give, while the table is built: it stands in the place of cut and alias. */
 MCS_FN uint64_t mcsi_column_left(const mcsi_column *c) { return ((uint64_t)c->alias << 32) | c->cut; }
@@ -8396,7 +8392,7 @@ MCS_FN void mcsi_alias_weights(mcsi_column *c, const float *w, uint32_t n, doubl
         seen += v > 0.0;
         const double share = some ? sum / total * (double)(all - some) : (double)seen * MCSI_ONE;
         uint64_t upto = (uint64_t)share;
-        upto = upto < all - some ? upto : all - some; /* their difference as double rounds, up to 2^54 */
+        upto = upto < all - some ? upto : all - some; /* from 2^53 on, it may be rounded up to a double */
         upto = seen == last ? all : (some ? seen : 0) + upto;
         const uint64_t weight = upto - given;
         const float pmf = (float)((double)weight / (double)all);
@@ -9371,7 +9367,7 @@ MCSI_CORE float mcsi_window_density(const mcs_env *e, const mcsi_window *r, uint
     const uint32_t i = row - r->row0;
     if (!mcsi_window_holds(e, r, row, col)) return 0.0f;
     if (r->uniform) return mcsi_window_uniform_pdf(e, r);
-    if (mcsi_cdf_mass(&r->rows, i) == 0 || col < e->col0 || col >= e->col1) return 0.0f; /* nothing was written there */
+    if (mcsi_cdf_mass(&r->rows, i) == 0 || col < e->col0 || col >= e->col1) return 0.0f; /* no list is read there */
     const uint32_t *sums = mcsi_env_sums(e, row) + col;
     return (float)((sums[1] - sums[0]) * mcsi_window_row_density(r, i));
 }
@@ -9626,9 +9622,7 @@ MCS_API float mcs_env_window_pdf(const mcs_env_window *m, const mcs_env *e, mcs_
 MCSI_CORE mcs_vec3 mcsi_window_direction(const mcs_env *e, const mcsi_window *r, mcsi_draw d) {
     mcs_texel x;
     const mcsi_env_point p = r->uniform ? mcsi_window_draw_uniform(e, r, &d) : mcsi_window_draw_point(e, r, &d, &x);
-    mcs_frame axes;
-    MCSI_FILL(&axes, 0, sizeof axes);
-    axes.s.x = axes.t.y = axes.n.z = 1.0f;
+    const mcs_frame axes = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
     return mcsi_env_direction(&axes, &p, e->turn, e->inner);
 }
 /* Whether row `row` of the map has light within the window. */
@@ -10004,7 +9998,7 @@ MCS_API mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint3
 
 #if MCSI_W == 1
 #define MCSI_VALUE_LEAST 3.18309873e-05f /* a ten-thousandth of a white matte surface that faces the light */
-/* A surface as the map sees it: mcs_reflection with all its numbers brought into range. */
+/* A surface as the map sees it: mcs_reflection with all its numbers brought into range, NaN to the lower end. */
 typedef struct {
     mcs_frame axes; /* of the surface, in the map's frame */
     mcs_vec3 wo;
@@ -10014,8 +10008,8 @@ typedef struct {
     int32_t reflects; /* 0: wo is below the surface or bad */
 } mcsi_surface;
 MCS_FN mcsi_surface mcsi_surface_make(const mcs_env *e, const mcs_reflection *r) {
-    const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-4f, 1e4f);
-    const float ay = mcsi_sane_parameter(r->alpha_y >= 0.0f, r->alpha_y, 1e-4f, 1e4f);
+    const float ax = mcsi_min(mcsi_max(r->alpha_x, 1e-4f), 1e4f);
+    const float ay = mcsi_min(mcsi_max(r->alpha_y, 1e-4f), 1e4f);
     mcsi_surface s;
     s.reflects = 1;
     s.wo = mcsi_sane_upper(r->wo, &s.reflects);
@@ -10025,7 +10019,7 @@ MCS_FN mcsi_surface mcsi_surface_make(const mcs_env *e, const mcs_reflection *r)
     s.profile = (uint32_t)r->profile <= MCS_PROFILE_ASHIKHMIN ? r->profile : MCS_PROFILE_GGX;
     s.ax2 = ax * ax;
     s.ay2 = ay * ay;
-    s.matte = mcsi_sane_parameter(r->matte >= 0.0f, r->matte, 0.0f, 1.0f);
+    s.matte = mcsi_min(mcsi_max(r->matte, 0.0f), 1.0f);
     return s;
 }
 #endif
@@ -10106,8 +10100,7 @@ MCSI_CORE mcs_f mcsi_sane_value(mcs_f f) {
 /* Reflection towards the light of tiles: 0 only where no corner is above the horizon. */
 MCSI_CORE mcs_f mcsi_tile_value(const mcs_frame *axes, const mcsi_surface *s, const mcsi_tile_light *l) {
     const mcs_f zero = mcs_set(0.0f);
-    const mcs_f radius =
-        mcsi_max(l->light_radius, mcs_set(1e-6f)); /* vectors reach beyond the last tile, where it is 0 */
+    const mcs_f radius = l->light_radius;
     const mcs_f c = mcsi_dot(axes->n, l->mean);
     const mcs_f above = mcsi_max(c + radius, zero);
     const mcs_f cosine = mcsi_sel(c >= radius, c, above * above / (4.0f * radius));
@@ -10628,8 +10621,8 @@ MCS_FN float mcsi_product_lobe_share(const mcs_product *p, const mcs_tiles *t, c
     return (1.0f - s->matte) * mcsi_min(x / (1.0f + x), 0.95f) * mcsi_sqrt(mcsi_product_mirrored(p, t, e, r, s));
 }
 MCSI_CORE mcsi_lobe mcsi_lobe_make(const mcs_reflection *r, const mcsi_surface *s) {
-    const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-7f, 1e4f);
-    const float ay = mcsi_sane_parameter(r->alpha_y >= 0.0f, r->alpha_y, 1e-7f, 1e4f);
+    const float ax = mcsi_min(mcsi_max(r->alpha_x, 1e-7f), 1e4f);
+    const float ay = mcsi_min(mcsi_max(r->alpha_y, 1e-7f), 1e4f);
     mcsi_lobe l;
     MCSI_FILL(&l, 0, sizeof l);
     l.frame = r->frame;
@@ -10738,12 +10731,10 @@ MCSI_LOOP void mcsi_region_points_loop(const mcsi_surface *s, size_t n, const fl
         mcs_store(square + i, mcs_load(square + i) + value * value);
     }
 }
-/* The light of all tiles times their V; V alone where light is NULL. seen may be the V of the larger region. */
+/* The light of all tiles, 1 where it is NULL, times their V. `seen` may be V0 behind these rays. */
 MCSI_LOOP void mcsi_see_loop(size_t rows, const float *rays, const float *light, float *seen) {
-    for (size_t k = 0; k < 2 * rows * rows; k += MCSI_W) {
-        const mcs_f v = mcsi_visibility(rays, rows, k);
-        mcs_store(seen + k, light ? mcs_load(light + k) * v : v);
-    }
+    for (size_t k = 0; k < 2 * rows * rows; k += MCSI_W)
+        mcs_store(seen + k, mcsi_visibility(rays, rows, k) * (light ? mcs_load(light + k) : mcs_set(1.0f)));
 }
 /* Root mean squares. */
 MCSI_LOOP void mcsi_region_values_loop(float points, size_t n, const float *square, float *value) {
@@ -10784,7 +10775,7 @@ MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_e
     mcsi_region_points_n(&s, l.n, MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light), l.square);
     g->points += 1.0f;
 }
-/* Beyond 2^24 a float would stay as it is: then the rays that come through must not be counted either. */
+/* From 2^24 on a float would stay as it is: then the rays that come through must not be counted either. */
 MCSI_CORE void mcsi_region_count(float *rays, float *through, int is_through) {
     if (*rays >= 16777216.0f) return;
     *rays += 1.0f;
@@ -10807,7 +10798,7 @@ MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other) {
 }
 MCS_API void mcs_region_decay(mcs_region *g, float keep) {
     const mcsi_region_lists l = mcsi_region_lists_of(g);
-    const float factor = mcsi_sane_parameter(keep >= 0.0f, keep, 0.0f, 1.0f);
+    const float factor = mcsi_min(mcsi_max(keep, 0.0f), 1.0f);
     g->points *= factor;
     g->rays *= factor;
     g->through *= factor;
@@ -10818,8 +10809,8 @@ MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k) {
     return k < n ? mcsi_visibility(MCSI_READ(float, g, sizeof *g) + n, g->rows, k) : 0.0f;
 }
 MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r) {
-    const float ax = mcsi_sane_parameter(r->alpha_x >= 0.0f, r->alpha_x, 1e-4f, 1e4f);
-    const float ay = mcsi_sane_parameter(r->alpha_y >= 0.0f, r->alpha_y, 1e-4f, 1e4f);
+    const float ax = mcsi_min(mcsi_max(r->alpha_x, 1e-4f), 1e4f);
+    const float ay = mcsi_min(mcsi_max(r->alpha_y, 1e-4f), 1e4f);
     const float tiles = (float)mcsi_region_tiles(g) * ax * ay;
     if (r->matte > 0.0f || tiles >= 8.0f) return 1;
     return tiles >= 1.0f && 2.0f * g->through <= g->rays;
@@ -11049,13 +11040,12 @@ MCS_API mcs_texel mcs_product_sample(const mcs_product *p, const mcs_tiles *t, c
     x.pdf = ok ? x.pdf : 0.0f;
     return x;
 }
-MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
-    MCS_ASSERT(p->rows == t->rows);
-    return mcsi_product_look_up(p, t, e, w).pdf;
-}
 MCS_API mcs_texel mcs_product_texel(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
     MCS_ASSERT(p->rows == t->rows);
     return mcsi_product_look_up(p, t, e, w);
+}
+MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
+    return mcs_product_texel(p, t, e, w).pdf;
 }
 
 /* ---- [product] arrays ----
