@@ -1751,14 +1751,16 @@ MCS_FN float mcs_mix_pdf(float c, float pf, float pg);
  *
  *   pwc        piecewise constant density on [0,1], n cells. For histograms, and functions known at many points.
  *   discrete   n probabilities: which light, which triangle. It is a pwc table read by entries.
- *   pwl        piecewise linear density on [0,1], n cells between n + 1 vertices. Continuous.
+ *   pwl        piecewise linear density on [0,1], n cells between n + 1 vertices. Continuous. A u that is mapped to a
+ *              vertex of 0 has density 0, as u = 0 where the list begins with one.
  *   pwc2       piecewise constant density on the unit square, w x h cells. It draws a row, then a column of it.
  *   alias      n probabilities in one look-up. The map from u jumps about, so that stratified u are lost. Only for
  *              independent u and tables much larger than the cache.
  *
  * memory         The caller's, 8-byte aligned, mcs_x_bytes(n) bytes. A table holds no pointers: it may be copied,
  *                written to a file or shared by threads. Once built it is constant. The same list makes the same bytes.
- * size           24 bytes and per entry: pwc and discrete 6 to 8 bytes, pwl 10 to 12, alias 12. pwc2: as h + 1 pwc.
+ * size           Up to 40 bytes, and per entry: pwc and discrete 6 to 8 bytes, pwl 10 to 12, alias 12. pwc2: as h + 1
+ *                pwc.
  * n              1 to 2^28 entries. The x of pwc and pwl is a float: beyond 2^24 cells it cannot tell them apart.
  * probabilities  Integers that add up to exactly 2^31: sample, pdf and pmf agree exactly. Every entry that is not zero
  *                has a share (a u of 24 bits may miss it below 2^-24), and zero entries are never drawn.
@@ -1935,7 +1937,8 @@ MCS_API void mcs_alias_sample_n(const mcs_alias *t, size_t n, const float *u, ui
  *                the mean is left to the other strategy. Such a map is incomplete (e->incomplete): its density is 0
  *                where the image is not black.
  * skipped        A constant map is the uniform sphere and its rows are never read; an all-black one likewise. Rows
- *                without light are zeros. Texels outside rows [row0, row1) and columns [col0, col1) are not read.
+ *                without light are zeros. mcs_env_pdf and mcs_env_texel read no list outside of rows [row0, row1) and
+ *                columns [col0, col1).
  * ownership      Objects hold no pointers. Pass what they were built from to every call.
  * cost           Two cache misses. The array forms fetch memory ahead: they are the fast ones for large maps.
  * source         Pharr, Jakob, Humphreys 2023, section 12.5. */
@@ -2081,9 +2084,9 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * processor. What an object was built from goes to every call. The same arguments make the same bytes, all of them.
  *
  *   rows   tiles     bytes of a product   mcs_product_table_bytes   bytes of tiles: map 1024 x 512   4096 x 2048
- *   16     16 x 32   18,568               6,664                     0.67 MB                          1.4 MB
- *   32     32 x 64   45,128               25,416                    2.2 MB                           3.6 MB
- *   64     64 x 128  150,472              99,784                    8.0 MB                           10.7 MB
+ *   16     16 x 32   18,592               6,688                     0.67 MB                          1.4 MB
+ *   32     32 x 64   45,152               25,440                    2.2 MB                           3.6 MB
+ *   64     64 x 128  150,496              99,808                    8.0 MB                           10.7 MB
  *
  * 16 is enough for most: a tile then spans 11 degrees. More rows make products better and slower to build.
  *
@@ -10410,8 +10413,8 @@ MCSI_CORE mcsi_side mcsi_side_load(const float *corner) {
 /* Upper bound of each tile's weight: light times the largest of its value and its corner values. Behind the bounds
  * follows the largest one of each row. Then raises values that are too low, and lowers a value by a part of its excess
  * over the mean of its warp: beside the peak of a narrow lobe, the value at the mean direction overestimates the tile.
- * Last, it adds up the weights of rows by these values. A bound counts as large beside their sum, as most bounds
- * overestimate. */
+ * Last, it adds up the weights of rows by these values: a tile is heavy by its bound over their sum, as the sum of
+ * bounds, most of which overestimate, would be too large. */
 MCSI_CORE void mcsi_tile_bounds(const mcsi_product_lists *l) {
     const size_t rows = l->rows;
     const size_t cols = l->cols;
@@ -10584,8 +10587,8 @@ MCSI_CORE float mcsi_grid_density(const float *grid, float t1, float t2) {
 }
 
 /* ---- [product] narrow lobes: samples from the lobe itself ----
- * If the lobe is narrower than a cell, a share of the samples comes from the lobe itself (mcs_ggx_vndf, mcs_ward,
- * mcs_phong, mcs_ashikhmin); the density is that of the mixture. What the lobe sends below the surface is lost. */
+ * A share of the samples comes from the lobe itself (mcs_ggx_vndf, mcs_ward, mcs_phong, mcs_ashikhmin); the density is
+ * that of the mixture. What the lobe sends below the surface is lost. */
 
 /* Solid angle of a tile. */
 MCS_FN float mcsi_tile_solid_angle(const mcs_tiles *t, const mcs_env *e, mcsi_tile tile) {

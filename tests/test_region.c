@@ -582,6 +582,9 @@ static void check_refused(void) {
     CHECK(MCS_PRODUCT_BYTES(16) == mcs_product_bytes(16) && MCS_PRODUCT_BYTES(64) == mcs_product_bytes(64) &&
               mcs_product_table_bytes(64) < mcs_product_bytes(64),
           "bytes of products");
+    CHECK(MCSI_ALIGN < 7 || (mcs_product_bytes(16) == 18592 && mcs_product_table_bytes(16) == 6688 &&
+                             mcs_product_bytes(64) == 150496 && mcs_product_table_bytes(64) == 99808),
+          "bytes of products, as part I has them where a double is aligned to 8");
     region_free(&l);
     region_free(&other);
     arena_free(&a);
