@@ -1762,8 +1762,10 @@ MCS_FN float mcs_mix_pdf(float c, float pf, float pg);
  * size           Up to 40 bytes, and per entry: pwc and discrete 6 to 8 bytes, pwl 10 to 12, alias 12. pwc2: as h + 1
  *                pwc.
  * n              1 to 2^28 entries. The x of pwc and pwl is a float: beyond 2^24 cells it cannot tell them apart.
- * probabilities  Integers that add up to exactly 2^31: sample, pdf and pmf agree exactly. Every entry that is not zero
- *                has a share (a u of 24 bits may miss it below 2^-24), and zero entries are never drawn.
+ * probabilities  Integers that add up to exactly 2^31 (alias: n 2^31): sample, pdf and pmf agree exactly. Every entry
+ *                that is not zero has 1 beforehand (a u of 24 bits may miss it below 2^-24), and zero entries are never
+ *                drawn. So a probability may be above its share of the list by 2^-30, and below it by n 2^-31 of it,
+ *                which is 5e-4 for a million entries (alias: both n times less).
  * bad entries    Negative ones and NaN count as 0, +infinity counts as FLT_MAX. The member bad counts them.
  * all zero       makes an even table, which is no error: uniform is 1 and total is 0.
  * errors         _build returns MCS_ERR_ARG where t or the list is NULL or t is misaligned, MCS_ERR_SIZE where n is 0
