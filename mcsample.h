@@ -1765,7 +1765,7 @@ MCS_FN float mcs_mix_pdf(float c, float pf, float pg);
  * probabilities  Integers that add up to exactly 2^31 (alias: n 2^31): sample, pdf and pmf agree exactly. Every entry
  *                that is not zero has 1 beforehand (a u of 24 bits may miss it below 2^-24), and zero entries are never
  *                drawn. So a probability may be above its share of the list by 2^-30, and below it by n 2^-31 of it,
- *                which is 5e-4 for a million entries (alias: both n times less).
+ *                which is 5e-4 for a million entries (alias: both about n times less).
  * bad entries    Negative ones and NaN count as 0, +infinity counts as FLT_MAX. The member bad counts them.
  * all zero       makes an even table, which is no error: uniform is 1 and total is 0.
  * errors         _build returns MCS_ERR_ARG where t or the list is NULL or t is misaligned, MCS_ERR_SIZE where n is 0
@@ -8203,8 +8203,8 @@ MCS_API size_t mcs_pwc2_bytes(uint32_t w, uint32_t h) {
     if (w == 0 || h == 0 || w > MCSI_PWC2_MAX || h > MCSI_PWC2_MAX || (size_t)-1 / w / h < 128) return 0;
     return sizeof(mcs_pwc2) + mcs_pwc_bytes(h) + h * mcs_pwc_bytes(w);
 }
-/* A row weighs the mean of its cells. One with a cell that is not zero must not weigh nothing. Where all means are tiny,
- * they are taken 2^100 times, so that floats hold them with all digits. */
+/* A row weighs the mean of its cells. One with a cell that is not zero must not weigh nothing. Tiny means, where no
+ * other ones are, are taken 2^100 times, so that floats hold them with all digits. */
 MCS_API mcs_status mcs_pwc2_build(mcs_pwc2 *t, size_t bytes, const float *f, uint32_t w, uint32_t h) {
     const mcs_status status = mcsi_table_check(t, bytes, f, mcs_pwc2_bytes(w, h));
     if (status) return status;
