@@ -2300,8 +2300,8 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  * Narrow lobes gain by a table only where much is hidden: mcs_region_pays tells whether to take it, or the map with
  * mcs_mis_power.
  *
- *   g          a region, in memory of yours like a product; it holds no pointers. MCS_ASSERT tells tiles and regions of
- *              another number of rows.
+ *   g          a region, in memory of yours like a product; it holds no pointers. Tiles and regions of another number
+ *              of rows add nothing to it, and MCS_ASSERT tells them.
  *   points     Reflections above the surface; others are not added. Without any, f is 1.
  *   rays       Shadow rays, of samples of any kind. A tile counts up to 2^24, and so does g->rays. Merged counts go on.
  *   threads    Let each have regions of its own and merge them. Rays add up exactly, in any order; points in a fixed
@@ -10767,11 +10767,13 @@ MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles
 }
 MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger) {
     MCS_ASSERT(g->rows == larger->rows);
+    if (g->rows != larger->rows) return;
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     mcsi_see_n(g->rows, MCSI_READ(float, larger, sizeof *larger) + l.n, NULL, l.prior);
 }
 MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
     MCS_ASSERT(g->rows == t->rows);
+    if (g->rows != t->rows) return;
     mcsi_surface s = mcsi_surface_make(e, r);
     if (!s.reflects) return;
     s.ax2 += 0.01f;
@@ -10794,6 +10796,7 @@ MCS_API void mcs_region_add_ray(mcs_region *g, uint32_t k, int through) {
 }
 MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other) {
     MCS_ASSERT(g->rows == other->rows);
+    if (g->rows != other->rows) return;
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     const float *add = MCSI_READ(float, other, sizeof *other);
     g->points += other->points;

@@ -263,28 +263,33 @@ static void check_reservoirs(void) {
     TELLS_U("mcs_reservoir_k_add", mcs_reservoir_k_add(&k, 1, 1.0f, (double)u));
 }
 
-/* A region has another size than what it is used with; it is larger, so that nothing is read behind it. */
+/* A region has another size than what it is used with: that is told, and the region stays as it is. */
 static void check_regions(const mcs_tiles *t, const mcs_tiles *larger, const mcs_env *e, const mcs_reflection *r) {
-    const size_t bytes = mcs_region_bytes(32);
+    const size_t bytes = mcs_region_bytes(16);
+    const size_t big_bytes = mcs_region_bytes(32);
     mcs_region *g = (mcs_region *)malloc(bytes);
-    mcs_region *big = (mcs_region *)malloc(bytes);
+    mcs_region *kept = (mcs_region *)malloc(bytes);
+    mcs_region *big = (mcs_region *)malloc(big_bytes);
     static double room[MCS_PRODUCT_BYTES(32) / 8 + 1];
     mcs_product *p = (mcs_product *)(void *)room;
     asserted = 0;
-    CHECK(g && big && !mcs_region_start(g, bytes, t) && !mcs_region_start(big, bytes, larger), "regions");
+    CHECK(g && kept && big && !mcs_region_start(g, bytes, t) && !mcs_region_start(big, big_bytes, larger), "regions");
     mcs_region_add_point(g, t, e, r);
     mcs_region_merge(g, g);
     CHECK(!mcs_product_build_region(p, sizeof room, t, e, g) && !mcs_product_build(p, sizeof room, t, e, r, g) &&
               !asserted,
           "asserts of a region of the right size");
+    memcpy(kept, g, bytes);
     mcs_region_merge(g, big);
     CHECK(asserted > 0, "merged with another size");
     asserted = 0;
-    mcs_region_add_point(big, t, e, r);
+    mcs_region_add_point(g, larger, e, r);
     CHECK(asserted > 0, "a point by other tiles");
     asserted = 0;
     mcs_region_inherit(g, big);
     CHECK(asserted > 0, "inherits from another size");
+    CHECK(memcmp(kept, g, bytes) == 0, "regions and tiles of another size change a region");
+    free(kept);
     free(g);
     free(big);
 }
