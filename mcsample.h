@@ -3311,24 +3311,17 @@ MCSI_CORE mcs_i mcsi_scale_ok(mcs_f scale) { return (scale >= 1e-18f) & (scale <
  * square) and the sums of three products round (6 x 2^-24). Each turn so moves it by less than 2^-19, and 100 turns by
  * 2e-4. A reciprocal root of 12 bits, as processors have it, leaves 2^-10.4. All of these pass. */
 #define MCSI_IS_UNIT(length2) ((length2) >= 0.999f && (length2) <= 1.001f)
-/* A direction of any length in (1/2, 2), and +z in place of a bad one. */
-MCSI_CORE mcs_vec3 mcsi_sane_direction(mcs_vec3 w, mcs_i *ok) {
+/* A direction of any length in (1/2, 2), where `wanted` is set; +z in place of others. */
+MCSI_CORE mcs_vec3 mcsi_sane_where(mcs_i wanted, mcs_vec3 w, mcs_i *ok) {
     const mcs_f length2 = mcsi_dot(w, w);
-    const mcs_i good = (length2 > 0.25f) & (length2 < 4.0f);
+    const mcs_i good = (length2 > 0.25f) & (length2 < 4.0f) & wanted;
     MCSI_REQUIRE(MCSI_IS_UNIT(length2));
     *ok = *ok & good;
-    return mcsi_vec3(mcsi_sel(good, w.x, mcs_set(0.0f)), mcsi_sel(good, w.y, mcs_set(0.0f)),
-                     mcsi_sel(good, w.z, mcs_set(1.0f)));
+    return mcsi_sel3(good, w, mcsi_vec3(mcs_set(0.0f), mcs_set(0.0f), mcs_set(1.0f)));
 }
-/* The same, but a direction below the surface is bad, too. */
-MCSI_CORE mcs_vec3 mcsi_sane_upper(mcs_vec3 w, mcs_i *ok) {
-    const mcs_f length2 = mcsi_dot(w, w);
-    const mcs_i good = (length2 > 0.25f) & (length2 < 4.0f) & (w.z > 0.0f);
-    MCSI_REQUIRE(MCSI_IS_UNIT(length2));
-    *ok = *ok & good;
-    return mcsi_vec3(mcsi_sel(good, w.x, mcs_set(0.0f)), mcsi_sel(good, w.y, mcs_set(0.0f)),
-                     mcsi_sel(good, w.z, mcs_set(1.0f)));
-}
+MCSI_CORE mcs_vec3 mcsi_sane_direction(mcs_vec3 w, mcs_i *ok) { return mcsi_sane_where(mcsi_always(), w, ok); }
+/* A direction above the surface. */
+MCSI_CORE mcs_vec3 mcsi_sane_upper(mcs_vec3 w, mcs_i *ok) { return mcsi_sane_where(w.z > 0.0f, w, ok); }
 
 #ifdef MCSI_PUBLIC
 /* What an inverse of two dimensions returns: (u1, u2) clamped into [0, 1 - 2^-24], (0, 0) where ok is not set. */
@@ -11935,6 +11928,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_sane_u MCSI_(sane_u)
 #define mcsi_sane_upper MCSI_(sane_upper)
 #define mcsi_sane_value MCSI_(sane_value)
+#define mcsi_sane_where MCSI_(sane_where)
 #define mcsi_scale_ok MCSI_(scale_ok)
 #define mcsi_scramble_reversed MCSI_(scramble_reversed)
 #define mcsi_secant2 MCSI_(secant2)
@@ -12603,6 +12597,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_sane_u
 #undef mcsi_sane_upper
 #undef mcsi_sane_value
+#undef mcsi_sane_where
 #undef mcsi_scale_ok
 #undef mcsi_scramble_reversed
 #undef mcsi_secant2
