@@ -827,7 +827,7 @@ MCS_API void mcs_disk_light_sample_n(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 norma
  * density    1/(solid angle); 0 in directions that miss the light, and for bad input. It is a member of the prepared
  *            light, too, for those who know that a ray hits. Where p is in the plane of the light, all densities are 0,
  *            and samples are the direction to its centre. The same holds for a rectangle whose plane is nearer than
- *            1e-18 of its size and distance, and for a triangle where p is over it, or over a side, and nearer to it
+ *            1e-15 of its size and distance, and for a triangle where p is over it, or over a side, and nearer to it
  *            than about 1e-8 of its size.
  * bad        A light is bad if one of its numbers is not finite or its area is 0.
  * accuracy   w within 1.1 x 2^-24 of the exact map by coordinate, places on the light within 1.1 x 2^-24, pdf within
@@ -5243,7 +5243,8 @@ MCSI_CORE mcs_spherical_rectangle mcsi_spherical_rectangle_prepare(mcs_vec3 p, m
     const double edge2 = MCSI_DOT_D(along_x, along_x);
     const double area2 = MCSI_DOT_D(normal, normal);
     const double extent2 = MCSI_DOT_D(corner, corner) + edge2 + MCSI_DOT_D(along_y, along_y);
-    const int lit = volume * volume > 1e-36 * extent2 * area2;
+    /* The six roundings of the volume are below 1e-15 of |corner| |normal|. */
+    const int lit = volume * volume > 1e-30 * extent2 * area2;
     if (lit) {
         const double turn = volume < 0.0 ? -1.0 : 1.0;
         const double per_edge = 1.0 / mcsi_sqrt_d(edge2);
@@ -5422,24 +5423,29 @@ typedef struct {
 } mcs_spherical_triangle;
 #endif
 #if MCSI_W == 1
-/* The normal of the side between two corners, for their distances: s a x (b - a). */
-MCS_FN mcsi_vec3_d mcsi_side_d(double s, mcsi_vec3_d a, mcsi_vec3_d edge) {
-    return mcsi_times_d(s, mcsi_cross_d(a, edge));
+/* The normal of the side from corner a to b, for their distances: a x (b - a), which is b x (b - a). The nearer corner
+ * makes the smaller rounding. */
+MCS_FN mcsi_vec3_d mcsi_side_d(double turn, double per_a, mcsi_vec3_d a, double per_b, mcsi_vec3_d b,
+                               mcsi_vec3_d edge) {
+    return mcsi_times_d(turn * per_a * per_b, mcsi_cross_d(per_a > per_b ? a : b, edge));
 }
 /* The upper half of the digits of each coordinate: products of two such are exact. */
 MCS_FN mcsi_vec3_d mcsi_high_d(mcsi_vec3_d v) {
     const mcsi_vec3_d t = mcsi_times_d(134217729.0, v); /* 2^27 + 1 */
     return mcsi_make3_d(t.x - (t.x - v.x), t.y - (t.y - v.y), t.z - (t.z - v.z));
 }
-/* Six times the volume of the tetrahedron of p and a triangle, by two of its edges and the corner next to p, signed.
- * What cancels between the edges of a thin triangle is exact. */
-MCS_FN double mcsi_volume_d(mcsi_vec3_d edge_b, mcsi_vec3_d edge_c, mcsi_vec3_d corner) {
-    const mcsi_vec3_d high_b = mcsi_high_d(edge_b);
-    const mcsi_vec3_d high_c = mcsi_high_d(edge_c);
-    const mcsi_vec3_d high = mcsi_cross_d(high_b, high_c);
-    const mcsi_vec3_d low = mcsi_add_d(mcsi_cross_d(high_b, mcsi_add_d(edge_c, -1.0, high_c)), 1.0,
-                                       mcsi_cross_d(mcsi_add_d(edge_b, -1.0, high_b), edge_c));
-    return MCSI_DOT_D(corner, high) + MCSI_DOT_D(corner, low);
+/* Six times the volume of the tetrahedron of p and a triangle, signed, by the corner next to p and the edges to the
+ * second and the third one. What cancels between the edges of a thin triangle is exact. The six roundings of the rest
+ * are below 1e-15 of |corner| |normal|: less than that is 0. */
+MCS_FN double mcsi_volume_d(mcsi_vec3_d corner, mcsi_vec3_d second, mcsi_vec3_d third) {
+    const mcsi_vec3_d high_2 = mcsi_high_d(second);
+    const mcsi_vec3_d high_3 = mcsi_high_d(third);
+    const mcsi_vec3_d high = mcsi_cross_d(high_2, high_3);
+    const mcsi_vec3_d low = mcsi_add_d(mcsi_cross_d(high_2, mcsi_add_d(third, -1.0, high_3)), 1.0,
+                                       mcsi_cross_d(mcsi_add_d(second, -1.0, high_2), third));
+    const mcsi_vec3_d normal = mcsi_add_d(high, 1.0, low);
+    const double volume = MCSI_DOT_D(corner, normal);
+    return volume * volume > 1e-30 * MCSI_DOT_D(corner, corner) * MCSI_DOT_D(normal, normal) ? volume : 0.0;
 }
 /* Sets the cosines of half the sides, and returns 1 + a.b + b.c + c.a. That is (a + b).(a + c): the two shorter sums
  * keep its digits where p is between corners. *half_sum is half the length of both together. */
@@ -5468,13 +5474,15 @@ MCSI_CORE mcs_spherical_triangle mcsi_spherical_triangle_prepare(mcs_vec3 p, mcs
     l.per_a = mcsi_unit_d(&l.a);
     l.per_b = mcsi_unit_d(&l.b);
     l.per_c = mcsi_unit_d(&l.c);
-    const mcsi_vec3_d a_or_b = l.per_b > l.per_a ? to_b : to_a;
-    const mcsi_vec3_d next_to_p = l.per_c > l.per_a && l.per_c > l.per_b ? to_c : a_or_b;
-    const double volume = mcsi_volume_d(mcsi_from_to(a, b), mcsi_from_to(a, c), next_to_p);
+    const mcs_vec3 corners[5] = {a, b, c, a, b};
+    const mcs_vec3 *v = corners; /* the corner next to p, and then the others */
+    if (l.per_b > l.per_a) v = corners + 1;
+    if (l.per_c > l.per_a && l.per_c > l.per_b) v = corners + 2;
+    const double volume = mcsi_volume_d(mcsi_from_to(p, v[0]), mcsi_from_to(v[0], v[1]), mcsi_from_to(v[0], v[2]));
     const double turn = volume < 0.0 ? -1.0 : 1.0;
-    l.past_a = mcsi_side_d(turn * l.per_b * l.per_c, to_b, mcsi_from_to(b, c));
-    l.past_b = mcsi_side_d(turn * l.per_c * l.per_a, to_c, mcsi_from_to(c, a));
-    l.past_c = mcsi_side_d(turn * l.per_a * l.per_b, to_a, mcsi_from_to(a, b));
+    l.past_a = mcsi_side_d(turn, l.per_b, to_b, l.per_c, to_c, mcsi_from_to(b, c));
+    l.past_b = mcsi_side_d(turn, l.per_c, to_c, l.per_a, to_a, mcsi_from_to(c, a));
+    l.past_c = mcsi_side_d(turn, l.per_a, to_a, l.per_b, to_b, mcsi_from_to(a, b));
     const double sine = turn * volume * (l.per_a * l.per_b * l.per_c);
     double half_sum;
     const double cosine = mcsi_triangle_cosine_d(&l, &half_sum);

@@ -7,6 +7,7 @@
 #define MCS_PACKETS 16
 #include "mcsample.h"
 #include "oracle.h"
+#include "values.h"
 
 static const double eps = 0x1p-24;
 enum { LIGHTS = 400, DRAWS = 4 };
@@ -293,6 +294,72 @@ static void no_lights(void) {
         dark("not finite", s);
     }
 }
+/* The same in planes that are turned anyhow, with all digits of floats: p is an exact sum of the corner and of 32nds of
+ * the edges, on the light or beside it. */
+static void in_turned_planes(mcs_pcg32 *r) {
+    const mcs_vec3 up = {0, 0, 1};
+    for (int found = 0; found < 200;) {
+        float v[12]; /* p, a corner, two edges */
+        float corner[6];
+        int exact = 1;
+        const float x = floorf(64 * mcs_pcg32_float(r)) / 32 - 1;
+        const float y = floorf(64 * mcs_pcg32_float(r)) / 32 - 1;
+        for (int k = 3; k < 12; k++) v[k] = (float)any(r);
+        for (int k = 0; k < 3; k++) {
+            const double p = (double)v[3 + k] + (double)x * (double)v[6 + k] + (double)y * (double)v[9 + k];
+            v[k] = (float)p;
+            exact &= (double)v[k] == p;
+            for (int j = 0; j < 2; j++) {
+                const double place = (double)v[3 + k] + (double)v[6 + 3 * j + k];
+                corner[3 * j + k] = (float)place;
+                exact &= (double)corner[3 * j + k] == place;
+            }
+        }
+        if (!exact) continue;
+        found++;
+        const mcs_vec3 at_p = vec3(v);
+        const mcs_vec3 a = vec3(v + 3);
+        const mcs_spherical_rectangle q = mcs_spherical_rectangle_make(at_p, a, vec3(v + 6), vec3(v + 9));
+        check_dark("rectangle", mcs_spherical_rectangle_sample(&q, 0.3f, 0.6f), mcs_spherical_rectangle_pdf(&q, up),
+                   mcs_spherical_rectangle_invert(&q, up));
+        const mcs_spherical_triangle t = mcs_spherical_triangle_make(at_p, a, vec3(corner), vec3(corner + 3));
+        check_dark("triangle", mcs_spherical_triangle_sample(&t, 0.3f, 0.6f), mcs_spherical_triangle_pdf(&t, up),
+                   mcs_spherical_triangle_invert(&t, up));
+    }
+}
+/* Triangles with a corner far beyond the others, where p is next to a side: each corner in turn is the far one. The
+ * angle of p and that side is a hundredth at least, so that double leaves 1e-13 of the solid angle. */
+static void far_corners(mcs_pcg32 *r) {
+    const mcs_vec3 zero = {0, 0, 0};
+    for (int i = 0; i < 600; i++) {
+        const double far_off = pow(10, i / 40 + 3);
+        const mcs_vec3 away = mcs_sphere_sample(mcs_pcg32_float(r), mcs_pcg32_float(r)).w;
+        const mcs_frame f = mcs_frame_make(away);
+        const double turn = 3 * any(r);
+        mcs_vec3 corner[5];
+        corner[0] = at(&f, zero, 0, 0, far_off);
+        corner[1] = at(&f, zero, pick(r, 0.01, 1), 0, -1);
+        corner[2] = at(&f, zero, cos(turn), (sin(turn) < 0 ? -0.1 : 0.1) + sin(turn), any(r));
+        corner[3] = corner[0];
+        corner[4] = corner[1];
+        const mcs_vec3 *v = corner + i % 3;
+        const mcs_spherical_triangle t = mcs_spherical_triangle_make(zero, v[0], v[1], v[2]);
+        const o_vec3 a = o_unit(wide(v[0]));
+        const o_vec3 b = o_unit(wide(v[1]));
+        const o_vec3 c = o_unit(wide(v[2]));
+        const ld angle = o_solid_angle(o_volume(a, b, c), a, b, c);
+        const mcs_light_point s = mcs_spherical_triangle_sample(&t, any_u(r), any_u(r));
+        CHECK(fabsl((ld)s.pdf * angle - 1) <= 0.2e-6L, "corner %d at %g: pdf %.9g, not %.9Lg", i % 3, far_off,
+              (double)s.pdf, 1 / angle);
+        CHECK(fabsl(o_len(wide(s.w)) - 1) <= 4 * eps, "corner %d at %g: length", i % 3, far_off);
+        /* In the middle w is 1e-3 from each side at least: its rounding moves u by less than 2^-24 / 1e-3. */
+        const mcs_vec3 w = mcs_spherical_triangle_sample(&t, 0.5f, 0.5f).w;
+        const mcs_vec2 u = mcs_spherical_triangle_invert(&t, w);
+        CHECK(mcs_spherical_triangle_pdf(&t, w) == s.pdf, "corner %d at %g: pdf of the middle", i % 3, far_off);
+        CHECK(fabsf(u.x - 0.5f) < 1e-4f && fabsf(u.y - 0.5f) < 1e-4f, "corner %d at %g: inverse %.9g %.9g", i % 3,
+              far_off, (double)u.x, (double)u.y);
+    }
+}
 /* A disk whose density is below all floats counts as none: it has no distance either. */
 static void faint_disk(void) {
     const mcs_vec3 p = {0, 0, 0};
@@ -449,6 +516,8 @@ int main(int argc, char **argv) {
     if (mcst_case("balls and disks, away from the origin")) away_from_origin(&r);
     if (mcst_case("the rim of balls, by lengths")) rim_by_lengths(&r);
     if (mcst_case("no light")) no_lights();
+    if (mcst_case("in planes that are turned")) in_turned_planes(&r);
+    if (mcst_case("a far corner")) far_corners(&r);
     if (mcst_case("a disk too faint")) faint_disk();
     if (mcst_case("balls and disks, bad places")) bad_places();
     if (mcst_case("per area and per solid angle")) conversions(&r);
