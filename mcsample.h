@@ -36,8 +36,9 @@
  *
  * Directions    They are unit vectors in a local frame whose +z is the surface normal; [frame] converts to it and back.
  *               wo points to the eye and is given. wi points to the light and is sampled. Both point away from the
- *               surface. h is their half-vector. A direction between 1/2 and 2 long is taken as it is, and its
- *               densities are then wrong by up to a factor of 2: normalise what was interpolated or scaled.
+ *               surface. h is their half-vector. A direction between 1/2 and 2 long is taken as it is. What comes of
+ *               it is finite, but wrong: densities of sharp lobes by any factor, and sampled wi are not of unit length,
+ *               or all lost. Normalise what was interpolated or scaled.
  *
  * alpha         It is the width of a lobe's slopes itself, no "roughness" that would have to be squared.
  *
@@ -50,7 +51,8 @@
  *               mcs_schlick, one of [fresnel], or your own. X_weight belongs to the float wi that it is given. The
  *               weight of a sample is computed from the half-vector of the exact point and from the cosine of the
  *               rounded wi, and what is stated of its accuracy compares it with that. Near the horizon the exact point
- *               itself has another weight, as the rounding of wi is a large part of so small a cosine.
+ *               itself has another weight, as the rounding of wi is a large part of so small a cosine. A weight that
+ *               is said to be at most 1 may be 1 + 3e-7 by rounding.
  *
  * Lost samples  A lobe around a half-vector or around the mirror direction may reflect below the surface. Such a sample
  *               has pdf 0 and weight 0: add 0 to the estimate and count the sample. The density over the upper
@@ -498,7 +500,7 @@ MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, 
  *
  *   x, y    any values
  *   n       how many points each pixel takes, within [1, 2^20]; best a power of two. With n rounded up to 2^k, tiles of
- *           2^(16 - k/2) x 2^(16 - k/2) pixels have the same points, each tile in an order of its own.
+ *           2^m x 2^m pixels have the same points, each tile in an order of its own; m is 16 - k/2, rounded down.
  *   seed    another one for another picture */
 MCS_FN uint32_t mcs_sobol_pixel(uint32_t x, uint32_t y, uint32_t n, uint32_t seed);
 
@@ -535,7 +537,7 @@ MCS_FN uint32_t mcs_hash(uint32_t a, uint32_t b);
 
 /* ---- linear: a density that rises or falls evenly over [0,1] ----
  * density    2 ((1-x) a + x b) / (a + b) on [0,1]
- * a, b       the heights at 0 and at 1, of which only the ratio counts; >= 0, not both 0
+ * a, b       the heights at 0 and at 1, of which only the ratio counts; >= 0, finite, not both 0
  * cost       1 square root, 2 divisions
  * functions  mcs_linear_sample, mcs_linear_pdf, mcs_linear_invert */
 MCS_FN mcs_sample1 mcs_linear_sample(float a, float b, float u);
@@ -906,8 +908,8 @@ MCS_API void mcs_spherical_triangle_sample_n(const mcs_spherical_triangle *l, si
 
 /* mcs_pdf_to_solid_angle makes a density per area of a light one per solid angle, times distance^2/|cosine|, and
  * mcs_pdf_to_area the reverse, both within an ulp. `distance`, 0 or more, is that of the place on the light, and
- * `cosine` that of the angle between the direction and the normal there. The result is 0 where one of the three is 0:
- * such a sample brings no light. */
+ * `cosine` that of the angle between the direction and the normal there. The result is 0 where one of the three is 0,
+ * as such a sample brings no light, and where one is bad or infinite. */
 MCS_FN float mcs_pdf_to_solid_angle(float pdf, float distance, float cosine);
 MCS_FN float mcs_pdf_to_area(float pdf, float distance, float cosine);
 
@@ -991,7 +993,8 @@ MCS_FN float mcs_cone_from_sin2(float sin2);
  * density   per solid angle; 0 for bad input
  * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24, pdf of u within 0.2 E,
  *           of w within 0.6 E (henyey_greenstein), 0.2 E (rayleigh), 0.4 E (von_mises_fisher). 1 E is a relative error
- *           of 1e-6 (1 + |ln(pdf/peak)|). x and y keep their relative accuracy at both poles.
+ *           of 1e-6 (1 + |ln(pdf/peak)|). x and y keep their relative accuracy at both poles, down to a 1 - |z| of
+ *           2^-127.
  * cost      1 square root, 2 divisions (von_mises_fisher 4) and 1 sincos; inverses take 1 arctangent
  * source    Henyey and Greenstein 1941, "Diffuse radiation in the galaxy"; Frisvad 2011, "Importance sampling the
  *           Rayleigh phase function"; Fisher 1953, "Dispersion on a sphere"; Jakob 2012, "Numerically stable sampling
@@ -1091,7 +1094,7 @@ MCS_FN mcs_vec3 mcs_half(mcs_vec3 wo, mcs_vec3 wi);
 /* cos_d of wo and wi: |wo + wi| / 2, which keeps its accuracy where the angle is large. */
 MCS_FN float mcs_cos_d(mcs_vec3 wo, mcs_vec3 wi);
 /* Fresnel's factor as approximated by Schlick: f0 + (1 - f0) (1 - cos_d)^5. f0 is the reflectance at normal incidence.
- * Both are taken within [0,1]. */
+ * Both are taken within [0,1], NaN as 0. */
 MCS_FN float mcs_schlick(float f0, float cos_d);
 
 #endif
@@ -4106,7 +4109,7 @@ MCSI_FN mcs_f mcs_logistic_invert(mcs_f mean, mcs_f scale, mcs_f x) {
 #ifdef MCSI_PUBLIC
 typedef struct {
     mcs_i ok;
-    mcs_i bent; /* elsewhere the density is uniform within 1e-7, and what is below is that of [0,1] */
+    mcs_i bent; /* not set: the density is uniform within 1e-7, and the base and what follows are those of [0,1] */
     mcs_f a, b;
     mcs_f even;                      /* the density where it is not bent */
     mcs_f base, left_end, right_end; /* distances, none below the base */
@@ -4150,8 +4153,8 @@ MCSI_CORE mcs_f mcsi_cut_part(const mcsi_cut *d, mcs_f u, mcsi_d *part) {
     *part = *part * MCSI_WIDEN(sign);
     return sign;
 }
-/* What is at `distance` from the base, on the side of `sign`, with the density pdf; elsewhere than in bent ones what is
- * at u. */
+/* The sample at `distance` from the base, on the side of `sign`, with the density pdf. A uniform density needs u alone.
+ */
 MCSI_CORE mcs_sample1 mcsi_cut_sample(const mcsi_cut *d, mcs_i ok, mcs_f u, mcs_f sign, const mcsi_d *distance,
                                       mcs_f pdf) {
     const mcsi_d a = MCSI_WIDEN(d->a);
@@ -4845,8 +4848,8 @@ MCSI_CORE mcs_f mcsi_ball_distance(const mcsi_ball *b, mcs_f u1) {
     mcsi_wide_sqrt(&h);
     const mcsi_d sum = along + h;
     const mcsi_d further = inside * MCSI_WIDEN(mcsi_sel(cosine >= 0.0f, mcs_set(1.0f), mcs_set(0.0f)));
-    const mcsi_d above = further * sum + (1.0 - further) * (b->outside - inside) * gap;
-    return MCSI_NARROW(above / ((further + (1.0 - further) * sum) * scale));
+    const mcsi_d numerator = further * sum + (1.0 - further) * (b->outside - inside) * gap;
+    return MCSI_NARROW(numerator / ((further + (1.0 - further) * sum) * scale));
 }
 MCSI_CORE mcs_light mcsi_ball_draw(const mcsi_ball *b, mcs_f u1, mcs_f u2) {
     mcs_i ok = b->ok;
@@ -5077,11 +5080,11 @@ typedef struct {
 MCS_FN mcsi_half_turn mcsi_angle_d(double y, double x) {
     const double size = x < 0.0 ? -x : x;
     const int steep = y > size;
-    const double less = steep ? size : y;
-    const double more = steep ? y : size;
-    const int between = less > 0.41421356237309503 * more;
-    const double above = less - (between ? more : 0.0);
-    const double t = more > 0.0 ? above / (more + (between ? less : 0.0)) : 0.0;
+    const double shorter = steep ? size : y;
+    const double longer = steep ? y : size;
+    const int between = shorter > 0.41421356237309503 * longer;
+    const double numerator = shorter - (between ? longer : 0.0);
+    const double t = longer > 0.0 ? numerator / (longer + (between ? shorter : 0.0)) : 0.0;
     const double z = t * t;
     const double z2 = z * z;
     const double z4 = z2 * z2;
@@ -5509,11 +5512,11 @@ MCS_FN mcs_vec2 mcsi_spherical_triangle_find(const mcs_spherical_triangle *l, mc
     const double from_c = MCSI_DOT_D(l->past_c, direction);
     const double part_a = from_a > 0.0 ? from_a : 0.0;
     const double part_c = from_c > 0.0 ? from_c : 0.0;
-    const double less = part_c - part_a;
+    const double excess = part_c - part_a;
     const double mixed = 2.0 * l->cos_ca * part_a;
-    const double root = mcsi_sqrt_d(less * less + 2.0 * l->cos_ca * part_c * mixed);
-    const double c = l->cos_bc * (less > 0.0 ? less + root : 2.0 * l->cos_ca * part_c);
-    const double a = l->cos_ab * (less > 0.0 ? mixed : root - less);
+    const double root = mcsi_sqrt_d(excess * excess + 2.0 * l->cos_ca * part_c * mixed);
+    const double c = l->cos_bc * (excess > 0.0 ? excess + root : 2.0 * l->cos_ca * part_c);
+    const double a = l->cos_ab * (excess > 0.0 ? mixed : root - excess);
     const double v = l->angle * l->rest;
     double sine;
     mcsi_sine_over(&v, &sine);
@@ -5558,9 +5561,9 @@ MCSI_CORE void mcsi_spherical_triangle_end(const mcs_spherical_triangle *l, cons
     a = scale * a;
     const mcsi_d weight_a = a * (a * l->cos_ca + c);
     const mcsi_d weight_c = c * (c * l->cos_ca + a);
-    const mcsi_d less = weight_a - weight_c;
+    const mcsi_d excess = weight_a - weight_c;
     const mcsi_d twice = 2.0 * l->cos_ca;
-    const mcsi_d length2 = less * less + (twice * weight_a) * (twice * weight_c);
+    const mcsi_d length2 = excess * excess + (twice * weight_a) * (twice * weight_c);
     mcsi_d per_length;
     mcsi_inverse_root(&length2, &per_length);
     *part_a = weight_a * per_length;
