@@ -169,13 +169,13 @@ static inline double mcst_azimuth(double t, double *x, double *y) {
     return 4 / l2;
 }
 
+/* Quadrants and the coordinate that grows there are looked up: of random directions no processor guesses the branch. */
 static inline double mcst_diamond(double x, double y) {
-    const double ax = fabs(x);
-    const double ay = fabs(y);
-    const double sum = ax + ay;
-    if (!(sum > 0)) return 0;
-    if (y >= 0) return x > 0 ? 0.25 * ay / sum : 0.25 + 0.25 * ax / sum;
-    return x <= 0 ? 0.5 + 0.25 * ay / sum : 0.75 + 0.25 * ax / sum;
+    const double size[2] = {fabs(y), fabs(x)};
+    const double sum = size[0] + size[1];
+    const int below = y < 0;
+    const int quadrant = 2 * below + ((x > 0) == below);
+    return sum > 0 ? 0.25 * (quadrant + size[quadrant & 1] / sum) : 0;
 }
 
 static inline double mcst_place_line(const mcst_map *m, double s, double *x) {
