@@ -9,11 +9,15 @@ typedef struct {
     float r;        /* radius of the first two */
 } given_light;
 
-/* The same, seen from p. */
+/* The same, seen from p. What only depends on the light is found once, as many directions are asked about. */
 typedef struct {
     int id;
     q3 at[3];
     qd r;
+    qd rim;        /* of a ball: the largest angle between its centre and a direction that meets it */
+    qd all;        /* its solid angle; of a disk, which has no use for it, 0 */
+    int sides;     /* of polygons */
+    q3 inwards[4]; /* the unit normal of the plane through the eye and a side */
 } light;
 
 /* Where a sample meets it; x, y: the place on the light, as the header counts it. */
@@ -21,8 +25,6 @@ typedef struct {
     q3 w;
     qd distance, x, y;
 } place;
-
-static inline q3 minus(q3 a, q3 b) { return add(a, times(-1, b)); }
 
 static inline void put3(float v[3], float x, float y, float z) {
     v[0] = x;
@@ -51,20 +53,8 @@ static inline given_light row_light(int id, float a, float b) {
     }
     return g;
 }
-static inline light seen_from_p(const given_light *g) {
-    light l;
-    l.id = g->id;
-    l.r = g->r;
-    const q3 p = vec(g->p[0], g->p[1], g->p[2]);
-    for (int i = 0; i < 3; i++) {
-        const int is_place = i == 0 || g->id == ID_spherical_triangle; /* else an edge or a normal */
-        const q3 at = vec(g->at[i][0], g->at[i][1], g->at[i][2]);
-        l.at[i] = is_place ? minus(at, p) : at;
-    }
-    return l;
-}
-
 static inline q3 unit(q3 v) { return times(1 / len(v), v); }
+static inline q3 minus(q3 a, q3 b) { return add(a, times(-1, b)); }
 static inline qd angle_between(q3 a, q3 b) { return atan2q(len(cross(a, b)), dot(a, b)); }
 /* v in the frame of the unit vector n, as Duff et al. 2017 build it: -0 has a sign, too. */
 static inline q3 in_frame(q3 n, q3 v) {
@@ -97,10 +87,11 @@ static inline place ball_seen(const light *l, qd u1, qd u2) {
     else s.distance = along >= 0 ? along + root : (r - d) * (r + d) / (root - along);
     return s;
 }
-static inline qd ball_miss(const light *l, q3 w) {
+static inline qd ball_rim(const light *l) {
     const qd d = len(l->at[0]);
-    return d > ball_radius(l) ? angle_between(l->at[0], w) - asinq(ball_radius(l) / d) : -pi;
+    return d > ball_radius(l) ? asinq(ball_radius(l) / d) : pi;
 }
+static inline qd ball_miss(const light *l, q3 w) { return l->rim < pi ? angle_between(l->at[0], w) - l->rim : -pi; }
 
 /* --- disk_light: uniform in area --- */
 
@@ -141,8 +132,11 @@ static inline qd disk_miss(const light *l, q3 w) {
 typedef struct {
     q3 x, y, z; /* axes, z from the eye to the plane */
     qd x0, x1, y0, y1, z0;
+    qd left[2]; /* what is before x0, of the strip */
 } frame_of_rectangle;
 
+/* The solid angle of what is between the foot of the perpendicular and (x, y). */
+static inline qd quadrant(qd x, qd y, qd z) { return atanq(x * y / (z * sqrtq(x * x + y * y + z * z))); }
 static inline frame_of_rectangle rectangle_of(const light *l) {
     frame_of_rectangle f;
     f.x = unit(l->at[1]);
@@ -155,13 +149,13 @@ static inline frame_of_rectangle rectangle_of(const light *l) {
     f.y0 = dot(l->at[0], f.y);
     f.x1 = f.x0 + len(l->at[1]);
     f.y1 = f.y0 + len(edge_y);
+    f.left[0] = quadrant(f.x0, f.y0, f.z0);
+    f.left[1] = quadrant(f.x0, f.y1, f.z0);
     return f;
 }
-/* The solid angle of what is between the foot of the perpendicular and (x, y); and of the strip before x. */
-static inline qd quadrant(qd x, qd y, qd z) { return atanq(x * y / (z * sqrtq(x * x + y * y + z * z))); }
+/* The solid angle of the strip before x. */
 static inline qd strip(const frame_of_rectangle *f, qd x) {
-    return quadrant(x, f->y1, f->z0) - quadrant(x, f->y0, f->z0) - quadrant(f->x0, f->y1, f->z0) +
-           quadrant(f->x0, f->y0, f->z0);
+    return quadrant(x, f->y1, f->z0) - quadrant(x, f->y0, f->z0) - f->left[1] + f->left[0];
 }
 static inline qd rectangle_angle(const light *l) {
     const frame_of_rectangle f = rectangle_of(l);
@@ -222,7 +216,7 @@ static inline place triangle_seen(const light *l, qd u1, qd u2) {
     const q3 b = unit(l->at[1]);
     const q3 c = unit(l->at[2]);
     const q3 t = unit(cross(cross(a, minus(c, a)), a));
-    const qd half = u1 * triangle_angle(l) / 2;
+    const qd half = u1 * l->all / 2;
     const qd v =
         2 * atan2q(sinq(half) * (1 + dot(a, b)), cosq(half) * fabsq(triple(a, b, add(a, t))) - sinq(half) * dot(b, t));
     const q3 end = add(times(cosq(v), a), times(sinq(v), t));
@@ -242,24 +236,40 @@ static inline place triangle_seen(const light *l, qd u1, qd u2) {
 
 /* --- all of them --- */
 
-/* By which angle w misses a cone of n corners: that to the plane of the side that it is furthest beyond. */
-static inline qd corners_miss(const q3 *corner, int n, q3 w) {
-    qd miss = -pi;
-    for (int i = 0; i < n; i++) {
-        q3 inwards = unit(cross(corner[i], minus(corner[(i + 1) % n], corner[i])));
-        if (dot(inwards, corner[(i + 2) % n]) < 0) inwards = times(-1, inwards);
-        miss = fmaxq(miss, -dot(inwards, w) / len(w));
+static inline int corners_of(const light *l, q3 corner[4]) {
+    corner[0] = l->at[0];
+    if (l->id == ID_spherical_triangle) {
+        corner[1] = l->at[1];
+        corner[2] = l->at[2];
+        return 3;
     }
+    const q3 x = unit(l->at[1]);
+    const q3 y = minus(l->at[2], times(dot(l->at[2], x), x));
+    corner[1] = add(l->at[0], l->at[1]);
+    corner[2] = add(corner[1], y);
+    corner[3] = add(l->at[0], y);
+    return 4;
+}
+static inline void find_sides(light *l) {
+    q3 corner[4];
+    const int n = corners_of(l, corner);
+    for (int i = 0; i < n; i++) {
+        l->inwards[i] = unit(cross(corner[i], minus(corner[(i + 1) % n], corner[i])));
+        if (dot(l->inwards[i], corner[(i + 2) % n]) < 0) l->inwards[i] = times(-1, l->inwards[i]);
+    }
+    l->sides = n;
+}
+/* By which angle w misses a cone of corners: that to the plane of the side that it is furthest beyond. */
+static inline qd corners_miss(const light *l, q3 w) {
+    const qd length = len(w);
+    qd miss = -pi;
+    for (int i = 0; i < l->sides; i++) miss = fmaxq(miss, -dot(l->inwards[i], w) / length);
     return miss;
 }
 static inline qd light_miss(const light *l, q3 w) {
     if (l->id == ID_ball) return ball_miss(l, w);
     if (l->id == ID_disk_light) return disk_miss(l, w);
-    if (l->id == ID_spherical_triangle) return corners_miss(l->at, 3, w);
-    const q3 x = unit(l->at[1]);
-    const q3 y = minus(l->at[2], times(dot(l->at[2], x), x));
-    const q3 corner[4] = {l->at[0], add(l->at[0], l->at[1]), add(add(l->at[0], l->at[1]), y), add(l->at[0], y)};
-    return corners_miss(corner, 4, w);
+    return corners_miss(l, w);
 }
 /* How far off a direction has the density of the light nevertheless, as rounding may move a sample over the rim: by half
  * an ulp in each coordinate. Of corners, whose sides are exact, that of the truth itself. */
@@ -278,6 +288,27 @@ static inline int light_at_rim(const light *l, q3 w) {
     return miss > (beside ? light_needed(l) : (qd)-1e-14) && miss <= light_forgiven(l, w);
 }
 
+static inline light seen_from_p(const given_light *g) {
+    light l;
+    memset(&l, 0, sizeof l);
+    l.id = g->id;
+    l.r = g->r;
+    const q3 p = vec(g->p[0], g->p[1], g->p[2]);
+    for (int i = 0; i < 3; i++) {
+        const int is_place = i == 0 || g->id == ID_spherical_triangle; /* else an edge or a normal */
+        const q3 at = vec(g->at[i][0], g->at[i][1], g->at[i][2]);
+        l.at[i] = is_place ? minus(at, p) : at;
+    }
+    if (l.id == ID_ball) {
+        l.rim = ball_rim(&l);
+        l.all = 2 * pi * ball_versine(&l);
+    } else if (l.id == ID_spherical_rectangle || l.id == ID_spherical_triangle) {
+        find_sides(&l);
+        l.all = l.id == ID_spherical_rectangle ? rectangle_angle(&l) : triangle_angle(&l);
+    }
+    return l;
+}
+
 static inline place light_seen(const light *l, qd u1, qd u2) {
     return l->id == ID_ball                  ? ball_seen(l, u1, u2)
            : l->id == ID_disk_light          ? disk_seen(l, u1, u2)
@@ -287,9 +318,7 @@ static inline place light_seen(const light *l, qd u1, qd u2) {
 static inline qd light_pdf(const light *l, q3 w) {
     qd t;
     if (!(light_miss(l, w) <= light_needed(l))) return 0;
-    if (l->id == ID_ball) return 1 / (2 * pi * ball_versine(l));
-    if (l->id == ID_disk_light) return disk_density(l, add(l->at[0], disk_off(l, w, &t)));
-    return 1 / (l->id == ID_spherical_rectangle ? rectangle_angle(l) : triangle_angle(l));
+    return l->id == ID_disk_light ? disk_density(l, add(l->at[0], disk_off(l, w, &t))) : 1 / l->all;
 }
 
 /* --- what the header says --- */
