@@ -135,9 +135,28 @@ typedef struct {
     char at[SCORES][160]; /* where raw is largest */
 } tally;
 
+/* What is looked at: parameters and wo, random numbers or a direction. Formatted only where a message or a record wants
+ * it, as a hundred thousand points cost seconds. */
+typedef struct {
+    const float *p;
+    const float *at;
+    int numbers; /* at `at`: 2 random numbers, or 3 coordinates */
+} place_in_words;
+
+static const char *in_words(const place_in_words *w) {
+    static char text[160];
+    const float *p = w->p;
+    const float *at = w->at;
+    const int n =
+        snprintf(text, sizeof text, "p %g %g, wo %a %a %a, %s %a %a", (double)p[0], (double)p[1], (double)p[3],
+                 (double)p[4], (double)p[5], w->numbers == 2 ? "u" : "w", (double)at[0], (double)at[1]);
+    if (w->numbers == 3) snprintf(text + n, sizeof text - (size_t)n, " %a", (double)at[2]);
+    return text;
+}
+
 /* raw: the error over its bound; judged: over the bound with its conditioning term, which is found only when needed. */
-static void score(tally *t, int what, double raw, double judged, const char *where) {
-    if (!(raw <= t->raw[what])) t->raw[what] = raw, snprintf(t->at[what], sizeof t->at[what], "%s", where);
+static void score(tally *t, int what, double raw, double judged, const place_in_words *where) {
+    if (!(raw <= t->raw[what])) t->raw[what] = raw, snprintf(t->at[what], sizeof t->at[what], "%s", in_words(where));
     if (!(judged <= t->judged[what])) t->judged[what] = judged;
 }
 
@@ -194,7 +213,7 @@ static double conditioning(question q, qd want) {
 
 /* Is got within E of want? Densities beyond FLT_MAX saturate. A density is its peak times a float in [0,1]: where that
  * float is subnormal its digits are gone, and all that is asked is that the density is small, too. */
-static int judge(tally *t, question q, float got, qd want, double unit, double peak, const char *where) {
+static int judge(tally *t, question q, float got, qd want, double unit, double peak, const place_in_words *where) {
     const double top = want > (qd)FLT_MAX ? FLT_MAX : (double)want, floor_ = MCST_FAINT * peak + 0x1p-148;
     const double err = fabs((double)((qd)got - (want > (qd)FLT_MAX ? (qd)FLT_MAX : want))),
                  raw = err <= floor_ ? 0 : err / (unit * top);
@@ -206,7 +225,7 @@ static int judge(tally *t, question q, float got, qd want, double unit, double p
         judged = err / (top * (unit + wider));
         t->ill[q.what] += judged <= 1;
         CHECK(judged <= 1 || t->beyond,
-              "%s %s: %.9g, exact %.9g, error %.3g (bound %.3g, with half an ulp of the inputs %.3g)", where,
+              "%s %s: %.9g, exact %.9g, error %.3g (bound %.3g, with half an ulp of the inputs %.3g)", in_words(where),
               score_name[q.what], (double)got, top, err / top, unit, unit + wider);
     }
     score(t, q.what, raw, judged, where);
@@ -267,7 +286,7 @@ typedef struct {
     qd pdf_u, pdf_x;    /* the exact density at x and at `at` */
     float pdf;          /* what _pdf gives at `at` */
     tally *scores;
-    char where[160];
+    place_in_words where;
 } drawn_point;
 
 static drawn_point draw_point(const mcst_row *row, const setting *s, const float *p, const float *u,
@@ -287,8 +306,9 @@ static drawn_point draw_point(const mcst_row *row, const setting *s, const float
     d.at = vec(d.w[0], d.w[1], d.w[2]);
     const int grazing = p[5] < LEAST_COSINE || (row->shape == MCST_IS_BRDF && d.w[2] < LEAST_COSINE);
     d.scores = row->has_wo && grazing ? t + 1 : t;
-    snprintf(d.where, sizeof d.where, "p %g %g, wo %a %a %a, u %a %a", (double)p[0], (double)p[1], (double)p[3],
-             (double)p[4], (double)p[5], (double)u[0], (double)u[1]);
+    d.where.p = p;
+    d.where.at = u;
+    d.where.numbers = 2;
     return d;
 }
 
@@ -296,8 +316,8 @@ static drawn_point draw_point(const mcst_row *row, const setting *s, const float
 static void check_coordinates(const drawn_point *d, double limit) {
     const q3 off = add(d->at, times(-1, d->x));
     const double err = (double)fmaxq(fmaxq(fabsq(off.x), fabsq(off.y)), fabsq(off.z)) / EPS;
-    score(d->scores, WHERE, err, err / limit, d->where);
-    CHECK(err <= limit, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g", d->where,
+    score(d->scores, WHERE, err, err / limit, &d->where);
+    CHECK(err <= limit, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g", in_words(&d->where),
           (double)d->w[0], (double)d->w[1], (double)d->w[2], (double)d->x.x, (double)d->x.y, (double)d->x.z, err,
           limit);
 }
@@ -318,15 +338,15 @@ static void check_where(const drawn_point *d) {
     /* what is subnormal in units of the range has lost digits */
     const double err = off * EPS <= 0x1p-125 * d->extent + 0x1p-148 ? 0 : off / size;
     if (err <= limit) {
-        score(d->scores, WHERE, err, err / limit, d->where);
+        score(d->scores, WHERE, err, err / limit, &d->where);
         return;
     }
     const double wider = limit + movement(row, d->p, d->u[0], d->u[1], x) / size;
-    score(d->scores, WHERE, err, err / wider, d->where);
+    score(d->scores, WHERE, err, err / wider, &d->where);
     d->scores->ill[WHERE] += err <= wider;
     CHECK(err <= wider || d->scores->beyond, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g",
-          d->where, (double)d->w[0], (double)d->w[1], (double)d->w[2], (double)x.x, (double)x.y, (double)x.z, err,
-          wider);
+          in_words(&d->where), (double)d->w[0], (double)d->w[1], (double)d->w[2], (double)x.x, (double)x.y, (double)x.z,
+          err, wider);
 }
 
 /* sin(theta), and the point across the lobe in units of its width: both relative, where sin^2(theta) is a normal float
@@ -348,16 +368,16 @@ static void check_sine(const drawn_point *d) {
     const double along = fabs((double)(got / sine - 1));
     const double rel = fmax(across, along) / 1e-6;
     if (rel <= 1) {
-        score(d->scores, SINE, rel, rel, d->where);
+        score(d->scores, SINE, rel, rel, &d->where);
         return;
     }
     /* of visible normals h = c + i is a sum: relative to the whole of it, not to what is left */
     const double whole = (double)(sine * fminq(1, fminq(wx, wy) / fmaxq(wx, wy)));
     const double wider = 1 + movement(d->row, d->p, d->u[0], d->u[1], x) * EPS / whole / 1e-6;
-    score(d->scores, SINE, rel, rel / wider, d->where);
+    score(d->scores, SINE, rel, rel / wider, &d->where);
     d->scores->ill[SINE] += rel <= wider;
     CHECK(rel <= wider || d->scores->beyond,
-          "%s: sin(theta) %.9g, exact %.9g: off by %.3g along, %.3g across the lobe (bound %.3g)", d->where,
+          "%s: sin(theta) %.9g, exact %.9g: off by %.3g along, %.3g across the lobe (bound %.3g)", in_words(&d->where),
           (double)got, (double)sine, along, across, 1e-6 * wider);
 }
 
@@ -366,9 +386,9 @@ static int check_kept(const drawn_point *d) {
     const int lost = d->row->shape == MCST_IS_BRDF && !(d->x.z > 0);
     const int at_horizon = fabsq(d->x.z) <= 40 * (qd)EPS;
     if (d->row->shape != MCST_IS_BRDF || !(lost || at_horizon)) return 1;
-    CHECK(!lost || d->out[3] == 0 || at_horizon, "%s: lost, but pdf %g", d->where, (double)d->out[3]);
+    CHECK(!lost || d->out[3] == 0 || at_horizon, "%s: lost, but pdf %g", in_words(&d->where), (double)d->out[3]);
     if (!(d->out[3] > 0)) {
-        CHECK(d->out[4] == 0, "%s: lost, but weight %g", d->where, (double)d->out[4]);
+        CHECK(d->out[4] == 0, "%s: lost, but weight %g", in_words(&d->where), (double)d->out[4]);
         return 0;
     }
     return !lost;
@@ -394,24 +414,24 @@ static int check_densities(drawn_point *d, tally *t) {
     if (d->row->dim < 3 && d->pdf_u == 0 && d->out[3] == 0) return 0; /* the density is 0 there */
     if (d->out[3] == 0 && d->pdf_u > (qd)(MCST_FAINT * peak + 0x1p-148)) t->zero++;
     const double unit_u = unit_of(d->row, d->pdf_u, peak);
-    if (!judge(g, question_of(d, PDF_U), d->out[3], d->pdf_u, unit_u, peak, d->where)) return 0;
+    if (!judge(g, question_of(d, PDF_U), d->out[3], d->pdf_u, unit_u, peak, &d->where)) return 0;
     d->row->fn[0].pdf(d->p, d->w, &d->pdf);
     d->pdf_x = exact_pdf(d->row, d->s, d->at);
     if (d->row->traits & MCST_DISTANCE && light_at_rim(&d->s->light, d->at)) return 0; /* either is right */
     if (d->pdf_x == 0 && d->row->traits & MCST_DISTANCE) {
-        CHECK(d->pdf == 0, "%s: pdf(x) %.9g where the light is missed", d->where, (double)d->pdf);
+        CHECK(d->pdf == 0, "%s: pdf(x) %.9g where the light is missed", in_words(&d->where), (double)d->pdf);
         return 0;
     }
     if (d->pdf_x == 0) { /* rounded over the rim of disk, cone or cap: 0 or what is inside */
         CHECK(d->pdf >= 0 && (double)d->pdf <= (double)d->pdf_u * 1.001, "%s: pdf(x) %.9g on the rim, %.9g inside",
-              d->where, (double)d->pdf, (double)d->pdf_u);
+              in_words(&d->where), (double)d->pdf, (double)d->pdf_u);
         return 0;
     }
     const double unit_x = unit_of(d->row, d->pdf_x, peak);
-    judge(g, question_of(d, PDF_X), d->pdf, d->pdf_x, unit_x, peak, d->where);
+    judge(g, question_of(d, PDF_X), d->pdf, d->pdf_x, unit_x, peak, &d->where);
     if (d->out[3] > FLT_MIN && d->pdf > FLT_MIN && d->pdf < FLT_MAX && (double)d->pdf_x > 0x1p-120 * peak) {
         const double ratio = (double)((qd)d->pdf / (qd)d->out[3] / (d->pdf_x / d->pdf_u));
-        score(g, AGREE, fabs(ratio - 1) / (unit_u + unit_x), 0, d->where);
+        score(g, AGREE, fabs(ratio - 1) / (unit_u + unit_x), 0, &d->where);
     }
     return 1;
 }
@@ -426,34 +446,35 @@ static void check_value(const drawn_point *d, tally *t) {
     d->row->fn[0].weight(d->p, d->w, &v);
     t->evaluations += 2;
     judge(g, question_of(d, VALUE), value, f, unit_of(d->row, d->pdf_x, d->peak), d->peak * (double)(f / d->pdf_x),
-          d->where);
+          &d->where);
     if (!(f > 0)) return;
-    judge(g, question_of(d, WEIGHT), v, weight, 1e-6, 0, d->where);
+    judge(g, question_of(d, WEIGHT), v, weight, 1e-6, 0, &d->where);
     /* the weight of the sample is a function of the cosines; wi.z is known to half an ulp of 1 */
     if (!g->beyond)
         CHECK(fabs((double)((qd)d->out[4] / fminq(weight, FLT_MAX)) - 1) <= 2e-6 + 40 * EPS / (double)d->w[2] ||
                   weight < (qd)0x1p-100,
-              "%s: weight %.9g, exact %.9g", d->where, (double)d->out[4], (double)weight);
+              "%s: weight %.9g, exact %.9g", in_words(&d->where), (double)d->out[4], (double)weight);
 }
 
 static void check_distance(const drawn_point *d) {
     const place at = light_seen(&d->s->light, d->u[0], d->u[1]);
     double err = at.distance == 0 ? (double)d->out[4] : fabs((double)((qd)d->out[4] / at.distance - 1)) / 1e-6;
     double limit = mcst_claim_of(d->row, CLAIM_DISTANCE, d->p);
-    score(d->scores, DISTANCE, err, err / limit, d->where);
-    CHECK(err <= limit, "%s: distance %.9g, exact %.9g", d->where, (double)d->out[4], (double)at.distance);
+    score(d->scores, DISTANCE, err, err / limit, &d->where);
+    CHECK(err <= limit, "%s: distance %.9g, exact %.9g", in_words(&d->where), (double)d->out[4], (double)at.distance);
     if (1 / d->pdf_u < (qd)1e-12) return; /* nothing is promised of the place */
     const given_light given = row_light(d->s->id, d->p[0], d->p[1]);
     const mcs_light_point s = header_sample(&given, d->u[0], d->u[1]);
     err = (double)fmaxq(fabsq(s.x - at.x), fabsq(s.y - at.y)) / EPS;
     limit = mcst_claim_of(d->row, CLAIM_PLACE, d->p);
-    score(d->scores, PLACE, err, err / limit, d->where);
-    CHECK(err <= limit, "%s: at %.9g %.9g of the light, exact %.9g %.9g", d->where, (double)s.x, (double)s.y,
+    score(d->scores, PLACE, err, err / limit, &d->where);
+    CHECK(err <= limit, "%s: at %.9g %.9g of the light, exact %.9g %.9g", in_words(&d->where), (double)s.x, (double)s.y,
           (double)at.x, (double)at.y);
 }
 
 static void check_point(drawn_point *d, tally *t) {
-    for (int i = 0; i < 5; i++) CHECK(isfinite(d->out[i]), "%s: out[%d] = %g", d->where, i, (double)d->out[i]);
+    for (int i = 0; i < 5; i++)
+        CHECK(isfinite(d->out[i]), "%s: out[%d] = %g", in_words(&d->where), i, (double)d->out[i]);
     check_where(d);
     if (d->row->traits & MCST_DISTANCE) check_distance(d);
     else if (d->row->dim == 3 && d->row->shape != MCST_IS_BRDF) check_sine(d);
@@ -467,7 +488,7 @@ static void check_far(const mcst_row *row, const setting *s, const float *p, uin
     for (i = 0; i < 44; i++) {
         question q;
         float w[3], pdf = -1, u, v;
-        char where[160];
+        const place_in_words where = {p, w, 3};
         tally *g = t;
         qd want;
         mcst_uniform(&seed, 1, &u, &v);
@@ -487,8 +508,6 @@ static void check_far(const mcst_row *row, const setting *s, const float *p, uin
             w[1] = (float)(r * sin(6.283185307179586 * (double)v)), w[2] = u;
         }
         q.row = row, q.p = p, q.x = vec(w[0], w[1], w[2]), q.u1 = q.u2 = 0, q.of_u = 0, q.what = FAR_;
-        snprintf(where, sizeof where, "p %g %g, wo %a %a %a, w %a %a %a", (double)p[0], (double)p[1], (double)p[3],
-                 (double)p[4], (double)p[5], (double)w[0], (double)w[1], (double)w[2]);
         if ((row->has_wo && p[5] < LEAST_COSINE) || (w[2] > 0 && w[2] < LEAST_COSINE)) g = t + 1;
         row->fn[0].pdf(p, w, &pdf);
         t->evaluations++, t->nans += isnan(pdf) != 0, t->infinities += isinf(pdf) != 0;
@@ -496,17 +515,17 @@ static void check_far(const mcst_row *row, const setting *s, const float *p, uin
         if (row->shape == MCST_IS_VLOBE && want == 0) continue; /* the rim of the cap: see check_point */
         if (row->traits & MCST_DISTANCE && light_at_rim(&s->light, q.x)) continue;
         if (s->id == ID_cone && fabsq((1 - q.x.z / len(q.x)) / s->a - 1) < (qd)1e-6) continue; /* the rim of the cone */
-        judge(g, q, pdf, want, unit_of(row, want, peak), peak, where);
+        judge(g, q, pdf, want, unit_of(row, want, peak), peak, &where);
         if (row->fn[0].eval && w[2] > 0) {
             const qd f = exact_value(s, q.x);
             float value = -1, weight = -1;
             row->fn[0].eval(p, w, &value), row->fn[0].weight(p, w, &weight);
             t->evaluations += 2;
             t->nans += isnan(value) || isnan(weight), t->infinities += isinf(value) || isinf(weight);
-            CHECK(value >= 0 && weight >= 0 && value <= FLT_MAX && weight <= FLT_MAX, "%s: eval %g, weight %g", where,
-                  (double)value, (double)weight);
+            CHECK(value >= 0 && weight >= 0 && value <= FLT_MAX && weight <= FLT_MAX, "%s: eval %g, weight %g",
+                  in_words(&where), (double)value, (double)weight);
             q.what = VALUE;
-            judge(g, q, value, f, unit_of(row, want, peak), want > 0 ? peak * (double)(f / want) : 0, where);
+            judge(g, q, value, f, unit_of(row, want, peak), want > 0 ? peak * (double)(f / want) : 0, &where);
         }
     }
 }
@@ -529,7 +548,7 @@ static void check_rim(const mcst_row *row, const setting *s, const float *p, uin
             const q3 at = add(rim, times(k / 2 % 2 ? step : step / len(way), way));
             const q3 w = times(1 / len(at), at);
             const float x[3] = {(float)w.x, (float)w.y, (float)w.z};
-            char where[160];
+            const place_in_words where = {p, x, 3};
             float pdf = -1;
             question q;
             q.row = row;
@@ -539,14 +558,12 @@ static void check_rim(const mcst_row *row, const setting *s, const float *p, uin
             q.of_u = 0;
             q.what = FAR_;
             if (light_at_rim(&s->light, q.x)) continue;
-            snprintf(where, sizeof where, "p %g %g, w %a %a %a", (double)p[0], (double)p[1], (double)x[0], (double)x[1],
-                     (double)x[2]);
             row->fn[0].pdf(p, x, &pdf);
             t->evaluations++;
             const qd want = exact_pdf(row, s, q.x);
-            CHECK(want > 0 || pdf == 0, "%s: pdf %.9g, but it misses by %.3g", where, (double)pdf,
+            CHECK(want > 0 || pdf == 0, "%s: pdf %.9g, but it misses by %.3g", in_words(&where), (double)pdf,
                   (double)light_miss(&s->light, q.x));
-            if (want > 0) judge(t, q, pdf, want, 1e-6, 0, where);
+            if (want > 0) judge(t, q, pdf, want, 1e-6, 0, &where);
         }
     }
 }
