@@ -617,19 +617,22 @@ static inline void o_frame_about(o_vec3 c, o_vec3 axes[3]) {
 static inline o_vec3 o_from_frame(const o_vec3 axes[3], o_vec3 v) {
     return o_add(o_add(o_scale(v.x, axes[0]), o_scale(v.y, axes[1])), o_scale(v.z, axes[2]));
 }
-static inline ld o_versine(ld angle) { return 2.0L * sinl(0.5L * angle) * sinl(0.5L * angle); }
-
 /* The largest angle between a direction that hits the ball and that of its centre. */
 static inline ld o_ball_rim(o_vec3 c, ld r) { return o_len(c) <= r ? O_PI : asinl(r / o_len(c)); }
+/* 1 - cos of that angle, from its sine. */
+static inline ld o_ball_versine(o_vec3 c, ld r) {
+    const ld sine = r / o_len(c);
+    return sine < 1.0L ? sine * sine / (1.0L + sqrtl((1.0L - sine) * (1.0L + sine))) : 2.0L;
+}
 static inline o_vec3 o_ball_map(o_vec3 c, ld r, ld u1, ld u2) {
     o_vec3 axes[3];
     o_frame_about(c, axes);
-    return o_from_frame(axes, o_polar(o_versine(o_ball_rim(c, r)) * u1, u2));
+    return o_from_frame(axes, o_polar(o_ball_versine(c, r) * u1, u2));
 }
 static inline ld o_ball_pdf_u(o_vec3 c, ld r, ld u1, ld u2) {
     (void)u1;
     (void)u2;
-    return 1.0L / (2.0L * O_PI * o_versine(o_ball_rim(c, r)));
+    return 1.0L / (2.0L * O_PI * o_ball_versine(c, r));
 }
 /* Directions within 2^-23 of one that hits count as such. */
 static inline ld o_ball_pdf(o_vec3 c, ld r, o_vec3 w) {
@@ -639,10 +642,8 @@ static inline ld o_ball_pdf(o_vec3 c, ld r, o_vec3 w) {
 static inline o_vec2 o_ball_invert(o_vec3 c, ld r, o_vec3 w) {
     o_vec3 axes[3];
     o_frame_about(c, axes);
-    const ld x = o_dot(axes[0], w);
-    const ld y = o_dot(axes[1], w);
-    const ld angle = atan2l(sqrtl(x * x + y * y), o_dot(axes[2], w));
-    return o_v2(o_versine(angle) / o_versine(o_ball_rim(c, r)), o_turn(y, x));
+    const o_vec3 v = o_vec(o_dot(axes[0], w), o_dot(axes[1], w), o_dot(axes[2], w));
+    return o_v2(o_one_minus_cos(v) / o_ball_versine(c, r), o_turn(v.y, v.x));
 }
 /* The first point of the surface along w, a root of t^2 - 2 t (w.c) + c.c - r^2 = 0: from outside it is the nearer one.
  */
@@ -836,12 +837,12 @@ static inline o_rectangle o_rectangle_make(o_vec3 corner, o_vec3 edge_x, o_vec3 
  * the difference of the squares, d^2 (y^2 - y0^2) / (r r0)^2, over the sum. */
 static inline ld o_rectangle_rise(const void *of, ld t) {
     const o_rectangle *l = (const o_rectangle *)of;
-    const ld d = hypotl(l->x, l->z);
+    const ld d2 = l->x * l->x + l->z * l->z;
     const ld y = l->y0 + t * l->height;
-    const ld r = hypotl(d, y);
-    const ld r0 = hypotl(d, l->y0);
+    const ld r = sqrtl(d2 + y * y);
+    const ld r0 = sqrtl(d2 + l->y0 * l->y0);
     if (y * l->y0 <= 0.0L) return y / r - l->y0 / r0;
-    return d / r * (d / r0) * (t * l->height) * (y + l->y0) / (y * r0 + l->y0 * r);
+    return d2 / (r * r0) * (t * l->height) * (y + l->y0) / (y * r0 + l->y0 * r);
 }
 /* Urena, Fajardo, King 2013: the share u1 is before x, and y is uniform in the sine of its elevation */
 static inline o_light o_rectangle_light(o_rectangle l, ld u1, ld u2) {
