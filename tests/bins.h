@@ -4,8 +4,9 @@
  * azimuth, s a radius. They come from elementary warps written here, not from the sampler under test. Two directions
  * are needed:
  *
- *     mcst_place(map, s, t, x)   the point, and the derivative of its measure (length, area, angle) by (s, t)
- *     mcst_cell(map, x, y, z)    the bin of a sample
+ *     mcst_place(map, ray, s, x)   the point, and the derivative of its measure (length, area, angle) by (s, t), on the
+ *                                  ray of all points of one t
+ *     mcst_cell(map, x, y, z)      the bin of a sample
  *
  * Azimuths are measured by the diamond angle |y| / (|x| + |y|) per quadrant: no arctangent per sample, exact bin edges.
  * A BRDF is binned by its half-vector (reflection: d(wi) = 4 (wo.h) d(h)) or, for Phong, about the mirror direction. In
@@ -216,12 +217,38 @@ static inline double mcst_place_by_truth(const mcst_map *m, double s, double t, 
     return (double)(1 / m->row->truth.pdf_u(m->p, (ld)s, (ld)t));
 }
 
-/* The point at (s, t) and |d measure / d(s, t)|. */
-static inline double mcst_place(const mcst_map *m, double s, double t, double x[3]) {
-    if (m->coord == MCST_BY_TRUTH) return mcst_place_by_truth(m, s, t, x);
-    double c, n;
-    double jac = mcst_azimuth(t, &c, &n);
+/* All points of one t: the cosine and sine of their azimuth, and its derivative by t. An integral asks for many points of
+ * a ray. */
+typedef struct {
+    double t, x, y, turn;
+    double exponent; /* for MCST_COSPOWER */
+} mcst_ray;
+
+static inline mcst_ray mcst_ray_of(const mcst_map *m, double t) {
+    mcst_ray ray;
+    ray.t = t;
+    ray.turn = mcst_azimuth(t, &ray.x, &ray.y);
+    ray.exponent = 0;
+    if (m->coord == MCST_COSPOWER) { /* an azimuth that spreads out the narrower axis */
+        ray.x /= sqrt(m->a + 1);
+        ray.y /= sqrt(m->b + 1);
+        const double l2 = ray.x * ray.x + ray.y * ray.y;
+        const double l = sqrt(l2);
+        ray.turn /= sqrt((m->a + 1) * (m->b + 1)) * l2;
+        ray.x /= l;
+        ray.y /= l;
+        ray.exponent = m->a * ray.x * ray.x + m->b * ray.y * ray.y;
+    }
+    return ray;
+}
+
+/* The point at s of a ray and |d measure / d(s, t)|. */
+static inline double mcst_place(const mcst_map *m, const mcst_ray *ray, double s, double x[3]) {
+    if (m->coord == MCST_BY_TRUTH) return mcst_place_by_truth(m, s, ray->t, x);
     if (m->t_bins == 1) return mcst_place_line(m, s, x);
+    const double c = ray->x;
+    const double n = ray->y;
+    double jac = ray->turn;
     double r, z, v[3], l;
     switch (m->coord) {
     case MCST_DISK: /* s = (r / a)^2 */
@@ -238,15 +265,8 @@ static inline double mcst_place(const mcst_map *m, double s, double t, double x[
         v[2] = 1 - m->k * s;
         jac *= m->k;
         break;
-    case MCST_COSPOWER: /* an azimuth that spreads out the narrower axis, then 1 - z with the exponent there */
-        c /= sqrt(m->a + 1);
-        n /= sqrt(m->b + 1);
-        l = c * c + n * n;
-        jac /= sqrt((m->a + 1) * (m->b + 1)) * l;
-        l = sqrt(l);
-        c /= l;
-        n /= l;
-        z = mcst_power_y(m->a * c * c + m->b * n * n, s, &r);
+    case MCST_COSPOWER: /* 1 - z with the exponent there */
+        z = mcst_power_y(ray->exponent, s, &r);
         jac *= r;
         r = sqrt(z * (2 - z));
         v[0] = r * c;
@@ -371,9 +391,9 @@ typedef struct {
 } mcst_density;
 
 /* The density with respect to (s, t): the shipped float density of the rounded point, times the derivative. */
-static inline double mcst_density_at(const mcst_density *d, double s, double t) {
+static inline double mcst_density_at(const mcst_density *d, const mcst_ray *ray, double s) {
     double x[3] = {0, 0, 0};
-    const double jac = mcst_place(&d->map, s, t, x);
+    const double jac = mcst_place(&d->map, ray, s, x);
     float xf[3];
     xf[0] = (float)x[0];
     xf[1] = (float)x[1];
@@ -383,57 +403,58 @@ static inline double mcst_density_at(const mcst_density *d, double s, double t) 
     return (double)pdf * jac;
 }
 
-static inline double mcst_panel(const mcst_density *d, double s0, double s1, double t) {
+static inline double mcst_panel(const mcst_density *d, const mcst_ray *ray, double s0, double s1) {
     double sum = 0;
-    for (int i = 0; i < 8; i++) sum += mcst_gl_w[i] * mcst_density_at(d, s0 + (s1 - s0) * mcst_gl_x[i], t);
+    for (int i = 0; i < 8; i++) sum += mcst_gl_w[i] * mcst_density_at(d, ray, s0 + (s1 - s0) * mcst_gl_x[i]);
     return sum * (s1 - s0);
 }
 
 /* A smooth stretch. On a line it is cut into eight; a power of a cosine has a root at the horizon, so there the pieces
  * shrink towards it. */
-static inline double mcst_smooth(const mcst_density *d, double s0, double s1, double t) {
+static inline double mcst_smooth(const mcst_density *d, const mcst_ray *ray, double s0, double s1) {
     double sum = 0;
     if (d->map.t_bins == 1) {
-        for (int i = 0; i < 8; i++) sum += mcst_panel(d, s0 + (s1 - s0) * i / 8, s0 + (s1 - s0) * (i + 1) / 8, t);
+        for (int i = 0; i < 8; i++) sum += mcst_panel(d, ray, s0 + (s1 - s0) * i / 8, s0 + (s1 - s0) * (i + 1) / 8);
         return sum;
     }
     if (d->map.coord == MCST_COSPOWER && s1 == 1) {
         for (int i = 0; i < 5; i++) {
             const double cut = s0 + 0.75 * (s1 - s0);
-            sum += mcst_panel(d, s0, cut, t);
+            sum += mcst_panel(d, ray, s0, cut);
             s0 = cut;
         }
     }
-    return sum + mcst_panel(d, s0, s1, t);
+    return sum + mcst_panel(d, ray, s0, s1);
 }
 
 /* The ends s = 0 and s = 1 may be singular (a horizon at infinite slope): they are looked at just inside. */
 static inline double mcst_inside(double s) { return fmin(fmax(s, 1e-9), 1 - 1e-9); }
-static inline int mcst_is_positive(const mcst_density *d, double s, double t) {
-    return mcst_density_at(d, mcst_inside(s), t) > 0;
+static inline int mcst_is_positive(const mcst_density *d, const mcst_ray *ray, double s) {
+    return mcst_density_at(d, ray, mcst_inside(s)) > 0;
 }
 
-/* The integral over [s0, s1] at one t. in0 and in1 say whether the density is positive at its ends; where it is at one
+/* The integral over [s0, s1] of a ray. in0 and in1 say whether the density is positive at its ends; where it is at one
  * of them alone the span is cut at the jump. */
-static inline double mcst_span(const mcst_density *d, double s0, double s1, double t, int in0, int in1) {
+static inline double mcst_span(const mcst_density *d, const mcst_ray *ray, double s0, double s1, int in0, int in1) {
     double lo = mcst_inside(s0);
     double hi = mcst_inside(s1);
-    if (in0 == in1) return mcst_smooth(d, s0, s1, t);
+    if (in0 == in1) return mcst_smooth(d, ray, s0, s1);
     for (int i = 0; i < 30; i++) {
         const double mid = 0.5 * (lo + hi);
-        if ((mcst_density_at(d, mid, t) > 0) == in0) lo = mid;
+        if ((mcst_density_at(d, ray, mid) > 0) == in0) lo = mid;
         else hi = mid;
     }
-    return in0 ? mcst_smooth(d, s0, lo, t) : mcst_smooth(d, hi, s1, t);
+    return in0 ? mcst_smooth(d, ray, s0, lo) : mcst_smooth(d, ray, hi, s1);
 }
 
 static inline void mcst_line(const mcst_density *d, double t, double weight, double *sums) {
     const int n = d->map.s_bins;
-    int in0 = mcst_is_positive(d, 0, t);
+    const mcst_ray ray = mcst_ray_of(&d->map, t);
+    int in0 = mcst_is_positive(d, &ray, 0);
     for (int i = 0; i < n; i++) {
         const double s1 = (i + 1.0) / n;
-        const int in1 = mcst_is_positive(d, s1, t);
-        sums[i] += weight * mcst_span(d, (double)i / n, s1, t, in0, in1);
+        const int in1 = mcst_is_positive(d, &ray, s1);
+        sums[i] += weight * mcst_span(d, &ray, (double)i / n, s1, in0, in1);
         in0 = in1;
     }
 }
