@@ -64,7 +64,8 @@ UNITS_16 = $(if $(filter no,$(NATIVE)),,$(shell mkdir -p $(BUILD) && printf 'int
 # What test_bits holds to stored bits is compiled as users do, by CFLAGS. Programs that call it, and bodies that count what is told, have
 # -O1 where those say -O2, as by default: two thirds of the time to compile; all but these, whose own loops run for long. So do packets of
 # 8 lanes, but with NATIVE=no, as in .ci/run.
-LOOPING = $(patsubst %,$(BUILD)/tests/%,test_chi2_lobes test_chi2_rest test_glass test_points test_values_lights stress/extremes stress/images)
+LOOPING = $(patsubst %,$(BUILD)/tests/%,$(addprefix test_,chi2_lobes chi2_rest glass lines points values_lights) \
+	stress/extremes stress/images)
 CALLING = $(filter-out $(LOOPING),$(TEST_BINS) $(STRESS_BINS)) $(SHARED)/telling.o $(SHARED)/asserting.o \
 	$(if $(filter no,$(NATIVE)),,$(SHARED)/wide8.o)
 CALLING_FLAGS = $(CFLAGS:-O2=-O1)

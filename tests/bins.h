@@ -217,8 +217,8 @@ static inline double mcst_place_by_truth(const mcst_map *m, double s, double t, 
     return (double)(1 / m->row->truth.pdf_u(m->p, (ld)s, (ld)t));
 }
 
-/* All points of one t: the cosine and sine of their azimuth, and its derivative by t. An integral asks for many points of
- * a ray. */
+/* All points of one t: the cosine and sine of their azimuth, and its derivative by t. An integral asks for many of
+ * them. */
 typedef struct {
     double t, x, y, turn;
     double exponent; /* for MCST_COSPOWER */

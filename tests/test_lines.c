@@ -94,20 +94,20 @@ static void check_increase(const mcst_row *row) {
     uint64_t state = mcst_seed_for(row->name, "increase", 0);
     size_t set;
     for (set = 0; set < row->grid_size + DRAWN; set++) {
-        static float x[BLOCK], pdf[BLOCK];
-        float p[MCST_P], last = -FLT_MAX;
+        static float x[BLOCK + 1], pdf[BLOCK]; /* the last x of the block before, and a block */
+        float p[MCST_P];
         int i, k, falls = 0, first = -1;
         if (set < row->grid_size) mcst_fill(row, row->grid[set][0], row->grid[set][1], 1, 0, p);
         else draw_set(row, &state, p);
         if (!mcst_case("%s %g %g", row->name, (double)p[0], (double)p[1])) continue;
+        x[BLOCK] = -FLT_MAX;
         for (k = 0; k < CELLS; k += step) {
-            draw_block(row, p, FORMS - 1, k, x, pdf);
             const int before = falls;
-            falls += !(x[0] >= last);
-            for (i = 1; i < BLOCK; i++) falls += !(x[i] >= x[i - 1]);
+            x[0] = x[BLOCK];
+            draw_block(row, p, FORMS - 1, k, x + 1, pdf);
+            for (i = 0; i < BLOCK; i++) falls += !(x[i + 1] >= x[i]);
             for (i = 0; falls > before && first < 0; i++)
-                if (!(x[i] >= (i ? x[i - 1] : last))) first = k + i;
-            last = x[BLOCK - 1];
+                if (!(x[i + 1] >= x[i])) first = k + i;
         }
         CHECK(falls == 0, "x falls at %d of 2^24 steps, first to u = %d 2^-24", falls, first);
     }
