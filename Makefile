@@ -64,7 +64,7 @@ UNITS_16 = $(if $(filter no,$(NATIVE)),,$(shell mkdir -p $(BUILD) && printf 'int
 # What test_bits holds to stored bits is compiled as users do, by CFLAGS. Programs that call it, and bodies that count what is told, have
 # -O1 where those say -O2, as by default: two thirds of the time to compile; all but these, whose own loops run for long. So do packets of
 # 8 lanes, but with NATIVE=no, as in .ci/run.
-LOOPING = $(patsubst %,$(BUILD)/tests/%,$(addprefix test_,chi2_lobes chi2_rest glass lines points values_lights) \
+LOOPING = $(patsubst %,$(BUILD)/tests/%,$(addprefix test_,chi2_lobes chi2_rest glass lines points product_chi2 values_lights) \
 	stress/extremes stress/images)
 CALLING = $(filter-out $(LOOPING),$(TEST_BINS) $(STRESS_BINS)) $(SHARED)/telling.o $(SHARED)/asserting.o \
 	$(if $(filter no,$(NATIVE)),,$(SHARED)/wide8.o)

@@ -367,16 +367,25 @@ static inline void add_cell(const surface *s, double p0, double p1, double t0, d
                 add_cell(s, j ? p : p0, across && !j ? p : p1, i ? t : t0, down && !i ? t : t1, sum);
         return;
     }
-    for (int i = 0; i < 3; i++)
+    double sines[3], cosines[3]; /* of the azimuths */
+    for (int j = 0; j < 3; j++) {
+        const double azimuth = p0 + (p1 - p0) * node[j];
+        sines[j] = sin(azimuth);
+        cosines[j] = cos(azimuth);
+    }
+    for (int i = 0; i < 3; i++) {
+        const double polar = t0 + high * node[i];
+        const double across = sin(polar);
+        const double area = across * high * (p1 - p0);
+        w[2] = cos(polar);
         for (int j = 0; j < 3; j++) {
-            const double a = t0 + high * node[i];
-            const double b = p0 + (p1 - p0) * node[j];
-            const double area = sin(a) * high * (p1 - p0);
-            direction_to(w, a, b);
+            w[0] = across * cosines[j];
+            w[1] = across * sines[j];
             double visible;
             sum->reflected += weight[i] * weight[j] * area * reflect_as(s, w, 0, &visible);
             sum->visible += weight[i] * weight[j] * area * visible;
         }
+    }
 }
 static inline mass texel_mass(const scene *m, const surface *s, uint32_t c, uint32_t r) {
     mass sum = {0, 0};
