@@ -92,9 +92,9 @@ static o_vec3 place(const globe *g, double s, double t, double *solid_angle) {
     const double most = (double)O_PI / ((double)O_PI + g->width);
     const double angle = g->width * s * most / (1 - s * most);
     const double slope = g->width * most / ((1 - s * most) * (1 - s * most));
-    const ld azimuth = 2 * O_PI * ((ld)t - 0.5L);
+    const double azimuth = 2 * (double)O_PI * (t - 0.5);
     *solid_angle = sin(angle) * slope * 2 * (double)O_PI;
-    const o_vec3 across = o_add(o_scale(cosl(azimuth), g->x), o_scale(sinl(azimuth), g->y));
+    const o_vec3 across = o_add(o_scale((ld)cos(azimuth), g->x), o_scale((ld)sin(azimuth), g->y));
     return o_add(o_scale((ld)cos(angle), g->pole), o_scale((ld)sin(angle), across));
 }
 
