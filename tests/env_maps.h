@@ -78,15 +78,18 @@ enum { MAPS = (int)(sizeof maps / sizeof *maps), POLES = 9, CHECKER = 10, SKY = 
 
 static float pixels[MAX_TEXELS];
 static ld prob[MAX_TEXELS], row_prob[8192], total;
+static ld row_angle[8192]; /* the solid angle of a texel of the row */
 
 static inline void load(const map *m) {
     total = 0;
-    for (uint32_t r = 0; r < m->h; r++)
+    for (uint32_t r = 0; r < m->h; r++) {
+        row_angle[r] = solid_angle(r, m->w, m->h);
         for (uint32_t c = 0; c < m->w; c++) {
             const float v = m->value(c, r, m->w, m->h);
             pixels[r * m->w + c] = v;
-            total += prob[r * m->w + c] = v * solid_angle(r, m->w, m->h);
+            total += prob[r * m->w + c] = v * row_angle[r];
         }
+    }
     for (uint32_t r = 0; r < m->h; r++) {
         row_prob[r] = 0;
         for (uint32_t c = 0; c < m->w; c++) row_prob[r] += prob[r * m->w + c] /= total;
@@ -130,10 +133,10 @@ static inline double slack(const map *m, uint32_t col, uint32_t row) {
 static inline void check_density(const map *m, const mcs_env *e) {
     double mass = 0;
     const uint32_t step = m->w > 1000 ? 61 : 1;
-    for (uint32_t r = 0; r < m->h; r++)
+    for (uint32_t r = 0; r < m->h; r++) {
+        const double omega = (double)solid_angle(r, m->w, m->h);
         for (uint32_t c = 0; c < m->w; c++) {
             const mcs_vec3 w = point(m->w, m->h, c, r, 0.5, 0.5);
-            const double omega = (double)solid_angle(r, m->w, m->h);
             const double p = mcs_env_pdf(e, w);
             const double want = (double)prob[r * m->w + c];
             const mcs_texel at = mcs_env_texel(e, w);
@@ -147,6 +150,7 @@ static inline void check_density(const map *m, const mcs_env *e) {
                       want);
             }
         }
+    }
     CHECK(fabs(mass - 1) <= 4 * eps, "the density integrates to 1 + %g", mass - 1);
 }
 
@@ -179,7 +183,7 @@ static inline void check_sample(const map *m, const mcs_env *e, float u1, float 
          * inverse. */
         const double prow = (double)row_prob[s.row];
         const double pcol = (double)(prob[s.row * m->w + s.col] / row_prob[s.row]);
-        const double dz = (double)solid_angle(s.row, m->w, m->h) * m->w / (2 * pi);
+        const double dz = (double)row_angle[s.row] * m->w / (2 * pi);
         const double d1 = pcol * m->w * 8 * eps;
         const double d2 = prow * (m->h * 4 + 4 / dz) * eps;
         const int pole = s.w.x == 0 && s.w.y == 0; /* no azimuth there */
