@@ -227,54 +227,66 @@ static void test_every_bit(void) {
     check_every_bit(make("16 x 2", 16, 2, v_random), LIT);
 }
 
-/* Damage of any kind outside the frame: single bits, two and three of them, runs of bytes, zeroed or exchanged blocks;
- * of a row, two words exchanged, or one bit of both changed, 64 bytes or a multiple apart as sums take words together
- * that are. */
+/* Some bits turned over. */
+static void turn_bits(unsigned char *byte, size_t bytes, int bits, mcs_pcg32 *rng) {
+    for (int k = 0; k < bits; k++) {
+        const size_t bit = mcs_pcg32_next(rng) % (8 * bytes);
+        byte[bit / 8] ^= (unsigned char)(1u << bit % 8);
+    }
+}
+
+/* Two words of a row exchanged, or one bit of both turned over, 64 bytes or a multiple apart: sums take such words
+ * together. */
+static void damage_words(unsigned char *row, int exchange, mcs_pcg32 *rng) {
+    const size_t lane = mcs_pcg32_next(rng) % 8 * 8;
+    const uint32_t first = mcs_pcg32_next(rng) % 4;
+    const uint32_t second = mcs_pcg32_next(rng) % 4;
+    const uint32_t bit = mcs_pcg32_next(rng) % 64;
+    for (int k = 0; k < 8; k++) {
+        unsigned char *const x1 = row + first * 64 + lane + k;
+        unsigned char *const x2 = row + second * 64 + lane + k;
+        const unsigned char was = *x1;
+        if (exchange) {
+            *x1 = *x2;
+            *x2 = was;
+        } else if ((int)bit / 8 == k) {
+            *x1 ^= (unsigned char)(1u << bit % 8);
+            *x2 ^= (unsigned char)(1u << bit % 8);
+        }
+    }
+}
+
+/* A block zeroed, exchanged with another, or filled with noise. */
+enum block_damage { ZEROED, EXCHANGED, NOISE };
+static void damage_block(unsigned char *byte, const arena *whole, enum block_damage damage, mcs_pcg32 *rng) {
+    const size_t n = 1 + mcs_pcg32_next(rng) % 256;
+    const size_t from = mcs_pcg32_next(rng) % (whole->bytes - n);
+    const size_t to = mcs_pcg32_next(rng) % (whole->bytes - n);
+    if (damage == ZEROED) memset(byte + to, 0, n);
+    if (damage == EXCHANGED) {
+        memcpy(byte + from, whole->at + to, n);
+        memcpy(byte + to, whole->at + from, n);
+    }
+    for (size_t k = 0; damage == NOISE && k < n; k++) byte[to + k] = (unsigned char)mcs_pcg32_next(rng);
+}
+
+/* Damage of any kind outside the frame: one bit, two and three of them, blocks of bytes, words of a row. */
 static void test_random_damage(void) {
     const picture p = make("sky", 64, 32, v_sky);
     arena a = build(&p, LIT);
     mcs_env *e = copy_of(a.at, a.bytes);
     unsigned char *byte = (unsigned char *)e;
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 137);
-    const size_t begin = offsetof(mcs_env, frame);
-    const size_t end = begin + sizeof(mcs_frame);
+    const size_t frame = offsetof(mcs_env, frame);
     for (int i = 0; i < scaled(60000); i++) {
         const int kind = i % 8;
-        if (kind < 3) {
-            for (int k = 0; k <= kind; k++) {
-                const size_t bit = mcs_pcg32_next(&rng) % (8 * a.bytes);
-                byte[bit / 8] ^= (unsigned char)(1u << bit % 8);
-            }
-        } else if (kind > 5) {
-            unsigned char *const row = byte + e->offset.col_sums + mcs_pcg32_next(&rng) % 32 * (65 * sizeof(uint32_t));
-            const size_t lane = mcs_pcg32_next(&rng) % 8 * 8;
-            const uint32_t first = mcs_pcg32_next(&rng) % 4;
-            const uint32_t second = mcs_pcg32_next(&rng) % 4;
-            const uint32_t bit = mcs_pcg32_next(&rng) % 64;
-            for (int k = 0; k < 8; k++) {
-                unsigned char *const x1 = row + first * 64 + lane + k;
-                unsigned char *const x2 = row + second * 64 + lane + k;
-                const unsigned char was = *x1;
-                if (kind == 6) {
-                    *x1 = *x2;
-                    *x2 = was;
-                } else if ((int)bit / 8 == k) {
-                    *x1 ^= (unsigned char)(1u << bit % 8);
-                    *x2 ^= (unsigned char)(1u << bit % 8);
-                }
-            }
-        } else {
-            const size_t n = 1 + mcs_pcg32_next(&rng) % 256;
-            const size_t from = mcs_pcg32_next(&rng) % (a.bytes - n);
-            const size_t to = mcs_pcg32_next(&rng) % (a.bytes - n);
-            if (kind == 3) memset(byte + to, 0, n);
-            if (kind == 4) {
-                memcpy(byte + from, a.at + to, n);
-                memcpy(byte + to, a.at + from, n);
-            }
-            for (int k = 0; kind == 5 && k < (int)n; k++) byte[to + (size_t)k] = (unsigned char)mcs_pcg32_next(&rng);
+        if (kind < 3) turn_bits(byte, a.bytes, kind + 1, &rng);
+        else if (kind < 6) damage_block(byte, &a, (enum block_damage)(kind - 3), &rng);
+        else {
+            const size_t row = mcs_pcg32_next(&rng) % 32 * (65 * sizeof(uint32_t));
+            damage_words(byte + e->offset.col_sums + row, kind == 6, &rng);
         }
-        memcpy(byte + begin, a.at + begin, end - begin);
+        memcpy(byte + frame, a.at + frame, sizeof(mcs_frame));
         const mcs_status rc = mcs_env_check(e, a.bytes);
         CHECK((rc == MCS_OK) == (memcmp(e, a.at, a.bytes) == 0), "damage %d of kind %d: %d", i, kind, rc);
         memcpy(e, a.at, a.bytes);

@@ -161,37 +161,40 @@ static void check_window(const picture *p, const mcs_env *e, rectangle t, int dr
     arena_free(&a);
 }
 
+/* Number i of a picture's windows: all of it; all of it, from elsewhere on; across the seam; single
+ * texels; in the first and the last row; and any. */
+static rectangle window_of(const picture *p, int i, mcs_pcg32 *rng) {
+    rectangle t = {0, p->h, 0, p->w};
+    if (i > 1) {
+        t.row = mcs_pcg32_next(rng) % p->h;
+        t.rows = 1 + mcs_pcg32_next(rng) % (p->h - t.row);
+    }
+    if (i > 0) {
+        t.col = mcs_pcg32_next(rng) % p->w;
+        t.cols = 1 + mcs_pcg32_next(rng) % p->w;
+    }
+    if (i == 1) t.cols = p->w;
+    if (i == 2) {
+        t.col = p->w - 1;
+        t.cols = p->w > 1 ? 2 : 1;
+    }
+    if (i == 3 || i == 4) t.rows = t.cols = 1;
+    if (i == 5) {
+        t.row = 0;
+        t.rows = 1;
+    }
+    if (i == 6) {
+        t.row = p->h - 1;
+        t.rows = 1;
+        t.cols = 1;
+    }
+    return t;
+}
 static void check_windows(picture p, brightness want) {
     arena a = build(&p, want);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 157);
     const int draws = scaled(20000);
-    for (int i = 0; i < 14; i++) {
-        rectangle t = {0, p.h, 0, p.w};
-        if (i > 1) {
-            t.row = mcs_pcg32_next(&rng) % p.h;
-            t.rows = 1 + mcs_pcg32_next(&rng) % (p.h - t.row);
-        }
-        if (i > 0) {
-            t.col = mcs_pcg32_next(&rng) % p.w;
-            t.cols = 1 + mcs_pcg32_next(&rng) % p.w;
-        }
-        if (i == 1) t.cols = p.w; /* all of it, from elsewhere on */
-        if (i == 2) {
-            t.col = p.w - 1;
-            t.cols = p.w > 1 ? 2 : 1;
-        }
-        if (i == 3 || i == 4) t.rows = t.cols = 1;
-        if (i == 5) {
-            t.row = 0;
-            t.rows = 1;
-        }
-        if (i == 6) {
-            t.row = p.h - 1;
-            t.rows = 1;
-            t.cols = 1;
-        }
-        check_window(&p, env_in(&a), t, draws);
-    }
+    for (int i = 0; i < 14; i++) check_window(&p, env_in(&a), window_of(&p, i, &rng), draws);
     arena_free(&a);
     discard(&p);
 }
@@ -241,15 +244,14 @@ static void test_refused_windows(void) {
     arena b = arena_make(mcs_env_window_bytes(4) + 8);
     mcs_env_window *m = (mcs_env_window *)(void *)b.at;
     const size_t need = mcs_env_window_bytes(4);
-    static const struct {
-        rectangle t;
-    } bad[] = {{{0, 0, 0, 5}},           {{0, 4, 0, 0}},           {{7, 4, 0, 5}},          {{10, 1, 0, 5}},
-               {{0, 11, 0, 5}},          {{0, 4, 20, 1}},          {{0, 4, 0, 21}},         {{0xffffffffu, 4, 0, 5}},
-               {{1, 0xffffffffu, 0, 5}}, {{0, 4, 0xffffffffu, 2}}, {{0, 4, 5, 0xffffffffu}}};
+    static const rectangle bad[] = {{0, 0, 0, 5},           {0, 4, 0, 0},           {7, 4, 0, 5},
+                                    {10, 1, 0, 5},          {0, 11, 0, 5},          {0, 4, 20, 1},
+                                    {0, 4, 0, 21},          {0xffffffffu, 4, 0, 5}, {1, 0xffffffffu, 0, 5},
+                                    {0, 4, 0xffffffffu, 2}, {0, 4, 5, 0xffffffffu}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        const rectangle t = bad[i].t;
-        const mcs_status rc = mcs_env_window_build(m, need, env_in(&a), t.row, t.rows, t.col, t.cols);
-        CHECK(rc == MCS_ERR_SIZE, "rows %u + %u, columns %u + %u: %d", t.row, t.rows, t.col, t.cols, rc);
+        const rectangle *t = &bad[i];
+        const mcs_status rc = mcs_env_window_build(m, need, env_in(&a), t->row, t->rows, t->col, t->cols);
+        CHECK(rc == MCS_ERR_SIZE, "rows %u + %u, columns %u + %u: %d", t->row, t->rows, t->col, t->cols, rc);
     }
     for (size_t i = 0; i < need; i++)
         CHECK(mcs_env_window_build(m, i, env_in(&a), 3, 4, 18, 5) == MCS_ERR_MEMORY, "%zu of %zu bytes", i, need);
