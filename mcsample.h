@@ -9771,7 +9771,7 @@ MCSI_CORE uint32_t mcsi_tile_begin(uint32_t tile, uint32_t tiles, uint32_t texel
     return (uint32_t)((uint64_t)tile * texels / tiles);
 }
 MCSI_CORE uint32_t mcsi_tile_of(uint32_t texel, uint32_t tiles, uint32_t texels) {
-    return (uint32_t)((((uint64_t)texel + 1) * tiles - 1) / texels);
+    return ((texel + 1) * tiles - 1) / texels; /* below 2^23 */
 }
 MCSI_CORE mcsi_tile mcsi_tile_of_spot(const mcs_tiles *t, const mcs_env *e, const mcsi_spot *spot) {
     mcsi_tile tile;
@@ -10332,10 +10332,10 @@ MCSI_CORE uint32_t mcsi_shares_build(uint32_t *sums, const float *weight, uint32
     sums[n] = so_far;
     return so_far;
 }
-/* The last of n (a power of two) cumulative shares, `stride` apart, that is not above u. */
+/* The last of n (a power of two) cumulative shares, `stride` apart, that is not above u: its place in the list. */
 MCSI_CORE uint32_t mcsi_shares_find(const uint32_t *sums, uint32_t n, uint32_t stride, uint32_t u) {
     uint32_t i = 0;
-    for (uint32_t step = n / 2; step; step /= 2) i += (uint32_t)(sums[(i + step) * stride] <= u) * step;
+    for (uint32_t step = n / 2 * stride; step >= stride; step /= 2) i += sums[i + step] <= u ? step : 0;
     return i;
 }
 /* The position of u within the share that goes from `begin` to `end`, in [0, 2^31). */
@@ -10943,9 +10943,10 @@ MCSI_CORE mcsi_tile mcsi_product_draw_tile(const mcs_product *p, uint32_t row, m
     const double at = d->rest1 * ((int32_t)sums[p->cols * p->rows] * (1.0 / MCSI_ONE));
     mcsi_tile tile;
     tile.row = row;
-    tile.col = mcsi_shares_find(sums, p->cols, p->rows, (uint32_t)(int32_t)at);
-    const uint32_t begin = sums[tile.col * p->rows];
-    const uint32_t end = sums[(tile.col + 1) * p->rows];
+    const uint32_t place = mcsi_shares_find(sums, p->cols, p->rows, (uint32_t)(int32_t)at);
+    tile.col = place >> (4 + p->rows / 32); /* over 16, 32 or 64 rows */
+    const uint32_t begin = sums[place];
+    const uint32_t end = sums[place + p->rows];
     d->rest1 = mcsi_share_position(at, begin, end);
     d->density *= mcsi_product_probability(p, row, end - begin);
     return tile;
