@@ -4,7 +4,8 @@
  * A region is a piece of one object that faces one way: object, cell of a grid, main axis of the normal. Passes over
  * the picture send shadow rays, which wait until the pass is over; during a pass nothing changes that samples are drawn
  * from. So no sample is drawn from a table that knows of its ray, and the estimate stays unbiased. And as rays are
- * counted, in whole numbers, the picture does not depend on the order in which threads deliver them.
+ * counted, in whole numbers, the picture does not depend on the order in which threads deliver them. A region that has
+ * sent ENOUGH rays learns no more, and its samples cost less.
  */
 #ifndef RENDER_LEARNING_H
 #define RENDER_LEARNING_H
@@ -13,14 +14,16 @@
 #include "render_scene.h"
 
 enum {
-    CELLS = 16,    /* of an object along each axis, at most */
-    AXES = 6,      /* x, y, z, each in both directions */
-    POINTS = 12,   /* whose reflections are added to a region */
-    PROBES = 65536 /* points of the picture among which these are found, at most */
+    CELLS = 16,     /* of an object along either axis, at most */
+    AXES = 6,       /* x, y, z, each in both directions */
+    POINTS = 12,    /* whose reflections are added to a region */
+    PROBES = 65536, /* points of the picture among which these are found, at most */
+    ENOUGH = 1024   /* rays after which a region learns no more */
 };
 
 typedef struct {
     int object;
+    int learns;         /* 0: its rays are no longer asked for */
     mcs_region *known;  /* the points, and rays of passes that are over */
     mcs_region *fresh;  /* rays that wait */
     mcs_product *table; /* built of `known`; NULL where nobody draws from it */
@@ -32,7 +35,7 @@ typedef struct {
     const environment *light;
     uint32_t count;
     region list[4096];
-    uint16_t number[OBJECTS][AXES][CELLS][CELLS][CELLS]; /* of the region there; 0: none */
+    uint16_t number[OBJECTS][AXES][CELLS][CELLS]; /* of the region there; 0: none */
 } learning;
 
 /* Shadow rays on their way to the regions. */
@@ -56,23 +59,28 @@ static unsigned main_axis(vec3 normal) {
     return 4u + (normal.z < 0);
 }
 
-static unsigned cell_of(float place) { return (unsigned)fminf(fmaxf(place, 0), CELLS - 1); }
-
-/* Where the number of the region of a point is kept. */
-static uint16_t *region_place(learning *regions, const scene *s, const surface *hit) {
-    const int of_sphere = hit->object < SPHERES;
-    const float edge = of_sphere ? 0.75f : 1.5f; /* three eighths of a sphere; objects that are larger have 16 cells */
-    const float low = of_sphere ? -1 : -0.5f * CELLS * edge;
-    const vec3 p = in_scene_axes(s, of_sphere ? sub(hit->p, s->center[hit->object]) : hit->p);
-    const unsigned i = cell_of((p.x - low) / edge);
-    const unsigned j = cell_of((p.y - low) / edge);
-    const unsigned k = cell_of((p.z - low) / edge);
-    return &regions->number[hit->object][main_axis(in_scene_axes(s, hit->frame.n))][i][j][k];
+static unsigned cell_of(float place) {
+    if (!(place > 0)) return 0;
+    return place < CELLS - 1 ? (unsigned)place : CELLS - 1;
 }
 
-static uint16_t region_of(learning *regions, const scene *s, const surface *hit) {
+/* Where the number of the region of a point is kept. Cells are squares as seen along the main axis of the normal: a
+ * sixth wide on spheres, where a lobe looks another way in each; 1.5 on objects that are larger. The center of a unit
+ * sphere lies its normal away. */
+static uint16_t *region_place(learning *regions, const scene *s, const surface *hit) {
+    const int of_sphere = hit->object < SPHERES;
+    const float per_length = of_sphere ? 6 : 1 / 1.5f;
+    const vec3 n = in_scene_axes(s, hit->frame.n);
+    const vec3 p = of_sphere ? n : in_scene_axes(s, hit->p);
+    const unsigned axis = main_axis(n);
+    const unsigned i = cell_of((axis < 2 ? p.y : p.x) * per_length + CELLS / 2);
+    const unsigned j = cell_of((axis < 4 ? p.z : p.y) * per_length + CELLS / 2);
+    return &regions->number[hit->object][axis][i][j];
+}
+
+static const region *region_of(learning *regions, const scene *s, const surface *hit) {
     const uint16_t number = *region_place(regions, s, hit);
-    return number ? number : (uint16_t)hit->object;
+    return &regions->list[number ? number : hit->object];
 }
 
 /* ---- making regions ---- */
@@ -90,6 +98,7 @@ static int region_make(learning *regions, int object, int with_table) {
     const size_t bytes = mcs_region_bytes(TILES);
     region *g = &regions->list[regions->count++];
     g->object = object;
+    g->learns = 1;
     g->known = malloc(bytes);
     g->fresh = malloc(bytes);
     if (with_table) g->table = malloc(mcs_product_table_bytes(TILES));
@@ -104,6 +113,7 @@ static void region_tabulate(const learning *regions, region *g) {
     const mcs_region *whole = regions->list[g->object].known;
     if (g->known != whole) mcs_region_inherit(g->known, whole);
     g->tabulated = g->known->rays;
+    g->learns = g->tabulated < ENOUGH;
     if (!g->table) return;
     mcs_product_build_region(g->table, mcs_product_table_bytes(TILES), regions->light->tiles, regions->light->table,
                              g->known);
@@ -158,10 +168,10 @@ static void shadow_rays_deliver(learning *regions, shadow_rays *rays) {
     rays->count = 0;
 }
 
-static void shadow_rays_add(learning *regions, shadow_rays *rays, uint16_t number, uint32_t tile, int through) {
+static void shadow_rays_add(learning *regions, shadow_rays *rays, const region *g, uint32_t tile, int through) {
     if (rays->count == sizeof rays->ray / sizeof *rays->ray) shadow_rays_deliver(regions, rays);
     shadow_ray *ray = &rays->ray[rays->count++];
-    ray->region = number;
+    ray->region = (uint16_t)(g - regions->list);
     ray->tile = (uint16_t)tile;
     ray->through = (uint16_t)through;
 }

@@ -11,7 +11,7 @@ typedef struct {
     mcs_pcg32 *rng;
     const lamps_view *lamps; /* in place of e, where s->by_lamps */
     learning *regions;       /* NULL for strategies that do not learn */
-    uint16_t region;         /* of the point; for these alone */
+    const region *region;    /* of the point; for these alone */
     shadow_rays *rays;       /* on their way to the regions */
     uint32_t drawn;          /* light samples so far */
 } lit_point;
