@@ -8523,18 +8523,19 @@ MCSI_CORE mcs_vec3 mcsi_env_direction(const mcs_frame *f, const mcsi_env_point *
     return mcsi_to_world(f, mcsi_vec3(sine * c, sine * s, mcsi_from_bits(mcsi_bits(1.0f - t) ^ south)));
 }
 /* off_pole: 1 - |cos(theta)|, with the sign of cos(theta); 4 for a bad direction. polar: angle to the nearer pole, in
- * turns. azimuth: in turns, 0 to 1. */
+ * turns, to 2e-7; only a guess for directions whose length is not 1. azimuth: in turns, 0 to 1. */
 typedef struct {
     mcs_f off_pole, polar, azimuth;
 } mcsi_angles;
 MCSI_CORE mcsi_angles mcsi_env_angles(const mcs_frame *f, mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     w = mcsi_to_local(f, mcsi_sane_direction(w, &ok));
-    const mcs_f sine2 = w.x * w.x + w.y * w.y;
-    const mcs_f up = mcsi_abs(w.z);
+    const mcs_f from_pole = (w.x * w.x + w.y * w.y) / (1.0f + mcsi_abs(w.z));
+    const mcs_f t = mcsi_min(from_pole, mcs_set(1.0f));
+    const mcs_f p_3 = 0.00409757253f + t * (0.00172989792f + t * (-0.000359998172f + t * 0.000685489911f));
     mcsi_angles a;
-    a.off_pole = mcsi_sel(ok, mcsi_with_sign(sine2 / (1.0f + up), w.z), mcs_set(4.0f));
-    a.polar = mcsi_atan2_turns(mcsi_sqrt(sine2), up);
+    a.off_pole = mcsi_sel(ok, mcsi_with_sign(from_pole, w.z), mcs_set(4.0f));
+    a.polar = mcsi_sqrt(t) * (0.225078911f + t * 0.0187679399f + t * t * p_3); /* arcsine of sqrt(t/2), over pi */
     a.azimuth = mcsi_atan2_turns(w.y, w.x);
     return a;
 }
@@ -8554,9 +8555,10 @@ typedef struct {
     float col[MCSI_ENV_BLOCK], col_rest[MCSI_ENV_BLOCK], col_mass[MCSI_ENV_BLOCK];
     float x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK], z[MCSI_ENV_BLOCK], pdf[MCSI_ENV_BLOCK];
 } mcsi_env_block;
-/* Angles of up to a block of directions. */
+/* Angles of up to a block of directions, and their texels. */
 typedef struct {
     float off_pole[MCSI_ENV_BLOCK], polar[MCSI_ENV_BLOCK], azimuth[MCSI_ENV_BLOCK];
+    uint32_t row[MCSI_ENV_BLOCK], col[MCSI_ENV_BLOCK];
 } mcsi_angles_block;
 #endif
 #ifdef MCSI_LOOPS
@@ -8585,13 +8587,26 @@ MCSI_LOOP void mcsi_env_directions_loop(const mcsi_scalar_frame *f, size_t n, mc
         mcs_store(b->z + i, v.z);
     }
 }
-MCSI_LOOP void mcsi_env_angles_loop(const mcsi_scalar_frame *f, const mcsi_batch *call) {
+/* The texel of a direction is that of its angles in texels, unless a border is so near that what they are off by may
+ * lead across it: 2^-21 turns from the pole; in azimuth the product alone, which rounding leads to a whole number then.
+ * There and for bad directions the row is 2^32 - 1. */
+MCSI_LOOP void mcsi_env_angles_loop(const mcsi_scalar_frame *f, float w, float h, const mcsi_batch *call,
+                                    mcsi_angles_block *to) {
     const mcs_frame frame = mcsi_spread_frame(f);
     MCSI_EACH(b, call) {
         const mcsi_angles a = mcsi_env_angles(&frame, mcsi_in3(&b, 0));
-        mcsi_out(&b, 0, a.off_pole);
-        mcsi_out(&b, 1, a.polar);
-        mcsi_out(&b, 2, a.azimuth);
+        const mcs_f down = 2.0f * a.polar * h;
+        const mcs_f across = a.azimuth * w;
+        const mcs_f col = mcsi_to_float(mcsi_trunc(across));
+        const mcs_f row = mcsi_to_float(mcsi_trunc(down));
+        const mcs_i sure =
+            (mcsi_abs(down - row - 0.5f) < 0.5f - 9.53674316e-07f * h) & (a.off_pole < 4.0f) & (across > col);
+        const mcs_f from_top = mcsi_sel(mcsi_bits(a.off_pole) < 0, h - 1.0f - row, row);
+        mcs_store(to->off_pole + b.i, a.off_pole);
+        mcs_store(to->polar + b.i, a.polar);
+        mcs_store(to->azimuth + b.i, a.azimuth);
+        mcsi_store_int(to->row + b.i, mcsi_trunc(mcsi_sel(sure, from_top, mcs_set(-1.0f))));
+        mcsi_store_int(to->col + b.i, mcsi_trunc(across));
     }
 }
 #endif
@@ -8599,7 +8614,7 @@ MCSI_LOOP void mcsi_env_angles_loop(const mcsi_scalar_frame *f, const mcsi_batch
 #if MCSI_W == 1
 /* By the widest loop that this processor has; defined behind the passes. */
 MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner);
-MCS_FN void mcsi_env_angles_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z,
+MCS_FN void mcsi_env_angles_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z,
                               mcsi_angles_block *angles);
 
 /* ---- image: the weights of its texels ---- */
@@ -9548,24 +9563,29 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
     const mcsi_texels out = {x, y, z, pdf, col, row};
     mcsi_window_draw_n(e, &window, n, u1, u2, &out);
 }
+/* Texels of up to a block of directions. The row of a bad one is e->h, which no window holds. */
+MCS_FN void mcsi_env_texels(const mcs_env *e, size_t n, const float *x, const float *y, const float *z,
+                            mcsi_angles_block *a) {
+    mcsi_env_angles_n(e, n, x, y, z, a);
+    for (size_t k = 0; k < n; k++) {
+        if (a->row[k] < e->h) continue;
+        a->row[k] = a->off_pole[k] < 4.0f ? mcsi_env_row_at(e, a->off_pole[k], a->polar[k]) : e->h;
+        a->col[k] = mcsi_env_col_at(e, a->azimuth[k]);
+    }
+}
 MCS_API void mcs_env_texel_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf,
                              uint32_t *col, uint32_t *row) {
     const mcsi_window all = mcsi_env_whole(e);
-    uint32_t in_row[MCSI_ENV_BLOCK], in_col[MCSI_ENV_BLOCK];
     size_t m;
     for (size_t i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
         mcsi_angles_block a;
-        mcsi_env_angles_n(&e->frame, m, x + i, y + i, z + i, &a);
-        for (size_t k = 0; k < m; k++) {
-            const int ok = a.off_pole[k] < 4.0f;
-            in_row[k] = ok ? mcsi_env_row_at(e, a.off_pole[k], a.polar[k]) : e->h; /* which no window holds */
-            in_col[k] = mcsi_env_col_at(e, a.azimuth[k]);
-            if (pdf && ok && !all.uniform) MCSI_PREFETCH(mcsi_env_sums(e, in_row[k]) + in_col[k]);
-            if (col) col[i + k] = in_col[k];
-            if (row) row[i + k] = ok ? in_row[k] : 0;
-        }
-        for (size_t k = 0; pdf && k < m; k++) pdf[i + k] = mcsi_window_density(e, &all, in_row[k], in_col[k]);
+        mcsi_env_texels(e, m, x + i, y + i, z + i, &a);
+        for (size_t k = 0; pdf && !all.uniform && k < m; k++)
+            if (a.row[k] < e->h) MCSI_PREFETCH(mcsi_env_sums(e, a.row[k]) + a.col[k]);
+        for (size_t k = 0; pdf && k < m; k++) pdf[i + k] = mcsi_window_density(e, &all, a.row[k], a.col[k]);
+        for (size_t k = 0; row && k < m; k++) row[i + k] = a.row[k] < e->h ? a.row[k] : 0;
+        if (col) MCSI_COPY(col + i, a.col, m * sizeof *col);
     }
 }
 MCS_API void mcs_env_pdf_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z, float *pdf) {
@@ -10344,6 +10364,7 @@ MCSI_CORE double mcsi_share_position(double u, uint32_t begin, uint32_t end) {
     return position < 2147483647.5 ? position : 2147483647.5;
 }
 #endif
+#ifdef MCSI_LOOPS
 /* Cumulative shares of tiles within their rows; a tile weighs its light times its value. */
 MCSI_CORE void mcsi_tile_shares(size_t rows, size_t cols, const float *light, const float *value, uint32_t *tile_sums,
                                 float *row_weight) {
@@ -10361,7 +10382,6 @@ MCSI_CORE void mcsi_tile_shares(size_t rows, size_t cols, const float *light, co
         mcs_store(row_weight + i, sum);
     }
 }
-#ifdef MCSI_LOOPS
 MCSI_LOOP void mcsi_tile_shares_loop(const mcsi_product_lists *l) {
     mcsi_tile_shares(l->rows, l->cols, l->light, l->value, l->tile_sums, l->row_weight);
 }
@@ -10404,6 +10424,7 @@ MCS_FN void mcsi_product_finish(mcs_product *p, const mcs_tiles *t) {
 
 /* How much of the mean of its warp a value is at least. */
 #define MCSI_VALUE_OF_WARP 0.25f
+#ifdef MCSI_LOOPS
 /* The larger one and the sum of the values at the two corners of a tile at one azimuth. */
 typedef struct {
     mcs_f most, sum;
@@ -10421,7 +10442,7 @@ MCSI_CORE mcsi_side mcsi_side_load(const float *corner) {
  * over the mean of its warp: beside the peak of a narrow lobe, the value at the mean direction overestimates the tile.
  * Last, it adds up the weights of rows by these values: a tile is heavy by its bound over their sum, as the sum of
  * bounds, most of which overestimate, would be too large. */
-MCSI_CORE void mcsi_tile_bounds(const mcsi_product_lists *l) {
+MCSI_LOOP void mcsi_tile_bounds_loop(const mcsi_product_lists *l) {
     const size_t rows = l->rows;
     const size_t cols = l->cols;
     const float *corner = l->corner;
@@ -10453,8 +10474,6 @@ MCSI_CORE void mcsi_tile_bounds(const mcsi_product_lists *l) {
         mcs_store(l->row_weight + i, sum);
     }
 }
-#ifdef MCSI_LOOPS
-MCSI_LOOP void mcsi_tile_bounds_loop(const mcsi_product_lists *l) { mcsi_tile_bounds(l); }
 #endif
 #if MCSI_W == 1
 MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l); /* by the widest loop */
@@ -11159,7 +11178,7 @@ MCSI_CORE void mcsi_product_block_find(mcsi_product_block *b, size_t n, const mc
 MCS_FN void mcsi_product_block_pdf(mcsi_product_block *b, size_t n, const float *x, const float *y, const float *z,
                                    float *pdf) {
     mcsi_angles_block angles;
-    mcsi_env_angles_n(&b->e->frame, n, x, y, z, &angles);
+    mcsi_env_angles_n(b->e, n, x, y, z, &angles);
     mcsi_product_block_find(b, n, &angles);
     for (size_t k = 0; k < n; k++) {
         mcsi_position at = {0.0f, 0.0f};
@@ -11985,7 +12004,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_take_lane MCSI_(take_lane)
 #define mcsi_tan2 MCSI_(tan2)
 #define mcsi_tent_loop MCSI_(tent_loop)
-#define mcsi_tile_bounds MCSI_(tile_bounds)
 #define mcsi_tile_bounds_loop MCSI_(tile_bounds_loop)
 #define mcsi_tile_light MCSI_(tile_light)
 #define mcsi_tile_light_load MCSI_(tile_light_load)
@@ -12654,7 +12672,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_take_lane
 #undef mcsi_tan2
 #undef mcsi_tent_loop
-#undef mcsi_tile_bounds
 #undef mcsi_tile_bounds_loop
 #undef mcsi_tile_light
 #undef mcsi_tile_light_load
@@ -12744,14 +12761,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner) {
     MCSI_WIDE(n, env_directions_loop, (f, n, b, turn, inner));
 }
-MCS_FN void mcsi_env_angles_n(const mcs_frame *f, size_t n, const float *x, const float *y, const float *z,
+MCS_FN void mcsi_env_angles_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z,
                               mcsi_angles_block *angles) {
     mcsi_batch call;
     mcsi_batch_start(&call, n, x, y, z);
-    call.out[0] = angles->off_pole;
-    call.out[1] = angles->polar;
-    call.out[2] = angles->azimuth;
-    MCSI_WIDE(n, env_angles_loop, (f, &call));
+    MCSI_WIDE(n, env_angles_loop, (&e->frame, (float)e->w, (float)e->h, &call, angles));
 }
 #ifdef MCSI_PRODUCTS
 MCS_FN void mcsi_tile_values_n(const mcsi_surface *s, size_t n, const float *tile, float *value) {

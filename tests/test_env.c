@@ -190,6 +190,25 @@ static void check_texels(const mcs_env *e, size_t n, float *x, const float *y, c
     if (n) x[n - 1] = kept;
 }
 
+/* The same beside borders of rows and columns, across which the rounding of angles may lead, and for lengths that are
+ * not 1, where the row is not that of the angle. */
+static void check_texels_beside_borders(const map *m, const mcs_env *e) {
+    enum { N = 4096 };
+    static float x[N], y[N], z[N];
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 83);
+    for (int i = 0; i < N; i++) {
+        const double u = mcs_pcg32_float(&rng) * (m->w + 1.0);
+        const double v = mcs_pcg32_float(&rng) * (m->h + 1.0);
+        const double phi = 2 * pi * (i & 1 ? floor(u) : u) / m->w;
+        const double theta = pi * (i & 2 ? floor(v) : v) / m->h;
+        const double length = i & 4 ? 1 : 0.6 + mcs_pcg32_float(&rng);
+        x[i] = (float)(length * sin(theta) * cos(phi));
+        y[i] = (float)(length * sin(theta) * sin(phi));
+        z[i] = (float)(length * cos(theta));
+    }
+    check_texels(e, N, x, y, z);
+}
+
 static void test_batch(void) {
     enum { MAX = 67, ROOM = 2100 };
     static float u1[ROOM], u2[ROOM], out[4][ROOM];
@@ -289,6 +308,7 @@ int main(int argc, char **argv) {
         check_samples(&maps[i], env_in(&a));
         check_monotone(&maps[i], env_in(&a));
         check_estimate(&maps[i], env_in(&a));
+        check_texels_beside_borders(&maps[i], env_in(&a));
         arena_free(&a);
     }
     mcst_group("env statistics");
