@@ -9239,17 +9239,19 @@ MCSI_CORE double mcsi_window_row_density(const mcsi_window *r, uint32_t i) {
     const double density = mcsi_cdf_mass(&r->rows, i) * r->row[i].texel_density;
     return r->part ? density * ((double)MCSI_ONE / r->part[i].mass) : density;
 }
-/* Chooses a row by u2, of which the rest goes to p. */
-MCSI_CORE uint32_t mcsi_window_draw_row(const mcsi_window *r, mcsi_draw *d, mcsi_env_point *p) {
+/* The row for what is left of u2. */
+MCSI_CORE uint32_t mcsi_window_row(const mcsi_window *r, double rest2) {
     mcsi_cdf rows = r->rows;
     rows.guide_bytes = sizeof(uint16_t); /* which a compiler does not know of a window behind a pointer */
-    const uint32_t i = mcsi_cdf_find(&rows, (uint32_t)(int32_t)d->rest2);
-    p->row_rest = (float)(d->rest2 - (int32_t)rows.sums[i]);
-    p->row_mass = (float)mcsi_cdf_mass(&rows, i);
+    return mcsi_cdf_find(&rows, (uint32_t)(int32_t)rest2);
+}
+/* The draw is from row i of the window: the rest of u2 goes to p. */
+MCSI_CORE void mcsi_window_draw_row(const mcsi_window *r, uint32_t i, mcsi_draw *d, mcsi_env_point *p) {
+    p->row_rest = (float)(d->rest2 - (int32_t)r->rows.sums[i]);
+    p->row_mass = (float)mcsi_cdf_mass(&r->rows, i);
     p->edge = r->row[i].edge;
     p->height = r->row[i].height;
     d->density *= mcsi_window_row_density(r, i);
-    return i;
 }
 /* From a rest within the window's part of row i to one within the row. */
 MCSI_CORE void mcsi_window_narrow(const mcsi_window *r, uint32_t i, mcsi_draw *d) {
@@ -9411,7 +9413,8 @@ MCSI_CORE mcs_texel mcsi_window_look_up(const mcs_env *e, const mcsi_window *r, 
 /* A point of a window that is not constant, and its texel. */
 MCSI_CORE mcsi_env_point mcsi_window_draw_point(const mcs_env *e, const mcsi_window *r, mcsi_draw *d, mcs_texel *x) {
     mcsi_env_point p;
-    const uint32_t i = mcsi_window_draw_row(r, d, &p);
+    const uint32_t i = mcsi_window_row(r, d->rest2);
+    mcsi_window_draw_row(r, i, d, &p);
     mcsi_window_narrow(r, i, d);
     const mcsi_cdf columns = mcsi_env_columns(e, r->row0 + i);
     const mcsi_candidates c = mcsi_candidate_columns(&columns, (uint32_t)(int32_t)d->rest1);
@@ -9470,7 +9473,7 @@ MCSI_CORE void mcsi_block_column(mcsi_env_block *b, size_t k, const mcsi_env_poi
     b->col_mass[k] = p->col_mass;
     b->pdf[k] = (float)density;
 }
-/* Draw k of the block. */
+/* Draw k of the block, from a row of the window that b->in_row[k] tells. */
 MCSI_CORE void mcsi_block_row(const mcs_env *e, const mcsi_window *r, mcsi_draw d, mcsi_env_block *b, size_t k) {
     b->sums[k] = NULL; /* constant: there is nothing to search */
     mcsi_env_point p;
@@ -9478,7 +9481,8 @@ MCSI_CORE void mcsi_block_row(const mcs_env *e, const mcsi_window *r, mcsi_draw 
         p = mcsi_window_draw_uniform(e, r, &d);
         mcsi_block_column(b, k, &p, d.density);
     } else {
-        const uint32_t i = mcsi_window_draw_row(r, &d, &p);
+        const uint32_t i = b->in_row[k];
+        mcsi_window_draw_row(r, i, &d, &p);
         mcsi_window_narrow(r, i, &d);
         b->in_row[k] = r->row0 + i;
         b->sums[k] = mcsi_env_sums(e, r->row0 + i);
@@ -9546,7 +9550,9 @@ MCS_FN void mcsi_window_draw_n(const mcs_env *e, const mcsi_window *r, size_t n,
     size_t m;
     for (size_t i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
-        for (size_t k = 0; k < m; k++) mcsi_block_row(e, r, mcsi_draw_start(u1[i + k], u2[i + k]), &b, k);
+        for (size_t k = 0; k < m; k++) b.draw[k] = mcsi_draw_start(u1[i + k], u2[i + k]);
+        for (size_t k = 0; !r->uniform && k < m; k++) b.in_row[k] = mcsi_window_row(r, b.draw[k].rest2);
+        for (size_t k = 0; k < m; k++) mcsi_block_row(e, r, b.draw[k], &b, k);
         mcsi_block_columns(e, &b, m, out, i);
     }
 }
@@ -11154,6 +11160,7 @@ MCS_FN void mcsi_product_block_draw(mcsi_product_block *b, size_t n, const mcsi_
     mcsi_product_block_points(b, n);
     for (size_t k = 0; k < n; k++) {
         const mcsi_window window = mcsi_window_of(b->e, b->window[k]);
+        if (!window.uniform) b->of_map.in_row[k] = mcsi_window_row(&window, b->draw[k].rest2);
         mcsi_block_row(b->e, &window, b->draw[k], &b->of_map, k);
     }
     mcsi_block_columns(b->e, &b->of_map, n, out, first);
