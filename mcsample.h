@@ -9222,7 +9222,10 @@ MCSI_CORE mcsi_draw mcsi_draw_make(double rest1, double rest2, double density) {
 }
 /* A random number times 2^31. */
 MCSI_CORE double mcsi_times_one(float u, int32_t *ok) { return (double)mcsi_sane_u(u, ok) * MCSI_ONE; }
+/* Floats in [0, 1) are those whose bits are below the ones of 1, but for -0. */
 MCSI_CORE mcsi_draw mcsi_draw_start(float u1, float u2) {
+    if ((uint32_t)mcsi_bits(u1) < 0x3f800000u && (uint32_t)mcsi_bits(u2) < 0x3f800000u)
+        return mcsi_draw_make((double)u1 * MCSI_ONE, (double)u2 * MCSI_ONE, 1.0);
     int32_t ok = 1;
     const double rest1 = mcsi_times_one(u1, &ok);
     const double rest2 = mcsi_times_one(u2, &ok);
