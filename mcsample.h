@@ -5777,8 +5777,8 @@ MCSI_FN mcs_f mcs_cone_from_sin2(mcs_f sin2) {
 }
 #endif
 MCSI_CORE mcs_i mcsi_cone_ok(mcs_f k) { return (k >= 1e-30f) & (k <= 2.0f); }
-/* The sine is the root of t (2 - t), where t = k u1. About t = 1 the rounding of t moves both factors, and their product
- * hardly at all. Near t = 2 the second one keeps its digits as (2 - k) + k (1 - u1). */
+/* The sine is the root of t (2 - t), where t = k u1. About t = 1 the rounding of t moves both factors, but hardly their
+ * product. Near t = 2 the second one keeps its digits as (2 - k) + k (1 - u1). */
 MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_cone_ok(k);
     MCSI_REQUIRE(ok);
