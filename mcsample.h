@@ -826,11 +826,11 @@ MCS_API void mcs_disk_light_sample_n(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 norma
  * leave out samples whose w meets its back. Small, distant, thin and grazing lights are as exact as others. A light is
  * what the floats say that are given.
  *
- * density    1/(solid angle); 0 in directions that miss the light, and for bad input. It is a member of the prepared
- *            light, too, for those who know that a ray hits. Where p is in the plane of the light, all densities are 0,
- *            and samples are the direction to its centre. The same holds for a rectangle whose plane is nearer than
- *            1e-15 of its size and distance, and for a triangle where p is over it, or over a side, and nearer to it
- *            than about 1e-8 of its size.
+ * density    1/(solid angle); 0 in directions that miss the light, whose sides are off by up to 1e-15 of its size and
+ *            distance, and for bad input. It is a member of the prepared light, too, for those who know that a ray
+ *            hits. Where p is in the plane of the light, all densities are 0, and samples are the direction to its
+ *            centre. The same holds for a rectangle whose plane is nearer than 1e-15 of its size and distance, and for
+ *            a triangle where p is over it, or over a side, and nearer to it than about 1e-8 of its size.
  * bad        A light is bad if one of its numbers is not finite or its area is 0.
  * accuracy   w within 1.1 x 2^-24 of the exact map by coordinate, places on the light within 1.1 x 2^-24, pdf within
  *            2e-7 and distance within 1e-7 of itself, for solid angles of 1e-12 and more, lights 1e5 times as long as

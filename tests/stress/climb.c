@@ -342,6 +342,16 @@ static const struct {
        {0, 0, 0},
        {{0x1.af67fp+15f, -0x1.57a23p+20f, 0x1.16fca8p+20f}, {0x1.ffffe8p-1f, 0x1.398fa6p-10f, -0.0f}, {0, 0, 0}},
        0x1.85dd2ap+23f}}},
+    {"spherical_rectangle", /* it nearly touches p, which sees that its sides are rounded */
+     {{0},
+      {0x1.edc4aep-3f, 0},
+      {0x1.0e9734p-4f, 0x1.ebec24p-1f, -0x1.13c528p-2f},
+      {ID_spherical_rectangle,
+       {-0x1.cee4d2p-33f, -0x1.0b7ec6p-33f, 0x1.6d061p-33f},
+       {{-0x1.d19454p-33f, 0x1.046554p-30f, 0x1.caf626p-31f},
+        {0x1.39f06ep-38f, -0x1.0c54a6p-28f, -0x1.4fcae4p-29f},
+        {0x1.16a4ecp-42f, 0x1.29d608p-44f, 0x1.72cec4p-43f}},
+       0}}},
     {"spherical_triangle", /* a sliver next to p: 1 + a.b + b.c + c.a cancels */
      {{0},
       {0x1.bd159cp-1, 0x1.53c50ap-2},

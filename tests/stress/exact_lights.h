@@ -18,6 +18,8 @@ typedef struct {
     qd all;        /* its solid angle; of a disk, which has no use for it, 0 */
     int sides;     /* of polygons */
     q3 inwards[4]; /* the unit normal of the plane through the eye and a side */
+    q3 normal;     /* of their plane, of unit length */
+    qd size;       /* the sum of the distances of their corners */
 } light;
 
 /* Where a sample meets it; x, y: the place on the light, as the header counts it. */
@@ -257,6 +259,9 @@ static inline void find_sides(light *l) {
         l->inwards[i] = unit(cross(corner[i], minus(corner[(i + 1) % n], corner[i])));
         if (dot(l->inwards[i], corner[(i + 2) % n]) < 0) l->inwards[i] = times(-1, l->inwards[i]);
     }
+    l->normal = unit(cross(minus(corner[1], corner[0]), minus(corner[2], corner[0])));
+    l->size = 0;
+    for (int i = 0; i < n; i++) l->size += len(corner[i]);
     l->sides = n;
 }
 /* By which angle w misses a cone of corners: that to the plane of the side that it is furthest beyond. */
@@ -272,20 +277,27 @@ static inline qd light_miss(const light *l, q3 w) {
     return corners_miss(l, w);
 }
 /* How far off a direction has the density of the light nevertheless, as rounding may move a sample over the rim: by half
- * an ulp in each coordinate. Of corners, whose sides are exact, that of the truth itself. */
+ * an ulp in each coordinate. Of corners that of the truth itself. */
 static inline qd light_needed(const light *l) {
     return l->id == ID_ball || l->id == ID_disk_light ? (qd)0x1p-24 : (qd)1e-25;
 }
+/* The angle by which the sides of corners are off along w. Axes and corners are rounded in double, 4 x 2^-53 of a corner
+ * when it is seen from p; where w meets the plane at a distance t, that is the angle of as much over t. */
+static inline qd side_slack(const light *l, q3 w) {
+    const qd t = fabsq(dot(l->at[0], l->normal) / dot(unit(w), l->normal));
+    return fmaxq((qd)1e-14, (qd)0x1p-51 * l->size / t);
+}
 /* How far off it may have one: what the header states, and the rounding of double. */
 static inline qd light_forgiven(const light *l, q3 w) {
-    const qd cosine = dot(w, l->at[1]) / (len(w) * len(l->at[1]));
-    return l->id == ID_ball ? (qd)0x1p-20 : l->id == ID_disk_light ? (qd)0x1p-23 / fabsq(cosine) : (qd)1e-14;
+    if (l->id == ID_ball) return (qd)0x1p-20;
+    if (l->id == ID_disk_light) return (qd)0x1p-23 * len(w) * len(l->at[1]) / fabsq(dot(w, l->at[1]));
+    return side_slack(l, w);
 }
 /* Where either answer is right. */
 static inline int light_at_rim(const light *l, q3 w) {
     const qd miss = light_miss(l, w);
     const int beside = l->id == ID_ball || l->id == ID_disk_light;
-    return miss > (beside ? light_needed(l) : (qd)-1e-14) && miss <= light_forgiven(l, w);
+    return miss > (beside ? light_needed(l) : -side_slack(l, w)) && miss <= light_forgiven(l, w);
 }
 
 static inline light seen_from_p(const given_light *g) {
