@@ -2568,7 +2568,7 @@ MCS_FN double mcsi_sqrt_d(double x) {
 
 /* The base is the pass of loops that every processor runs for which this file is compiled. MCSI_BASE(loop) is a loop of
  * it, and MCSI_BASE_W is its number of lanes, 0 where there are no loops. Maps use loops without array functions, too,
- * and the scalar ones will do. So they do for processors without AVX2 where it is asked for: a pass of 4 lanes would
+ * and the scalar ones will do. So they do where the processor is asked and lacks AVX2: a pass of 4 lanes for it would
  * make each include longer by a fifth. */
 #if defined(MCSI_DECLARED)
 #define MCSI_BASE_W 0

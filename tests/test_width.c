@@ -24,8 +24,8 @@ static int same(float a, float b, int contracted) {
     if (!contracted) return !memcmp(&a, &b, sizeof a);
     return fabs((double)a - (double)b) <= 1e-3 * fmax(fabs((double)a), fabs((double)b)) + 1e-6;
 }
-/* Result or output k of a sample. It moves wi.z by 4 roundings, 2^-22, too, and so the weight of a BRDF, which grows at
- * most in proportion to wi.z: by as large a part. */
+/* The same for result k of a sample, whose own ones are `want`. Contraction moves wi.z by 4 roundings, 2^-22. The weight
+ * of a BRDF grows at most in proportion to wi.z, so that it moves by as large a part of itself. */
 static int same_sample(const mcst_row *row, int k, float a, const float want[5], int contracted) {
     if (same(a, want[k], contracted)) return 1;
     return contracted && k == 4 && row->shape == MCST_IS_BRDF &&

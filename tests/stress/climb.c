@@ -309,7 +309,7 @@ static double score_of(const mcst_row *row, int figure, const point *t, double l
     return weight_error(got, f * x.z / pdf);
 }
 
-/* Where densities were found above what the header promised then; climbs begin there, too. */
+/* Where a figure was found above what the header promised then; climbs begin there, too. */
 static const struct {
     const char *row;
     point at;

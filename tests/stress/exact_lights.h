@@ -19,7 +19,7 @@ typedef struct {
     int sides;     /* of polygons */
     q3 inwards[4]; /* the unit normal of the plane through the eye and a side */
     q3 normal;     /* of their plane, of unit length */
-    qd size;       /* the sum of the distances of their corners */
+    qd farthest;   /* the distance of their farthest corner */
 } light;
 
 /* Where a sample meets it; x, y: the place on the light, as the header counts it. */
@@ -260,8 +260,8 @@ static inline void find_sides(light *l) {
         if (dot(l->inwards[i], corner[(i + 2) % n]) < 0) l->inwards[i] = times(-1, l->inwards[i]);
     }
     l->normal = unit(cross(minus(corner[1], corner[0]), minus(corner[2], corner[0])));
-    l->size = 0;
-    for (int i = 0; i < n; i++) l->size += len(corner[i]);
+    l->farthest = 0;
+    for (int i = 0; i < n; i++) l->farthest = fmaxq(l->farthest, len(corner[i]));
     l->sides = n;
 }
 /* By which angle w misses a cone of corners: that to the plane of the side that it is furthest beyond. */
@@ -281,11 +281,11 @@ static inline qd light_miss(const light *l, q3 w) {
 static inline qd light_needed(const light *l) {
     return l->id == ID_ball || l->id == ID_disk_light ? (qd)0x1p-24 : (qd)1e-25;
 }
-/* The angle by which the sides of corners are off along w. Axes and corners are rounded in double, 4 x 2^-53 of a corner
- * when it is seen from p; where w meets the plane at a distance t, that is the angle of as much over t. */
+/* The angle by which the sides of corners are off along w. In double, axes and corners seen from p are off by 4 x 2^-53
+ * of the farthest one; part I states 1e-15. Where w meets the plane at the distance t, that is as much over t. */
 static inline qd side_slack(const light *l, q3 w) {
     const qd t = fabsq(dot(l->at[0], l->normal) / dot(unit(w), l->normal));
-    return fmaxq((qd)1e-14, (qd)0x1p-51 * l->size / t);
+    return fmaxq((qd)1e-14, (qd)1e-15 * l->farthest / t);
 }
 /* How far off it may have one: what the header states, and the rounding of double. */
 static inline qd light_forgiven(const light *l, q3 w) {
