@@ -692,7 +692,7 @@ MCS_API void mcs_bilinear_sample_n(float w00, float w10, float w01, float w11, s
  *   x, y      a point; the inverse is (0, 0) for points further than two radii out
  *
  * density   1/(pi radius^2) per area, 0 outside the disk
- * accuracy  coordinates within 2^-23 of the radius, pdf within 0.16 E; 1 E is a relative error of 1e-6 here.
+ * accuracy  coordinates within 2^-22 of the radius, pdf within 0.16 E; 1 E is a relative error of 1e-6 here.
  * source    Shirley and Chiu 1997, "A low distortion map between disk and square" (concentric); slide 14 (polar) */
 
 /* ---- concentric: squares become circles. Use this one. ----
@@ -922,7 +922,7 @@ MCS_FN float mcs_pdf_to_area(float pdf, float distance, float cosine);
  *   w         a direction
  *
  * density   per solid angle; 0 below the horizon (hemisphere, cosine), outside the cone, and for bad input
- * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24, pdf within 0.2 E. 1 E
+ * accuracy  every coordinate within 1.4 x 2^-23 of the exact map, unit length within 4 x 2^-24, pdf within 0.2 E. 1 E
  *           is a relative error of 1e-6 (1 + |ln(pdf/peak)|). x and y keep their relative accuracy at the poles, down
  *           to a u1 of 2^-126 (k u1 of a cone).
  * cost      1 square root and 1 sincos; inverses take 1 arctangent
@@ -991,10 +991,10 @@ MCS_FN float mcs_cone_from_sin2(float sin2);
  * The density is the phase function itself, so that a sample has the weight 1, times the albedo of the medium.
  *
  * density   per solid angle; 0 for bad input
- * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24, pdf of u within 0.2 E,
- *           of w within 0.6 E (henyey_greenstein), 0.2 E (rayleigh), 0.4 E (von_mises_fisher). 1 E is a relative error
- *           of 1e-6 (1 + |ln(pdf/peak)|). x and y keep their relative accuracy at both poles, down to a 1 - |z| of
- *           2^-127.
+ * accuracy  every coordinate within 1.25 x 2^-23 of the exact map (von_mises_fisher 1.4 x 2^-23), unit length within
+ *           4 x 2^-24, pdf of u within 0.2 E, of w within 0.6 E (henyey_greenstein), 0.2 E (rayleigh), 0.4 E
+ *           (von_mises_fisher). 1 E is a relative error of 1e-6 (1 + |ln(pdf/peak)|). x and y keep their relative
+ *           accuracy at both poles, down to a 1 - |z| of 2^-127.
  * cost      1 square root, 2 divisions (von_mises_fisher 4) and 1 sincos; inverses take 1 arctangent
  * source    Henyey and Greenstein 1941, "Diffuse radiation in the galaxy"; Frisvad 2011, "Importance sampling the
  *           Rayleigh phase function"; Fisher 1953, "Dispersion on a sphere"; Jakob 2012, "Numerically stable sampling
@@ -4017,15 +4017,18 @@ MCSI_CORE mcsi_truncexp mcsi_truncexp_make(mcs_f rate, mcs_f m) {
     d.rate = mcsi_sel(d.flat, mcs_set(1.0f), rate);
     return d;
 }
-/* w is 1 - u (1 - e). Where it is 1/2 and more, u (1 - e) has more digits of the logarithm's argument than w; what w
- * lacks of them is the correction of the logarithm. */
+/* w is 1 - p, where p = u (1 - e). Where w is 1/2 and more, p has more digits of the logarithm's argument than w. What w
+ * lacks of them is the correction of the logarithm. There w is the float next to 1 - p, so that the correction is small
+ * beside p, however small that is. */
 MCSI_SAMPLE mcs_sample1 mcs_truncexp_sample(mcs_f rate, mcs_f m, mcs_f u) {
     const mcsi_truncexp d = mcsi_truncexp_make(rate, m);
     mcs_i ok = d.ok;
     u = mcsi_sane_u(u, &ok);
-    const mcs_f w = mcsi_stored((1.0f - u) + u * d.e);
-    const mcs_i from_half_on = (0x3effffff - mcsi_bits(w)) >> 31;
-    const mcs_f lacking = mcsi_blend(from_half_on, (1.0f - w) - u * d.one_minus_e, mcs_set(0.0f));
+    const mcs_f p = mcsi_stored(u * d.one_minus_e);
+    const mcs_f low_w = mcsi_stored((1.0f - u) + u * d.e);
+    const mcs_i from_half_on = (0x3effffff - mcsi_bits(low_w)) >> 31;
+    const mcs_f w = mcsi_blend(from_half_on, mcsi_stored(1.0f - p), low_w);
+    const mcs_f lacking = mcsi_blend(from_half_on, (1.0f - w) - p, mcs_set(0.0f));
     const mcs_f x = mcsi_min(mcsi_log_of_sum(w, lacking) / -d.rate, m);
     return mcsi_sample1(ok, mcsi_sel(d.flat, u * m, x), mcsi_sel(d.flat, 1.0f / m, w * (d.rate / d.one_minus_e)));
 }
@@ -4630,7 +4633,8 @@ MCSI_FN mcs_vec2 mcs_disk_invert(mcs_f radius, mcs_f x, mcs_f y) {
 
 /* The square [-1,1]^2 is cut into four triangles by its diagonals. A point whose longer coordinate is r, positive or
  * negative, goes to the distance r from the origin, and the shorter one over r tells the angle from that axis, in
- * eighths of a turn. The distance keeps its sign, so that all angles are within an eighth of a turn of +x or +y. */
+ * eighths of a turn. The distance keeps its sign, so that all angles are within an eighth of a turn of +x or +y. Those
+ * about +y are taken about +x, and the coordinates then change places. */
 MCSI_SAMPLE mcs_sample2 mcs_concentric_sample(mcs_f radius, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_always();
     u1 = mcsi_sane_u(u1, &ok);
@@ -4639,10 +4643,13 @@ MCSI_SAMPLE mcs_sample2 mcs_concentric_sample(mcs_f radius, mcs_f u1, mcs_f u2) 
     const mcs_f b = 2.0f * u2 - 1.0f;
     const mcs_i along_x = mcsi_abs(a) > mcsi_abs(b);
     const mcs_f r = mcsi_sel(along_x, a, b);
-    const mcs_f across = mcsi_sel(along_x, b, -a);
-    const mcs_f axis = mcsi_sel(along_x, mcs_set(0.0f), mcs_set(0.25f));
+    const mcs_f across = mcsi_sel(along_x, b, a);
     const mcs_f angle = 0.125f * (across / mcsi_sel(r == 0.0f, mcs_set(1.0f), r));
-    return mcsi_polar(ok, radius, r, axis + angle);
+    mcs_sample2 s = mcsi_polar(ok, radius, r, angle);
+    const mcs_f x = s.x;
+    s.x = mcsi_sel(along_x, x, s.y);
+    s.y = mcsi_sel(along_x, s.y, x);
+    return s;
 }
 #ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_concentric_pdf(mcs_f radius, mcs_f x, mcs_f y) { return mcsi_disk_pdf(radius, x, y); }

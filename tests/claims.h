@@ -13,10 +13,11 @@ static const char *const mcst_claim_sentences[] = {
     "1 E is a relative error of 1e-6 (1 + |ln(pdf/peak)|)",
     /* [1d] */
     "pdf of u and of x within 0.45 E (normal), 0.3 E (the others)",
+    "x is within 7 ulp (normal), 4 ulp (the others) of the exact map or of its scale.",
     /* [square] */
     "coordinates within 4 ulp of 1, pdf of u 0.7 E, of a point 0.5 E",
     /* [disk] */
-    "coordinates within 2^-23 of the radius, pdf within 0.16 E",
+    "coordinates within 2^-22 of the radius, pdf within 0.16 E",
     /* [triangle] */
     "coordinates within half an ulp of the exact map, for u of 0 and of 2^-125 and more; pdf exact",
     /* [lights] */
@@ -28,13 +29,14 @@ static const char *const mcst_claim_sentences[] = {
     "distance within 1e-7 of itself, for solid angles of 1e-12 and more, lights 1e5 times as long as wide, and p "
     "further from the plane of the light than 1e-8 of its size and distance",
     /* [sphere] */
-    "unit length within 4 x 2^-24, pdf within 0.2 E.",
+    "every coordinate within 1.4 x 2^-23 of the exact map, unit length within 4 x 2^-24, pdf within 0.2 E.",
     /* [frame], [fresnel] */
     "brought to unit length, each coordinate within 2^-23",
     "reflectance within 1.6e-6 (dielectric), 1.2e-6 (conductor) of itself, refracted directions within 2^-23 by "
     "coordinate, their length within 4 x 2^-24, for eta in [1/3, 3] and all cosines",
     /* [media] */
-    "unit length within 4 x 2^-24, pdf of u within 0.2 E, of w within 0.6 E (henyey_greenstein), 0.2 E "
+    "every coordinate within 1.25 x 2^-23 of the exact map (von_mises_fisher 1.4 x 2^-23), unit length within "
+    "4 x 2^-24, pdf of u within 0.2 E, of w within 0.6 E (henyey_greenstein), 0.2 E "
     "(rayleigh), 0.4 E (von_mises_fisher).",
     /* [phong] */
     "pdf of u 0.4 E (n below 1: 1.2 E, below 0.1: 2.9 E), of w and eval 0.6 E, weight 0.3e-6, |w| 4 x "

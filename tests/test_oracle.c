@@ -157,9 +157,8 @@ typedef struct {
     float x[3], out[5];
 } grid_point;
 
-/* Where: 4 ulp, that is 8 EPS; the normal distribution's quantile has 5, and two more operations. For a direction about
- * +z or a half-vector the unit is 1, and a direction without a lobe has 2^-23; the reflection 2 (h.wo) h - wo magnifies
- * an error of h (3 EPS) by 4 and adds 3 roundings. */
+/* Where: CLAIM_WHERE, but relative to the point itself where that is stricter. Lobes have 4 ulp, that is 8 EPS, and the
+ * reflection 2 (h.wo) h - wo magnifies an error of h (3 EPS) by 4 and adds 3 roundings. */
 static void check_where(const grid_point *g) {
     const mcst_row *row = g->row;
     const float *u = g->u;
@@ -173,8 +172,9 @@ static void check_where(const grid_point *g) {
     }
     if (row->dim == 1) size = fmax(size, mcst_line_scale(row, g->p));
     else if (row->dim == 3) size = 1;
+    const double claim = mcst_claim_of(row, CLAIM_WHERE, g->p);
     double steps = row->shape == MCST_IS_BRDF    ? 16
-                   : row->shape == MCST_IS_DIR   ? 2
+                   : row->shape == MCST_IS_DIR   ? claim
                    : row->traits & MCST_QUANTILE ? 12
                                                  : 8;
     steps *= 1 + g->magnified;

@@ -260,6 +260,23 @@ static double weight_error(float got, qd want) {
     return fabs((double)(((qd)got - want) / want)) / 1e-6;
 }
 
+/* The worst coordinate, in 2^-24 of its scale. What is subnormal, as such or in units of a point in the middle, has lost
+ * digits. */
+static double where_error(const mcst_row *row, const setting *s, const point *t, const float *got) {
+    q3 want;
+    q3 middle;
+    exact_map(row, s, t->u[0], t->u[1], &want);
+    exact_map(row, s, (qd)0.75, (qd)0.625, &middle);
+    const qd exact[3] = {want.x, want.y, want.z};
+    const double lost = 0x1p-125 * fmax(1, (double)largest(middle));
+    double worst = 0;
+    for (int i = 0; i < row->dim; i++) {
+        const double off = fabs((double)((qd)got[i] - exact[i]));
+        if (off > lost) worst = fmax(worst, off / (EPS * mcst_where_scale(row, t->p, (double)exact[i])));
+    }
+    return worst;
+}
+
 static double score_of(const mcst_row *row, int figure, const point *t, double least) {
     if (row->traits & MCST_DISTANCE) return score_of_light(figure, &t->light, t->u, t->w);
     const setting s = setting_of(row, t->p);
@@ -276,10 +293,7 @@ static double score_of(const mcst_row *row, int figure, const point *t, double l
         if (!(out[3] > 0) || out[2] < 1e-15f) return 0;
         return weight_error(out[4], weight_of_sample(&s, t->u[0], t->u[1], vec(out[0], out[1], out[2])));
     }
-    if (figure == CLAIM_WHERE) {
-        exact_map(row, &s, t->u[0], t->u[1], &x);
-        return largest(minus(vec(out[0], out[1], out[2]), x)) / EPS;
-    }
+    if (figure == CLAIM_WHERE) return where_error(row, &s, t, out);
     qd pdf;
     if (figure == CLAIM_PDF_U) {
         exact_map(row, &s, t->u[0], t->u[1], &x);
@@ -324,6 +338,10 @@ static const struct {
       {0x1.50dc1ap-21f, 0x1.4974cap-1f},
       {0, 0, 1},
       {0, {0, 0, 0}, {{0, 0, 0}}, 0}}},
+    {"sphere", /* where its sine and the cosine of its azimuth are both at their worst */
+     {{0}, {0x1.fca59ep-2f, 0x1.77fc02p-2f}, {0, 0, 1}, {0, {0, 0, 0}, {{0, 0, 0}}, 0}}},
+    {"truncexp", /* ln(1 - p) for p next to the rounding of 1 - p */
+     {{0x1.b2e10ap-9f, 0x1.83f95ap-5f}, {0x1.e01274p-22f, 0}, {0, 0, 1}, {0, {0, 0, 0}, {{0, 0, 0}}, 0}}},
     {"cone", /* 2 - t with roundings of its own */
      {{0x1.ed0e62p-1f, 0, 0, 0, 0, 1}, {0x1.ffff96p-1f, 0x1.d3ff8ep-3f}, {0, 0, 1}, {0, {0, 0, 0}, {{0, 0, 0}}, 0}}},
     {"ball", /* a direction within the rim whose length is off by 11 ulp */

@@ -312,18 +312,23 @@ static drawn_point draw_point(const mcst_row *row, const setting *s, const float
     return d;
 }
 
-/* Where the header states a figure for coordinates, it is that. */
+/* Where the header states a figure for coordinates, it is that. What is subnormal in units of the range has lost
+ * digits. */
 static void check_coordinates(const drawn_point *d, double limit) {
-    const q3 off = add(d->at, times(-1, d->x));
-    const double err = (double)fmaxq(fmaxq(fabsq(off.x), fabsq(off.y)), fabsq(off.z)) / EPS;
+    const qd exact[3] = {d->x.x, d->x.y, d->x.z};
+    double err = 0;
+    for (int i = 0; i < d->row->dim; i++) {
+        const double off = fabs((double)((qd)d->w[i] - exact[i]));
+        if (off <= 0x1p-125 * d->extent + 0x1p-148) continue;
+        err = fmax(err, off / (EPS * mcst_where_scale(d->row, d->p, (double)exact[i])));
+    }
     score(d->scores, WHERE, err, err / limit, &d->where);
     CHECK(err <= limit, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g", in_words(&d->where),
           (double)d->w[0], (double)d->w[1], (double)d->w[2], (double)d->x.x, (double)d->x.y, (double)d->x.z, err,
           limit);
 }
 
-/* 4 ulp of 1, 6 of the normal distribution; of a reflection (h.wo) h - wo magnifies 3 half ulps of h by 4 and adds 3
- * roundings. Lines and disks count from their size, where x is a difference from that of its terms. */
+/* 4 ulp of 1; of a reflection (h.wo) h - wo magnifies 3 half ulps of h by 4 and adds 3 roundings. */
 static void check_where(const drawn_point *d) {
     const mcst_row *row = d->row;
     const q3 x = d->x;
@@ -331,17 +336,13 @@ static void check_where(const drawn_point *d) {
         check_coordinates(d, row->claims[0].claim[CLAIM_WHERE]);
         return;
     }
-    double size = row->dim == 3 ? 1 : fmax(fabs((double)x.x), fabs((double)x.y));
-    size = fmax(size, mcst_line_scale(row, d->p));
-    const double off = (double)len(add(d->at, times(-1, x))) / EPS;
-    const double limit = row->shape == MCST_IS_BRDF ? 16 : row->traits & MCST_QUANTILE ? 12 : 8;
-    /* what is subnormal in units of the range has lost digits */
-    const double err = off * EPS <= 0x1p-125 * d->extent + 0x1p-148 ? 0 : off / size;
+    const double err = (double)len(add(d->at, times(-1, x))) / EPS;
+    const double limit = row->shape == MCST_IS_BRDF ? 16 : 8;
     if (err <= limit) {
         score(d->scores, WHERE, err, err / limit, &d->where);
         return;
     }
-    const double wider = limit + movement(row, d->p, d->u[0], d->u[1], x) / size;
+    const double wider = limit + movement(row, d->p, d->u[0], d->u[1], x);
     score(d->scores, WHERE, err, err / wider, &d->where);
     d->scores->ill[WHERE] += err <= wider;
     CHECK(err <= wider || d->scores->beyond, "%s: (%.9g %.9g %.9g), exact (%.9g %.9g %.9g): %.3g half ulps, bound %.3g",
