@@ -4017,9 +4017,9 @@ MCSI_CORE mcsi_truncexp mcsi_truncexp_make(mcs_f rate, mcs_f m) {
     d.rate = mcsi_sel(d.flat, mcs_set(1.0f), rate);
     return d;
 }
-/* w is 1 - p, where p = u (1 - e). Where w is 1/2 and more, p has more digits of the logarithm's argument than w. What w
- * lacks of them is the correction of the logarithm. There w is the float next to 1 - p, so that the correction is small
- * beside p, however small that is. */
+/* w is 1 - p, where p = u (1 - e). Where w is 1/2 and more, p has more digits of the logarithm's argument than w. What
+ * w lacks of them is the correction of the logarithm. There w is the float next to 1 - p, so that the correction is
+ * small beside p, however small that is. */
 MCSI_SAMPLE mcs_sample1 mcs_truncexp_sample(mcs_f rate, mcs_f m, mcs_f u) {
     const mcsi_truncexp d = mcsi_truncexp_make(rate, m);
     mcs_i ok = d.ok;

@@ -1,5 +1,5 @@
-/* An adversary: for every figure of accuracy that the header states for densities, directions and lights it looks for
- * the input that breaks it, by random starts and by climbing from the best of them, against the __float128 truth of
+/* An adversary: for every figure of accuracy that the header states for densities, coordinates, directions, lights,
+ * reflectances and frames it looks for the input that breaks it, by random starts and by climbing from the best of them, against the __float128 truth of
  * exact.h. Directions are unit to half an ulp, what a caller in double gives; nothing else is forgiven: no condition
  * comes on top of a figure.
  *
@@ -454,6 +454,8 @@ static void attack(const mcst_row *row, const char *group, int figure, int climb
               where);
 }
 
+#include "climb_plain.h"
+
 int main(int argc, char **argv) {
     const double scale = mcst_scale();
     exact_start();
@@ -472,6 +474,9 @@ int main(int argc, char **argv) {
                     attack(row, group, k, (int)ceil(CLIMBS * scale));
         }
     }
+    mcst_group("functions without a row");
+    for (size_t i = 0; i < MCST_COUNT(plain_figures); i++)
+        if (mcst_case("%s", plain_figures[i].name)) attack_plain(&plain_figures[i], (int)ceil(10 * CLIMBS * scale));
     mcst_close_group();
     if (mcst.failed || mcst.verbose) printf("seed %llu\n", (unsigned long long)mcst.seed);
     return mcst_finish();
