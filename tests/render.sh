@@ -251,7 +251,7 @@ fi
 printf '#?RADIANCE\n\n-Y 1 +X 1\n\200\200\200\201' >"$dir/white.hdr"
 "$render" --strategy brdf,env --spp 1000000 --error 0.001 --size 30x10 --out "$dir/cut" "$dir/white.hdr" >"$dir/cut.txt" 2>&1 &
 cut=$! tries=0
-until grep -q '^brdf ' "$dir/cut.txt" || [ $tries = 600 ]; do
+until grep -qs "^brdf " "$dir/cut.txt" || [ $tries = 600 ]; do
     sleep 0.05
     tries=$((tries + 1))
 done
