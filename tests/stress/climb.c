@@ -244,7 +244,7 @@ static qd weight_of_sample(const setting *s, qd u1, qd u2, q3 wi) {
     case ID_phong: return (a + 2) / (a + 1) * wi.z;
     case ID_ward_gmd: return 2 * wi.z / (zo + wi.z);
     case ID_ward_duer: return d * c * c * c / zo;
-    case ID_ward_1992: return d * c * c * c * sqrtq(wi.z / zo);
+    case ID_ward_1992: return d * c * c * c * root_of(wi.z / zo);
     case ID_beckmann: return d / (zo * c * (1 + beckmann_lambda(a, b, s->wo) + beckmann_lambda(a, b, wi)));
     case ID_ashikhmin: return wi.z / fmaxq(zo, wi.z);
     default: break;

@@ -18,6 +18,13 @@ enum { MCST_ROWS(ST_ID) IDS };
 
 /* --- the oracle --------------------------------------------------------------------------------------------------- */
 
+/* The root of x by that of the nearest long double, which is off by 2^-64 of it at most. Newton's correction leaves
+ * 2^-128 of what it is, and needs no more digits than a long double has: sqrtq divides in 113 bits. */
+static inline qd root_of(qd x) {
+    const ld y = sqrtl((ld)x);
+    return y > 0 && y < INFINITY ? (qd)y + (ld)(x - (qd)y * y) / (2 * y) : y;
+}
+
 static inline q3 vec(qd x, qd y, qd z) {
     q3 v;
     v.x = x;
@@ -26,7 +33,7 @@ static inline q3 vec(qd x, qd y, qd z) {
     return v;
 }
 static inline qd dot(q3 a, q3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static inline qd len(q3 a) { return sqrtq(dot(a, a)); }
+static inline qd len(q3 a) { return root_of(dot(a, a)); }
 static inline q3 add(q3 a, q3 b) { return vec(a.x + b.x, a.y + b.y, a.z + b.z); }
 static inline q3 times(qd k, q3 a) { return vec(k * a.x, k * a.y, k * a.z); }
 static inline q3 cross(q3 a, q3 b) { return vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
@@ -35,16 +42,15 @@ static inline qd square(qd x) { return x * x; }
 /* The direction with versine m = 1 - cos(theta), by the half angle: a versine of 2^-149 is no less than any other. */
 static inline q3 at_versine(qd m, qd phi) {
     const qd half = m / 2;
-    const qd sine = 2 * sqrtq(half * (1 - half));
+    const qd sine = 2 * root_of(half * (1 - half));
     qd s, c;
     sincosq(phi, &s, &c);
     return vec(sine * c, sine * s, 1 - m);
 }
-static inline q3 at_tangent2(qd tan2, qd phi) {
-    qd sine, z, s, c;
-    sincosq(atanq(sqrtq(tan2)), &sine, &z);
-    sincosq(phi, &s, &c);
-    return vec(sine * c, sine * s, z);
+/* The direction whose slopes are x and y. */
+static inline q3 at_slopes(qd x, qd y) {
+    const qd z = 1 / root_of(1 + x * x + y * y);
+    return vec(x * z, y * z, z);
 }
 /* tan^2 of a direction, and cos^2(phi)/ax^2 + sin^2(phi)/ay^2 (Walter et al. 2007, anisotropic as in Heitz 2014) */
 static inline qd tan2_of(q3 h) { return (h.x * h.x + h.y * h.y) / (h.z * h.z); }
@@ -69,17 +75,17 @@ static inline qd ashikhmin_h(qd nu, qd nv, q3 h) {
     const qd r2 = h.x * h.x + h.y * h.y;
     const qd c = h.z / len(h);
     const qd s = r2 > 0 ? (nu * h.x * h.x + nv * h.y * h.y) / r2 : 0;
-    return h.z > 0 ? sqrtq((nu + 1) * (nv + 1)) / (2 * pi) * expq(s * logq(c)) : 0;
+    return h.z > 0 ? root_of((nu + 1) * (nv + 1)) / (2 * pi) * expq(s * logq(c)) : 0;
 }
-static inline qd ggx_lambda(qd ax, qd ay, q3 w) { return (sqrtq(1 + alpha2_of(ax, ay, w) * tan2_of(w)) - 1) / 2; }
+static inline qd ggx_lambda(qd ax, qd ay, q3 w) { return (root_of(1 + alpha2_of(ax, ay, w) * tan2_of(w)) - 1) / 2; }
 static inline qd beckmann_lambda(qd ax, qd ay, q3 w) {
-    const qd spread = sqrtq(alpha2_of(ax, ay, w) * tan2_of(w));
+    const qd spread = root_of(alpha2_of(ax, ay, w) * tan2_of(w));
     const qd a = 1 / spread;
-    return spread > 0 ? (expq(-a * a) / (a * sqrtq(pi)) - erfcq(a)) / 2 : 0;
+    return spread > 0 ? (expq(-a * a) / (a * root_of(pi)) - erfcq(a)) / 2 : 0;
 }
 static inline qd bound(qd ax, qd ay, q3 wo) { /* Eto and Tokuyoshi 2023 */
     const qd a = fminq(fminq(ax, ay), 1);
-    const qd s = 1 + sqrtq(wo.x * wo.x + wo.y * wo.y);
+    const qd s = 1 + root_of(wo.x * wo.x + wo.y * wo.y);
     return (1 - a * a) * s * s / (s * s + a * a * wo.z * wo.z);
 }
 /* The view direction where the surface is a hemisphere. */
@@ -97,11 +103,11 @@ normal_quantile(qd u) { /* bisection to a start, then Newton: the cumulative is 
     qd z;
     for (int i = 0; i < 12; i++) {
         z = (lo + hi) / 2;
-        if (erfcq(-z / sqrtq(2)) / 2 < u) lo = z;
+        if (erfcq(-z / root_of(2)) / 2 < u) lo = z;
         else hi = z;
     }
     z = (lo + hi) / 2;
-    for (int i = 0; i < 7; i++) z -= (erfcq(-z / sqrtq(2)) / 2 - u) * sqrtq(2 * pi) * expq(z * z / 2);
+    for (int i = 0; i < 7; i++) z -= (erfcq(-z / root_of(2)) / 2 - u) * root_of(2 * pi) * expq(z * z / 2);
     return z;
 }
 
@@ -127,14 +133,14 @@ static inline q3 beyond_end(const ends *e, qd t) { return e->mirrored ? beyond(-
 /* Mills' ratio: the mass beyond z over the density at z. From 4 on by Laplace's continued fraction, whose error falls
  * as e^(-2 z sqrt(2 n)): 100 terms leave e^-113. */
 static inline qd mills(qd z) {
-    if (z < 4) return sqrtq(pi / 2) * expq(z * z / 2) * erfcq(z / sqrtq(2));
+    if (z < 4) return root_of(pi / 2) * expq(z * z / 2) * erfcq(z / root_of(2));
     qd f = z;
     for (int n = 100; n > 0; n--) f = z + n / f;
     return 1 / f;
 }
 /* What is beyond a + t of what is beyond a, a >= 1. */
 static inline qd normal_left(qd a, qd t) { return expq(-t * (a + t / 2)) * mills(a + t) / mills(a); }
-static inline qd normal_from_0(qd x) { return erfq(x / sqrtq(2)) / 2; }
+static inline qd normal_from_0(qd x) { return erfq(x / root_of(2)) / 2; }
 
 static inline q3 truncnormal(const ends *e, qd u) {
     if (e->a >= 1) { /* Newton's method for a concave logarithm, from beyond the root: it never steps over it */
@@ -152,13 +158,13 @@ static inline q3 truncnormal(const ends *e, qd u) {
         else hi = middle;
     }
     qd x = (lo + hi) / 2;
-    for (int i = 0; i < 4; i++) x -= (normal_from_0(x) - share) * sqrtq(2 * pi) * expq(x * x / 2);
+    for (int i = 0; i < 4; i++) x -= (normal_from_0(x) - share) * root_of(2 * pi) * expq(x * x / 2);
     x = fminq(fmaxq(x, e->a), e->b);
     return vec(e->mirrored ? -x : x, 0, 0);
 }
 static inline qd truncnormal_pdf(const ends *e, qd x, qd t) {
     if (e->a >= 1) return expq(-t * (e->a + t / 2)) / (mills(e->a) * (1 - normal_left(e->a, e->b - e->a)));
-    return expq(-x * x / 2) / (sqrtq(2 * pi) * (normal_from_0(e->b) - normal_from_0(e->a)));
+    return expq(-x * x / 2) / (root_of(2 * pi) * (normal_from_0(e->b) - normal_from_0(e->a)));
 }
 
 /* What is between a and b of what is beyond a: the logistic one has 1/(1 + e^x) beyond x. */
@@ -180,7 +186,9 @@ static inline qd cut_pdf(int id, const ends *e, q3 x) {
     return id == ID_truncnormal ? truncnormal_pdf(e, side * x.x, t) : trunclogistic_pdf(e, side * x.x, t);
 }
 
-static inline qd linear(qd a, qd b, qd u) { return u > 0 ? u * (a + b) / (a + sqrtq(a * a * (1 - u) + b * b * u)) : 0; }
+static inline qd linear(qd a, qd b, qd u) {
+    return u > 0 ? u * (a + b) / (a + root_of(a * a * (1 - u) + b * b * u)) : 0;
+}
 /* Two steps of it. Where a side has no height, that is how the heights beside it are shared. */
 static inline q3 bilinear(qd w00, qd w10, qd w01, qd w11, qd u1, qd u2) {
     if (w00 + w10 + w01 + w11 == 0) return vec(u1, u2, 0);
@@ -261,13 +269,14 @@ static inline q3 half_vector_map(const setting *s, qd u1, qd u2) {
     qd sine, cosine;
     sincosq(turn, &sine, &cosine);
     if (s->id == ID_ashikhmin || s->id == ID_ashikhmin_h) {
-        const qd phi = atan2q(sqrtq(s->a + 1) * sine, sqrtq(s->b + 1) * cosine);
+        const qd phi = atan2q(root_of(s->a + 1) * sine, root_of(s->b + 1) * cosine);
         sincosq(phi, &sine, &cosine);
         const qd e = s->a * square(cosine) + s->b * square(sine);
         return at_versine(-expm1q(log1pq(-u1) / (e + 1)), phi);
     } else {
         const qd r2 = s->id == ID_ggx || s->id == ID_ggx_h ? u1 / (1 - u1) : -log1pq(-u1);
-        return at_tangent2(r2 * (square(s->a * cosine) + square(s->b * sine)), atan2q(s->b * sine, s->a * cosine));
+        const qd r = root_of(r2);
+        return at_slopes(r * s->a * cosine, r * s->b * sine);
     }
 }
 
@@ -297,7 +306,7 @@ static inline q3 line_map(const setting *s, qd u1) {
     q3 x = vec(0, 0, 0);
     switch (s->id) {
     case ID_linear: x.x = linear(a, b, u1); break;
-    case ID_tent: x.x = u1 < 0.5 ? -a * (1 - sqrtq(2 * u1)) : a * (1 - sqrtq(2 * (1 - u1))); break;
+    case ID_tent: x.x = u1 < 0.5 ? -a * (1 - root_of(2 * u1)) : a * (1 - root_of(2 * (1 - u1))); break;
     case ID_exponential: x.x = -log1pq(-u1) / a; break;
     case ID_truncexp: x.x = a > 0 ? -log1pq(u1 * expm1q(-a * b)) / a : u1 * b; break;
     case ID_normal: x = beyond(a, b * normal_quantile(fmaxq(u1, least))); break;
@@ -327,8 +336,8 @@ static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2
     }
     switch (s->id) {
     case ID_disk:
-        x->x = a * sqrtq(u1) * cosq(2 * pi * u2);
-        x->y = a * sqrtq(u1) * sinq(2 * pi * u2);
+        x->x = a * root_of(u1) * cosq(2 * pi * u2);
+        x->y = a * root_of(u1) * sinq(2 * pi * u2);
         return;
     case ID_concentric: *x = times(a, concentric(u1, u2)); return;
     case ID_bilinear: *x = bilinear(a, b, 1, 3, u1, u2); return;
@@ -340,7 +349,7 @@ static inline void exact_map(const mcst_row *row, const setting *s, qd u1, qd u2
     case ID_triangle: *x = vec(u1 - fminq(u1, u2) / 2, u2 - fminq(u1, u2) / 2, 0); return;
     case ID_sphere: *x = at_versine(2 * u1, 2 * pi * u2); return;
     case ID_hemisphere: *x = at_versine(u1, 2 * pi * u2); return;
-    case ID_cosine: *x = vec(sqrtq(u1) * cosq(2 * pi * u2), sqrtq(u1) * sinq(2 * pi * u2), sqrtq(1 - u1)); return;
+    case ID_cosine: *x = vec(root_of(u1) * cosq(2 * pi * u2), root_of(u1) * sinq(2 * pi * u2), root_of(1 - u1)); return;
     case ID_cone: *x = at_versine(a * u1, 2 * pi * u2); return;
     case ID_henyey_greenstein: {
         const qd root = (1 - a * a) / (1 + a - 2 * a * u1);
@@ -377,7 +386,7 @@ static inline qd line_pdf(const setting *s, q3 x) {
     case ID_tent: return fabsq(x.x) <= a ? (1 - fabsq(x.x) / a) / a : 0;
     case ID_exponential: return x.x >= 0 ? a * expq(-a * x.x) : 0;
     case ID_truncexp: return x.x < 0 || x.x > b ? 0 : a > 0 ? a * expq(-a * x.x) / -expm1q(-a * b) : 1 / b;
-    case ID_normal: return expq(-z * z / 2) / (b * sqrtq(2 * pi));
+    case ID_normal: return expq(-z * z / 2) / (b * root_of(2 * pi));
     case ID_logistic: return expq(-fabsq(z)) / (b * square(1 + expq(-fabsq(z))));
     case ID_truncnormal:
     case ID_trunclogistic: {
@@ -420,7 +429,7 @@ static inline qd exact_pdf(const mcst_row *row, const setting *s, q3 x) {
     }
     case ID_henyey_greenstein: {
         const qd s2 = 1 + a * a - 2 * a * x.z / len(x);
-        return (1 - a * a) / (4 * pi * s2 * sqrtq(s2));
+        return (1 - a * a) / (4 * pi * s2 * root_of(s2));
     }
     case ID_rayleigh: return 3 * (1 + x.z * x.z / dot(x, x)) / (16 * pi);
     case ID_von_mises_fisher:
@@ -461,7 +470,7 @@ static inline qd exact_value(const setting *s, q3 wi) {
     }
     case ID_ward_gmd: return ward_gauss(a, b, h) * dot(h, h) / square(square(h.z));
     case ID_ward_duer: return ward_gauss(a, b, h) / (4 * zo * zi);
-    case ID_ward_1992: return ward_gauss(a, b, h) / (4 * sqrtq(zo * zi));
+    case ID_ward_1992: return ward_gauss(a, b, h) / (4 * root_of(zo * zi));
     case ID_beckmann:
         return beckmann_d(a, b, h) / (4 * zo * zi * (1 + beckmann_lambda(a, b, s->wo) + beckmann_lambda(a, b, wi)));
     case ID_ashikhmin: return ashikhmin_h(a, b, h) / (2 * len(h) * fmaxq(zo, zi)); /* 4 wo.h = 2 |H| */

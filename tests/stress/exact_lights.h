@@ -73,7 +73,7 @@ static inline qd ball_radius(const light *l) { return fmaxq(l->r, (qd)1e-15 * le
 static inline q3 ball_axis(const light *l) { return len(l->at[0]) < (qd)1e-18f ? vec(0, 0, 1) : unit(l->at[0]); }
 static inline qd ball_versine(const light *l) {
     const qd sine = ball_radius(l) / len(l->at[0]);
-    return len(l->at[0]) > ball_radius(l) ? sine * sine / (1 + sqrtq(1 - sine * sine)) : 2;
+    return len(l->at[0]) > ball_radius(l) ? sine * sine / (1 + root_of(1 - sine * sine)) : 2;
 }
 /* The surface is where |t w - c| = r: of the two roots of t, whose product is c^2 - r^2, one does not cancel. */
 static inline place ball_seen(const light *l, qd u1, qd u2) {
@@ -81,7 +81,7 @@ static inline place ball_seen(const light *l, qd u1, qd u2) {
     const qd r = ball_radius(l);
     const qd m = ball_versine(l) * u1;
     const qd along = d * (1 - m);
-    const qd root = sqrtq(fmaxq(r * r - d * d * m * (2 - m), 0));
+    const qd root = root_of(fmaxq(r * r - d * d * m * (2 - m), 0));
     place s;
     s.w = in_frame(ball_axis(l), at_versine(m, 2 * pi * u2));
     s.x = s.y = 0;
@@ -138,7 +138,7 @@ typedef struct {
 } frame_of_rectangle;
 
 /* The solid angle of what is between the foot of the perpendicular and (x, y). */
-static inline qd quadrant(qd x, qd y, qd z) { return atanq(x * y / (z * sqrtq(x * x + y * y + z * z))); }
+static inline qd quadrant(qd x, qd y, qd z) { return atanq(x * y / (z * root_of(x * x + y * y + z * z))); }
 static inline frame_of_rectangle rectangle_of(const light *l) {
     frame_of_rectangle f;
     f.x = unit(l->at[1]);
@@ -176,22 +176,22 @@ static inline qd rectangle_x(const frame_of_rectangle *f, qd share) {
     for (int i = 0; i < 3; i++) {
         const qd x = f->z0 * tanq(angle);
         const qd d2 = x * x + f->z0 * f->z0;
-        angle -= (strip(f, x) - share) / (f->y1 / sqrtq(d2 + f->y1 * f->y1) - f->y0 / sqrtq(d2 + f->y0 * f->y0));
+        angle -= (strip(f, x) - share) / (f->y1 / root_of(d2 + f->y1 * f->y1) - f->y0 / root_of(d2 + f->y0 * f->y0));
     }
     return fminq(fmaxq(f->z0 * tanq(angle), f->x0), f->x1);
 }
 /* 1 - h, where h = y / sqrt(d^2 + y^2) */
 static inline qd less_than_1(qd d, qd y) {
-    const qd s = sqrtq(d * d + y * y);
+    const qd s = root_of(d * d + y * y);
     return y > 0 ? d * d / (s * (s + y)) : (s - y) / s;
 }
 static inline place rectangle_seen(const light *l, qd u1, qd u2) {
     const frame_of_rectangle f = rectangle_of(l);
     const qd x = rectangle_x(&f, u1 * strip(&f, f.x1));
-    const qd d = sqrtq(x * x + f.z0 * f.z0);
+    const qd d = root_of(x * x + f.z0 * f.z0);
     const qd above = (1 - u2) * less_than_1(d, f.y0) + u2 * less_than_1(d, f.y1);   /* 1 - h */
     const qd below = (1 - u2) * less_than_1(d, -f.y0) + u2 * less_than_1(d, -f.y1); /* 1 + h */
-    const qd y = fminq(fmaxq(d * (below - above) / (2 * sqrtq(above * below)), f.y0), f.y1);
+    const qd y = fminq(fmaxq(d * (below - above) / (2 * root_of(above * below)), f.y0), f.y1);
     const q3 at = add(add(times(x, f.x), times(y, f.y)), times(f.z0, f.z));
     place s;
     s.w = unit(at);
@@ -224,7 +224,7 @@ static inline place triangle_seen(const light *l, qd u1, qd u2) {
     const q3 end = add(times(cosq(v), a), times(sinq(v), t));
     const q3 way = unit(cross(cross(b, minus(end, b)), b));
     const qd to_end = angle_between(b, end);
-    const qd part = 2 * asinq(sqrtq(u2) * sinq(to_end / 2)); /* 1 - z = u2 (1 - C'.B) */
+    const qd part = 2 * asinq(root_of(u2) * sinq(to_end / 2)); /* 1 - z = u2 (1 - C'.B) */
     const q3 w = add(times(cosq(part), b), times(sinq(part), way));
     const q3 normal = cross(minus(l->at[1], l->at[0]), minus(l->at[2], l->at[0]));
     place s;

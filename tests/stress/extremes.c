@@ -359,13 +359,13 @@ static void check_sine(const drawn_point *d) {
     const int slopes = d->row->coord == MCST_SLOPES;
     const int power = d->row->coord == MCST_COSPOWER;
     const qd b = s->id == ID_phong_lobe ? s->a : s->b;
-    const qd wx = slopes ? s->a : power ? 1 / sqrtq(s->a + 1) : 1;
-    const qd wy = slopes ? s->b : power ? 1 / sqrtq(b + 1) : 1;
-    const qd sine = sqrtq(x.x * x.x + x.y * x.y);
-    const qd got = sqrtq(at.x * at.x + at.y * at.y);
+    const qd wx = slopes ? s->a : power ? 1 / root_of(s->a + 1) : 1;
+    const qd wy = slopes ? s->b : power ? 1 / root_of(b + 1) : 1;
+    const qd sine = root_of(x.x * x.x + x.y * x.y);
+    const qd got = root_of(at.x * at.x + at.y * at.y);
     if (!(sine * sine > 0x1p-124)) return;
-    const double across = (double)(sqrtq(square((at.x - x.x) / wx) + square((at.y - x.y) / wy)) /
-                                   sqrtq(square(x.x / wx) + square(x.y / wy)));
+    const double across = (double)(root_of(square((at.x - x.x) / wx) + square((at.y - x.y) / wy)) /
+                                   root_of(square(x.x / wx) + square(x.y / wy)));
     const double along = fabs((double)(got / sine - 1));
     const double rel = fmax(across, along) / 1e-6;
     if (rel <= 1) {
