@@ -4,13 +4,13 @@
 #define MCST_LIST MCST_LINES /* alone: the others cost compile time */
 #include "registry.h"
 
-enum { CELLS = 1 << 24, BLOCK = 1 << 12, FORMS = 5 };
+enum { CELLS = 1 << 24, BLOCK = 1 << 12, PACKET_16 = 3, ARRAY, FORMS };
 static const char *const form_name[FORMS] = {"scalar", "4 wide", "8 wide", "16 wide", "array"};
 
 /* x and pdf of k 2^-24 for a block of k from `first` on, by one of the forms. */
 static void draw_block(const mcst_row *row, const float *p, int form, int first, float *x, float *pdf) {
     static float u[BLOCK];
-    const int lanes = form < 4 ? (form ? 2 << form : 1) : 0;
+    const int lanes = form < ARRAY ? (form ? 2 << form : 1) : 0;
     float set[MCST_P * 16], out[5 * 16];
     int i, k;
     for (i = 0; i < BLOCK; i++) u[i] = (float)(first + i) * 0x1p-24f;
@@ -49,7 +49,7 @@ static void check_zero(const char *name, double width) {
     }
     for (form = 0; form < FORMS; form++) {
         static float x[BLOCK], pdf[BLOCK];
-        const int all = form == FORMS - 1;
+        const int all = form == ARRAY;
         const double least = h * F[0] + (all ? 2 * width * (1 - f[1]) : width * (f[2] - f[1]));
         const double most = least + (all ? 2 : 1) * h * F[1];
         double sum = 0, largest = 0;
@@ -87,10 +87,12 @@ static void draw_set(const mcst_row *row, uint64_t *state, float p[MCST_P]) {
 }
 
 /* No x below that of the u before, by the array form, whose bits the others share. Parameters of `linear` that are of a
- * size are the hard case: its closed form in float falls at up to 1e6 of the 2^24 steps. Truncated bells, whose arrays
- * are drawn one by one, have every eighth block here; tests/stress/floats.c has all, for the grid. */
+ * size are the hard case: its closed form in float falls at up to 1e6 of the 2^24 steps. The arrays of truncated bells
+ * are drawn one by one, so that packets of 16 lanes take their place, and have every eighth block here;
+ * tests/stress/floats.c has all, for the grid. */
 static void check_increase(const mcst_row *row) {
-    const int step = (row->coord == MCST_CUT ? 8 : 1) * BLOCK;
+    const int cut = row->coord == MCST_CUT;
+    const int step = (cut ? 8 : 1) * BLOCK;
     uint64_t state = mcst_seed_for(row->name, "increase", 0);
     size_t set;
     for (set = 0; set < row->grid_size + DRAWN; set++) {
@@ -104,7 +106,7 @@ static void check_increase(const mcst_row *row) {
         for (k = 0; k < CELLS; k += step) {
             const int before = falls;
             x[0] = x[BLOCK];
-            draw_block(row, p, FORMS - 1, k, x + 1, pdf);
+            draw_block(row, p, cut ? PACKET_16 : ARRAY, k, x + 1, pdf);
             for (i = 0; i < BLOCK; i++) falls += !(x[i + 1] >= x[i]);
             for (i = 0; falls > before && first < 0; i++)
                 if (!(x[i + 1] >= x[i])) first = k + i;
