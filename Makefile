@@ -58,7 +58,8 @@ WIDE = $(SHARED)/wide16.o $(SHARED)/wide8.o $(SHARED)/wide4.o
 # Packets of 16 lanes have registers of 16 lanes where the processor does: gcc takes 43 s to make them of smaller ones, which those of 8
 # lanes show as well. NATIVE=no: smaller ones all the same, as in .ci/run.
 AVX512 = -mavx512f -mavx512dq -mavx512bw -mavx512vl
-UNITS_16 = $(if $(filter no,$(NATIVE)),,$(shell mkdir -p $(BUILD) && printf 'int main(void) { return \
+UNITS_16 = $(eval UNITS_16 := $(UNITS_16_PROBE))$(UNITS_16)
+UNITS_16_PROBE = $(if $(filter no,$(NATIVE)),,$(shell mkdir -p $(BUILD) && printf 'int main(void) { return \
 	!(__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl")); }\n' | \
 	$(CC) $(CFLAGS) $(AVX512) -x c - -o $(BUILD)/avx512.probe 2>/dev/null && $(BUILD)/avx512.probe && echo '$(AVX512)'))
 # What test_bits holds to stored bits is compiled as users do, by CFLAGS. Programs that call it, and bodies that count what is told, have
@@ -131,7 +132,9 @@ install: export PKG_CONFIG_FILE := $(PKG_CONFIG_FILE)
 install: export CMAKE_FILE := $(CMAKE_FILE)
 install: export CMAKE_VERSION_FILE := $(CMAKE_VERSION_FILE)
 
-QUADMATH = $(shell mkdir -p $(BUILD) && printf '\043include <quadmath.h>\nint main(void) { return sqrtq(4) != 2; }\n' | \
+# A probe is run once, where its result is first asked for.
+QUADMATH = $(eval QUADMATH := $(QUADMATH_PROBE))$(QUADMATH)
+QUADMATH_PROBE = $(shell mkdir -p $(BUILD) && printf '\043include <quadmath.h>\nint main(void) { return sqrtq(4) != 2; }\n' | \
 	$(CC) -x c - -o $(BUILD)/quadmath.probe -lquadmath 2>/dev/null && echo -lquadmath)
 
 test: ## build and run every tests/test_*.c (the default); two to three minutes; build/tests; FILTER=text and SEED=number narrow it
@@ -139,7 +142,7 @@ test: ## build and run every tests/test_*.c (the default); two to three minutes;
 	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS) $(EXACT); programs that only call: $(CALLING_FLAGS)'
 	+@$(SUBMAKE) test-binaries
 	@$(if $(STRESS_CUT),$(if $(QUADMATH),,echo 'SKIPPED: $(STRESS_QUAD:%=tests/stress/%.c): $(CC) has no libquadmath'))
-	@BEGAN=$(NOW) BUILD='$(BUILD)' FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(TEST_BINS) $(STRESS_CUT)
+	@BEGAN=$(NOW) BUILD='$(BUILD)' FILTER='$(FILTER)' SEED='$(SEED)' sh tests/run.sh $(JOBS) $(STRESS_CUT) $(TEST_BINS)
 
 stress: ## every float, deep statistics, extremes, hostile input at full size; hours; build/stress; what passed is not run again
 	$(SAY)
