@@ -55,13 +55,14 @@ INSIDE = $(patsubst %,$(BUILD)/tests/test_%,math pwc2 region tables values value
 TELLING = $(patsubst %,$(BUILD)/tests/test_%,env_modes env_window mistakes oracle)
 DECLARED = $(filter-out $(INSIDE),$(filter $(BUILD)/tests/test_%,$(TEST_BINS)) $(STRESS_BINS))
 WIDE = $(SHARED)/wide16.o $(SHARED)/wide8.o $(SHARED)/wide4.o
-# Packets of 16 lanes have registers of 16 lanes where the processor does: gcc takes 43 s to make them of smaller ones, which those of 8
-# lanes show as well. NATIVE=no: smaller ones all the same, as in .ci/run.
+# Packets of 16 lanes have registers of 16 lanes where the processor does, in the programs PACKETS_16 as well: gcc takes 43 s to make
+# them of smaller ones, which those of 8 lanes show as well. NATIVE=no: smaller ones all the same, as in .ci/run.
 AVX512 = -mavx512f -mavx512dq -mavx512bw -mavx512vl
 UNITS_16 = $(eval UNITS_16 := $(UNITS_16_PROBE))$(UNITS_16)
 UNITS_16_PROBE = $(if $(filter no,$(NATIVE)),,$(shell mkdir -p $(BUILD) && printf 'int main(void) { return \
 	!(__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl")); }\n' | \
 	$(CC) $(CFLAGS) $(AVX512) -x c - -o $(BUILD)/avx512.probe 2>/dev/null && $(BUILD)/avx512.probe && echo '$(AVX512)'))
+PACKETS_16 = $(patsubst %,$(BUILD)/tests/%,test_frame test_fresnel test_lights stress/hostile)
 # What test_bits holds to stored bits is compiled as users do, by CFLAGS. Programs that call it, and bodies that count what is told, have
 # -O1 where those say -O2, as by default: two thirds of the time to compile; all but these, whose own loops run for long. So do packets of
 # 8 lanes, but with NATIVE=no, as in .ci/run.
@@ -324,6 +325,7 @@ $(STRESS_BINS): $(wildcard tests/stress/*.h)
 $(STRESS_BINS): private FLAGS += -Itests/stress
 $(STRESS_QUAD:%=$(BUILD)/tests/stress/%): LIBS = $(QUADMATH) -lm
 $(BUILD)/tests/stress/fuzz: private FLAGS += -DMCS_FUZZ_MAIN
+$(PACKETS_16): private FLAGS += $(UNITS_16)
 
 $(STRESS_PARTS:%=$(BUILD)/stress/%.ok): $(BUILD)/stress/%.ok: $(STRESS_BINS)
 	@mkdir -p $(@D)
