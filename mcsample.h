@@ -2203,6 +2203,8 @@ typedef struct {
     float brdf_share; /* the share of samples that come from the lobe itself; it may be set to 0 after the build, to
                          combine the product with samplers of your own by MIS */
     uint32_t dark; /* 1: no light reaches wo by this surface, wo is bad, or all weights are 0: samples carry no light */
+    float reach;   /* of a region's table: its draws come through so many times as often as draws would that know no V;
+                      at least 1. Else 0. */
     /* private: */
     uint32_t rows, cols; /* of tiles */
     uint32_t warped;     /* 0: built of weights; within tiles, the density is that of the light */
@@ -2299,9 +2301,16 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  * So all light can be drawn, whatever was learned. Nothing is biased, as no table knows the ray of a sample that was
  * drawn from it: the rays of a pass wait in `fresh` until it is over.
  *
- * Pair each sample with one of the BRDF by mcs_mis_balance, and add the ray of that, too (mcs_tiles_of_direction).
- * Narrow lobes gain by a table only where much is hidden: mcs_region_pays tells whether to take it, or the map with
- * mcs_mis_power.
+ * Pair each sample with one of the BRDF by mcs_mis_balance, or with as many as mcs_region_share says, and add their
+ * rays, too (mcs_tiles_of_direction). Narrow lobes gain by a table only where much is hidden, in a pattern that all
+ * points of the region share. As learning costs, too, a region that shall never lose draws from the map by
+ * mcs_mis_power until it knows better:
+ *
+ *   no rays      mcs_region_pays: where that is 0, no table can pay. Else count rays.
+ *   32 rays      The same question. Where the answer is 1, add the points, build the table and ask mcs_region_share of
+ *                it. All that again whenever the rays have doubled.
+ *   256 rays     Give up where an answer is 0: it will hardly change.
+ *   1024 rays    Learn no more.
  *
  *   g          a region, in memory of yours like a product; it holds no pointers. Tiles and regions of another number
  *              of rows add nothing to it, and MCS_ASSERT tells them.
@@ -2327,11 +2336,16 @@ MCS_API void mcs_region_decay(mcs_region *g, float keep);
 MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger);
 /* V of tile k, 0 where k is no tile. */
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
-/* Whether r gains by the table of the region, 1 or 0; to be asked before the table is built. It does if it has any
- * matte part, or a lobe of 8 tiles or more: of 2 rows^2 alpha_x alpha_y, whatever wo is (alpha 0.125 with 16 rows). A
- * lobe of 1 to 8 tiles gains where at most half the rays came through, a smaller one nowhere: where the answer is 0
- * before any ray, nothing need be learned. */
+/* Whether r may gain by a table of the region, 1 or 0; to be asked before it is built. It may if it has any matte part,
+ * or a lobe of 8 tiles or more: of 2 rows^2 alpha_x alpha_y, whatever wo is (alpha 0.125 with 16 rows). A lobe of 1 to
+ * 8 tiles may where at most half the rays came through, a smaller one nowhere: where the answer is 0 before any ray,
+ * nothing need be learned. */
 MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r);
+/* How many samples of the BRDF are best paired with each of the region's table p. 1/8 where r is all matte or has a
+ * lobe of 64 tiles or more by either alpha (0.354 with 16 rows): such a reflection the table knows well. 0, which is a
+ * draw of the map in place of the table's, for a lobe below a tile, and below 8 where p->reach is less than 2.5. Else 1.
+ */
+MCS_API float mcs_region_share(const mcs_product *p, const mcs_reflection *r);
 #endif
 
 /* ==== [reservoir] one or k of the candidates that come along ========================================================
@@ -10855,12 +10869,23 @@ MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k) {
     const size_t n = mcsi_region_tiles(g);
     return k < n ? mcsi_visibility(MCSI_READ(float, g, sizeof *g) + n, g->rows, k) : 0.0f;
 }
+/* Tiles that a lobe of these alphas covers, seen from above. */
+MCSI_CORE float mcsi_tiles_of_lobe(uint32_t rows, float alpha_x, float alpha_y) {
+    const float ax = mcsi_min(mcsi_max(alpha_x, 1e-4f), 1e4f);
+    const float ay = mcsi_min(mcsi_max(alpha_y, 1e-4f), 1e4f);
+    return (float)(2 * rows * rows) * ax * ay;
+}
 MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r) {
-    const float ax = mcsi_min(mcsi_max(r->alpha_x, 1e-4f), 1e4f);
-    const float ay = mcsi_min(mcsi_max(r->alpha_y, 1e-4f), 1e4f);
-    const float tiles = (float)mcsi_region_tiles(g) * ax * ay;
+    const float tiles = mcsi_tiles_of_lobe(g->rows, r->alpha_x, r->alpha_y);
     if (r->matte > 0.0f || tiles >= 8.0f) return 1;
     return tiles >= 1.0f && 2.0f * g->through <= g->rays;
+}
+MCS_API float mcs_region_share(const mcs_product *p, const mcs_reflection *r) {
+    const int wide_x = mcsi_tiles_of_lobe(p->rows, r->alpha_x, r->alpha_x) >= 64.0f;
+    const int wide_y = mcsi_tiles_of_lobe(p->rows, r->alpha_y, r->alpha_y) >= 64.0f;
+    if (r->matte >= 1.0f || (wide_x && wide_y)) return 0.125f;
+    const float tiles = mcsi_tiles_of_lobe(p->rows, r->alpha_x, r->alpha_y);
+    return r->matte > 0.0f || tiles >= 8.0f || (tiles >= 1.0f && p->reach >= 2.5f) ? 1.0f : 0.0f;
 }
 
 /* ---- [product] building ---- */
@@ -10873,28 +10898,33 @@ MCS_FN void mcsi_product_see(mcs_product *p, const mcs_tiles *t, const mcs_regio
     if (g) mcsi_see_n(g->rows, MCSI_READ(float, g, sizeof *g) + n, light, seen);
     else MCSI_COPY(seen, light, n * sizeof *seen);
 }
-MCSI_CORE float mcsi_sum_of_products(const float *a, const float *b, size_t n) {
-    float sum = 0.0f;
-    for (size_t k = 0; k < n; k++) sum += a[k] * b[k];
-    return sum;
-}
 /* Fewer points, which have decayed, count as none: sums of their squares have lost digits. */
 #define MCSI_REGION_POINTS_LEAST 1e-20f
-/* Values of the tiles: the reflections of the region. */
-MCS_FN void mcsi_product_reflect(mcs_product *p, const mcs_region *g) {
+/* Values of the tiles: the reflections of the region. And its reach: of the light reflected V comes through, L V f over
+ * L f; of what is drawn in proportion to L V f it is L V^2 f over L V f. */
+MCS_FN void mcsi_product_reflect(mcs_product *p, const mcs_tiles *t, const mcs_region *g) {
     const size_t n = mcsi_region_tiles(g);
-    const float *square = MCSI_READ(float, g, sizeof *g);
+    const float *light = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light);
     const float *seen = MCSI_READ(float, p, p->at.light);
     float *value = MCSI_WRITE(float, p, p->at.value);
-    if (!(g->points > MCSI_REGION_POINTS_LEAST)) {
-        for (size_t k = 0; k < n; k++) value[k] = 1.0f;
-        return;
+    const int known = g->points > MCSI_REGION_POINTS_LEAST;
+    if (known) mcsi_region_values_n(g->points, n, MCSI_READ(float, g, sizeof *g), value);
+    float all_seen = 0.0f;
+    float all = 0.0f;
+    float through = 0.0f;
+    float twice = 0.0f;
+    for (size_t k = 0; k < n; k++) {
+        value[k] = known ? value[k] : 1.0f;
+        const float v = seen[k] * value[k];
+        all_seen += seen[k];
+        all += light[k] * value[k];
+        through += v;
+        twice += v * (seen[k] / mcsi_max(light[k], FLT_MIN));
     }
-    mcsi_region_values_n(g->points, n, square, value);
-    float light = 0.0f;
-    for (size_t k = 0; k < n; k++) light += seen[k];
-    const float mean = mcsi_sum_of_products(seen, value, n) / mcsi_max(light, FLT_MIN);
-    const float even = mcsi_max(0.2f * mean, MCSI_VALUE_LEAST);
+    const float some = mcsi_max(through, FLT_MIN);
+    p->reach = twice / some * (all / some);
+    if (!known) return;
+    const float even = mcsi_max(0.2f * (through / mcsi_max(all_seen, FLT_MIN)), MCSI_VALUE_LEAST);
     for (size_t k = 0; k < n; k++) value[k] += even;
 }
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
@@ -10943,7 +10973,7 @@ MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const 
     const mcs_status status = mcsi_product_start(p, bytes, t ? mcs_product_table_bytes(t->rows) : 0, t, e, g);
     if (status) return status;
     mcsi_product_see(p, t, g);
-    mcsi_product_reflect(p, g);
+    mcsi_product_reflect(p, t, g);
     mcsi_product_finish(p, t);
     return MCS_OK;
 }

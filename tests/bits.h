@@ -37,7 +37,7 @@
     X(env_sample_bits) X(env_pdf) X(env_invert) X(env_texel) X(env_weight) X(env_window_bytes) X(env_window_build) \
     X(env_window_sample) X(env_window_pdf) X(tiles_bytes) X(tiles_build) X(tiles_direction) X(tiles_of_texel) \
     X(tiles_of_direction) X(product_bytes) X(product_table_bytes) X(product_sample) X(product_pdf) X(product_texel) \
-    X(region_bytes) X(region_visibility) X(region_pays)
+    X(region_bytes) X(region_visibility) X(region_pays) X(region_share)
 #define BITS_HOST(X) \
     X(product_build) X(product_build_region) X(product_build_weights) X(region_start) X(region_add_point) \
     X(region_add_ray) X(region_merge) X(region_inherit) X(region_decay)
@@ -962,6 +962,18 @@ FN(region_pays) {
     r.alpha_x = 0.1f;
     r.alpha_y = 0.25f * IN(6); /* up to 12.8 tiles */
     PUT_WORD(1, (uint32_t)mcs_region_pays(m->region, &r));
+}
+FN(region_share) {
+    MAP;
+    mcs_reflection r = bits_reflection(in);
+    const mcs_product *p = m->product[BITS_SURFACES];
+    PUT(0, mcs_region_share(p, &r)), PUT(1, p->reach);
+    r.matte = 0;
+    r.alpha_x = 0.1f;
+    r.alpha_y = 0.25f * IN(6);
+    PUT(2, mcs_region_share(p, &r));
+    r.alpha_x = IN(6);
+    PUT(3, mcs_region_share(p, &r));
 }
 static uint64_t bits_region_room[2][1 + (16 + 16 * 2048) / 8];
 /* One of two regions of a case: of one point and some rays. */

@@ -395,6 +395,64 @@ static void check_one_point(const lobe *of, int hidden) {
     scene_free(&m);
 }
 
+/* What part I has of samples of the BRDF, in tiles of which there are 512, for tables of little and of much reach; and the
+ * reach itself, where f is 1. */
+static void check_share(void) {
+    static const struct {
+        float alpha_x, alpha_y, matte;
+        float little, much;
+    } cases[] = {{1, 1, 1, 0.125f, 0.125f},
+                 {0.01f, 0.01f, 1, 0.125f, 0.125f},
+                 {0.01f, 0.01f, 0.99f, 1, 1},
+                 {0.354f, 0.354f, 0, 0.125f, 0.125f},
+                 {0.354f, 0.353f, 0, 1, 1},
+                 {0.353f, 0.354f, 0, 1, 1},
+                 {0.5f, 0.4f, 0.5f, 0.125f, 0.125f},
+                 {0.1f, 0.157f, 0, 1, 1},
+                 {0.1f, 0.156f, 0, 0, 1},
+                 {0.156f, 0.1f, 0, 0, 1},
+                 {0.0443f, 0.0443f, 0, 0, 1},
+                 {0.0441f, 0.0441f, 0, 0, 0},
+                 {1, 0.001f, 0, 0, 0},
+                 {NAN, NAN, NAN, 0, 0}};
+    scene m = scene_make(ROOM, 64, 32, 16);
+    const surface s = surface_make(normals[4], local_wo(0.5, 0.1), lobes[2]);
+    const uint32_t n = count_of(&m);
+    for (int much = 0; much < 2; much++) {
+        learned l = region_make(&m);
+        for (uint32_t k = 0; k < 40 * n; k++) mcs_region_add_ray(l.g, k % n, !much || k % n < n / 4);
+        sampler d = table_of(&m, &s, &l, NULL);
+        double light = 0;
+        double through = 0;
+        double twice = 0;
+        for (uint32_t k = 0; k < n; k++) {
+            const double v = visibility_of(l.g, NULL, k);
+            const double of_tile = bundle_of(&m, k).light;
+            light += of_tile;
+            through += of_tile * v;
+            twice += of_tile * v * v;
+        }
+        const double reach = light * twice / (through * through);
+        CHECK((reach > 2.5) == much && fabs((double)d.p->reach - reach) <= 1e-3 * reach, "reach %g, not %g",
+              (double)d.p->reach, reach);
+        for (int i = 0; i < (int)(sizeof cases / sizeof *cases); i++) {
+            mcs_reflection r = s.r;
+            r.alpha_x = cases[i].alpha_x;
+            r.alpha_y = cases[i].alpha_y;
+            r.matte = cases[i].matte;
+            const float share = mcs_region_share(d.p, &r);
+            CHECK(share == (much ? cases[i].much : cases[i].little), "case %d, reach %g: %g", i, reach, (double)share);
+        }
+        mcs_reflection small = s.r;
+        small.alpha_x = small.alpha_y = 0.1f;
+        d.p->reach = 2.5f;
+        CHECK(mcs_region_share(d.p, &small) == 1, "reach 2.5");
+        sampler_free(&d);
+        region_free(&l);
+    }
+    scene_free(&m);
+}
+
 /* A product that is built with a region has the same values, of light that is dimmed by V. */
 static void check_dimmed(const lobe *of) {
     scene m = scene_make(ROOM, 96, 64, 16);
@@ -753,6 +811,7 @@ int main(int argc, char **argv) {
     if (mcst_case("merge")) check_merge();
     if (mcst_case("decay")) check_decay();
     if (mcst_case("whether it pays")) check_pays();
+    if (mcst_case("samples of the BRDF")) check_share();
     test_weights();
     mcst_group("region, one point");
     for (int i = 0; i < 8; i++) {

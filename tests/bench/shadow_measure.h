@@ -16,8 +16,10 @@ typedef struct {
     double rays[MEASURED];     /* shadow rays of one draw */
     double largest[MEASURED];  /* the largest sample over the answer of its region */
     double draw[MEASURED];     /* seconds of one draw without rays */
-    double paying[STAGES];     /* the share of regions that pay */
     double seconds[WORKS];
+    int small; /* the lobe */
+    double starts, builds[STAGE_2048],
+        learns[STAGE_2048]; /* shares of the regions that do, while they learn and draw */
 } result;
 
 typedef union {
@@ -33,6 +35,8 @@ typedef struct {
     mcs_pcg32 rng;
     strategy strategy[STRATEGIES];
     int pays[REGIONS][STAGES];                 /* mcs_region_pays, before the table of a stage is built */
+    int answer[REGIONS][STAGES];               /* what to do then: number of the strategy */
+    int running[REGIONS][STAGE_2048];          /* of one that learns while it draws */
     knowledge region[REGIONS], early[REGIONS]; /* from all rays, from 256 */
     knowledge whole, spare;
     product product[REGIONS][TECHNIQUES];
@@ -52,8 +56,9 @@ static setting setting_of(bench_case *c, int i, const point *p) {
 }
 /* The number of the strategy that number k is in region i. */
 static int chosen(const bench_case *c, int i, int k) {
-    if (c->strategy[k].how != PAID) return k;
-    return c->pays[i][k - PAYING] ? c->strategy[k].technique : MIS_POWER;
+    const strategy *s = &c->strategy[k];
+    if (s->how == ASKED) return c->answer[i][s->technique];
+    return s->how == RUNNING ? c->running[i][s->technique] : k;
 }
 
 /* ---- Training ---- */
@@ -80,10 +85,14 @@ static void build_table(bench_case *c, int i, int stage) {
         parts++;
     }
     const mcs_reflection r = coat_seen_from_above(&c->coat);
+    const mcs_product *p = &c->product[i][TABLE + stage].p;
     c->pays[i][stage] = mcs_region_pays(&c->region[i].g, &r);
     if (parts > 1) mcs_region_inherit(&c->region[i].g, &c->whole.g);
     mcs_product_build_region(&c->product[i][TABLE + stage].p, sizeof(product), c->map->tiles, c->map->table,
                              &c->region[i].g);
+    const float share = c->pays[i][stage] ? mcs_region_share(p, &r) : 0;
+    c->answer[i][stage] = MIS_POWER;
+    if (share > 0) c->answer[i][stage] = (share < 1 ? FEW : PAIR) + stage;
 }
 
 /* All regions learn side by side from the rays of their own samples, a table of the stage before paired with the BRDF;
@@ -110,6 +119,27 @@ static void train(bench_case *c) {
         }
         for (int i = 0; i < regions; i++) build_table(c, i, stage);
         if (stage == STAGE_256) memcpy(c->early, c->region, sizeof c->early);
+    }
+}
+
+/* What the regions do that learn while they draw. They begin by MIS and count their rays, but where these can be of no
+ * use: then mcs_region_pays says 0 before the first. After 32 they have points and a table. One that does not pay any
+ * more, or has no use for its table after 256 rays, gives up. None learns from more than 1024. */
+static void run_through(bench_case *c, result *out) {
+    const mcs_reflection r = coat_seen_from_above(&c->coat);
+    const double part = 1.0 / c->view->regions;
+    for (int i = 0; i < c->view->regions; i++) {
+        mcs_region_start(&c->spare.g, sizeof c->spare, c->map->tiles);
+        int learns = mcs_region_pays(&c->spare.g, &r);
+        for (int stage = 0; stage < STAGE_2048; stage++) {
+            const int pays = c->pays[i][stage];
+            const int builds = stage > 0 && learns && pays;
+            c->running[i][stage] = builds ? c->answer[i][stage] : MIS_POWER;
+            learns = learns && pays && (c->running[i][stage] != MIS_POWER || stage < STAGE_256);
+            if (builds) out->builds[stage] += part;
+            if (builds && stage == 1) out->starts += part;
+            if (learns && stage < STAGE_1024) out->learns[stage] += part;
+        }
     }
 }
 
@@ -177,8 +207,6 @@ static void summarise(bench_case *c, result *out) {
         if (k < PAYING) out->draw[k] = bench_spread_of(c->draw[k], regions).median;
         for (int i = 0; k >= PAYING && i < regions; i++) out->draw[k] += out->draw[chosen(c, i, k)] / regions;
     }
-    for (int k = 0; k < STAGES; k++)
-        for (int i = 0; i < regions; i++) out->paying[k] += (double)c->pays[i][k] / regions;
     for (int k = 0; k < WORKS; k++) out->seconds[k] = bench_spread_of(c->seconds[k], regions).median;
 }
 
@@ -219,15 +247,15 @@ static void do_work(bench_case *c, int i, work what) {
 /* Times draws at random points of a region, those of products at a point that these are built for; then all work. */
 static void time_region(bench_case *c, int i, const setting *s) {
     enum { DRAWS = 64, REPEATS = 16 };
-    float u[4 * DRAWS];
+    float u[5 * DRAWS];
     setting at[DRAWS];
-    for (int n = 0; n < 4 * DRAWS; n++) u[n] = mcs_pcg32_float(&c->rng);
+    for (int n = 0; n < 5 * DRAWS; n++) u[n] = mcs_pcg32_float(&c->rng);
     for (int n = 0; n < DRAWS; n++) at[n] = setting_of(c, i, any_point(c, i));
     for (int k = -PAYING; k < PAYING; k++) { /* the second round counts */
         const strategy *how = &c->strategy[k < 0 ? k + PAYING : k];
         float sum = 0;
         const double start = thread_seconds();
-        for (int n = 0; n < DRAWS; n++) sum += estimate(how->draws ? s : &at[n], how, u + 4 * n);
+        for (int n = 0; n < DRAWS; n++) sum += estimate(how->draws ? s : &at[n], how, u + 5 * n);
         if (k >= 0) c->draw[k][i] = (thread_seconds() - start) / DRAWS;
         bench_consume(1, &sum);
     }
@@ -244,7 +272,9 @@ static void measure(bench_case *c, result *out) {
     memset(c->largest, 0, sizeof c->largest);
     memset(c->mean, 0, sizeof c->mean);
     list_strategies(&c->coat, c->strategy);
+    out->small = lobe_is_small(&c->coat);
     train(c);
+    run_through(c, out);
     for (int i = 0; i < c->view->regions; i++) {
         for (int k = 0; k < TESTED; k++) {
             const setting s = setting_of(c, i, any_point(c, i));

@@ -13,27 +13,27 @@ typedef struct {
 static cost measured_cost(const result *r, const strategy *list, int k) {
     const strategy *s = &list[k];
     cost c = {r->variance[k], r->draw[k] + RAY * r->rays[k]};
+    if (!s->draws) return c;
     if (s->technique == PRODUCT) c.seconds += r->seconds[BUILD_PRODUCT] / s->draws;
     if (s->technique == PRODUCT_16) c.seconds += r->seconds[BUILD_PRODUCT_16] / s->draws;
     if (s->technique == LEARNED_256 || s->technique == LEARNED) c.seconds += r->seconds[BUILD_LEARNED] / s->draws;
     return c;
 }
-/* Of a region that learns from nothing while it draws, until it has sent 2048 rays: by the table of each stage until the
- * rays have doubled, with the price of learning and building. Where it is asked whether it pays, tables are built only
- * for regions that do, and nothing is learned where no region does before its first ray. */
+/* Of a region that learns from nothing while it draws, until it has sent 2048 rays: by the strategy of each stage until
+ * the rays have doubled, with the price of learning and building. Regions that are asked learn as run_through has it. */
 static cost online_cost(const result *r, const strategy *list, int first) {
-    const int asked = first == PAYING;
-    if (asked && !(r->paying[0] > 0)) return measured_cost(r, list, MIS_POWER);
-    cost sum = {0, TABLE_POINTS * r->seconds[ADD_POINT]};
+    const int asked = first == RUN;
+    cost sum = {0, (asked ? r->starts : 1) * TABLE_POINTS * r->seconds[ADD_POINT]};
     double draws = 0;
     for (int stage = 0; stage < STAGE_2048; stage++) {
         const int k = first + stage;
         const double rays = stage_rays(stage + 1) - stage_rays(stage);
         const double more = rays / r->rays[k];
         const cost one = measured_cost(r, list, k);
+        const double learning = rays / ADDED_RAYS * r->seconds[ADD_RAYS] + r->seconds[MERGE];
         sum.variance += more * one.variance;
-        sum.seconds += more * one.seconds + rays / ADDED_RAYS * r->seconds[ADD_RAYS] + r->seconds[MERGE];
-        sum.seconds += (asked ? r->paying[stage] : 1) * r->seconds[BUILD_TABLE];
+        sum.seconds += more * one.seconds + (asked ? r->learns[stage] : 1) * learning;
+        sum.seconds += (asked ? r->builds[stage] : 1) * r->seconds[BUILD_TABLE];
         draws += more;
     }
     sum.variance /= draws;
@@ -41,7 +41,9 @@ static cost online_cost(const result *r, const strategy *list, int first) {
     return sum;
 }
 static cost cost_of(const result *r, const strategy *list, int k) {
-    return k < MEASURED ? measured_cost(r, list, k) : online_cost(r, list, list[k].technique);
+    if (list[k].how == ONLINE) return online_cost(r, list, list[k].technique);
+    if (list[k].how == BY_LOBE) k = r->small ? MIS_POWER : LEARNED_ALONE;
+    return measured_cost(r, list, k);
 }
 static double gain_of(const result *r, const strategy *list, int k) {
     const cost mis = cost_of(r, list, MIS_POWER);
@@ -120,12 +122,13 @@ static void print_strategies(const report *p) {
                 {PAYING + STAGE_256, ""},
                 {PAYING + STAGE_LAST, "1.9 / 1"},
                 {PAYING_ONLINE, "1.7 / 1"},
-                {MIXED + STAGE_256, ""},
-                {MIXED + STAGE_LAST, ""},
-                {MIXED_ONLINE, ""},
+                {FEW + STAGE_256, ""},
+                {FEW + STAGE_LAST, ""},
+                {FEW_ONLINE, ""},
                 {PRODUCT_ALONE_16, ""},
                 {LEARNED_ALONE_256, ""},
-                {LEARNED_ALONE, "2.2 / 1"}};
+                {LEARNED_ALONE, ""},
+                {LEARNED_OR_MIS, "2.2 / 1"}};
     printf("\nGain over MIS in equal time, %.0f ns a ray: geometric mean / 5 %% quantile\n", 1e9 * RAY);
     printf("%-24s %6s %15s %9s %15s %10s %9s\n", "", "draws", "all maps", "aim", "from files", "ns a draw", "largest");
     for (size_t j = 0; j < sizeof rows / sizeof *rows; j++) {
@@ -145,8 +148,8 @@ static void print_strategies(const report *p) {
 
 /* What to choose where: the same gains with walls around and without, and how often a strategy loses to MIS. */
 static void print_choice(const report *p) {
-    static const int rows[] = {PRODUCT_ALONE, PAIR + STAGE_LAST, PAYING + STAGE_LAST,
-                               PAYING_ONLINE, PRODUCT_ALONE_16,  LEARNED_ALONE};
+    static const int rows[] = {PRODUCT_ALONE,    PAIR + STAGE_LAST, PAYING + STAGE_LAST, PAYING_ONLINE,
+                               PRODUCT_ALONE_16, LEARNED_ALONE,     LEARNED_OR_MIS};
     printf("\n%-24s %6s %17s %17s %17s %8s %12s\n", "gain: mean / 5 %", "draws", "spheres, leaves", "courtyard, room",
            "all maps", "slower", "by a tenth");
     for (size_t j = 0; j < sizeof rows / sizeof *rows; j++) {
@@ -162,10 +165,10 @@ static void print_choice(const report *p) {
 
 /* Geometric means over the configurations of one scene, map or material. */
 static void print_groups(const report *p) {
-    static const int columns[] = {PAIR + STAGE_LAST,  PAYING + STAGE_LAST, PAYING_ONLINE,
-                                  MIXED + STAGE_LAST, PRODUCT_ALONE_16,    LEARNED_ALONE};
-    printf("\n%-16s %14s %14s %14s %14s %14s %14s\n", "geometric means", "region + BRDF", "if it pays", "online",
-           "region or BRDF", "product x 16", "learned x 16");
+    static const int columns[] = {PAIR + STAGE_LAST, PAYING + STAGE_LAST, PAYING_ONLINE,
+                                  FEW + STAGE_LAST,  PRODUCT_ALONE_16,    LEARNED_ALONE};
+    printf("\n%-16s %14s %14s %14s %15s %14s %14s\n", "geometric means", "region + BRDF", "if it pays", "online",
+           "region + BRDF/8", "product x 16", "learned x 16");
     for (kind by = BY_SCENE; by < BY_SOURCE; by++) {
         for (int i = 0; i < p->count; i++) {
             const char *name = name_of(&p->result[i], by);

@@ -7,7 +7,7 @@
 
 /* Tables of a region are built at once, and whenever its rays have doubled: stage 0 knows of none, stage 1 of 32, stage 9
  * of 8192. */
-enum { STAGES = 10, STAGE_256 = 4, STAGE_2048 = 7, STAGE_LAST = STAGES - 1 };
+enum { STAGES = 10, STAGE_256 = 4, STAGE_1024 = 6, STAGE_2048 = 7, STAGE_LAST = STAGES - 1 };
 static int stage_rays(int k) { return k > 0 ? 16 << k : 0; }
 
 /* What samples are drawn from. Products of a point are built at each one, tables once per region and stage. */
@@ -25,10 +25,12 @@ typedef enum {
 /* Of samples from a technique and from the BRDF. */
 typedef enum {
     ONE,          /* one sample: from the BRDF with probability `share` */
-    PAIR_POWER,   /* one of each, power heuristic */
-    PAIR_BALANCE, /* one of each, balance heuristic */
-    PAID,         /* that of number `technique` where a region pays, else of MIS_POWER */
-    ONLINE        /* a region that learns while it draws: the strategies of stages, from number `technique` on */
+    PAIR_POWER,   /* a sample of the technique and `share` of the BRDF, 0 or 1 of them, by the power heuristic */
+    PAIR_BALANCE, /* the same by the balance heuristic */
+    ASKED,        /* what a region answers at stage `technique` */
+    RUNNING,      /* the same of one that learns while it draws, which may have given up */
+    ONLINE,       /* a region that learns while it draws: the strategies of stages, from number `technique` on */
+    BY_LOBE       /* LEARNED_ALONE; MIS_POWER where the lobe is small */
 } way;
 
 typedef struct {
@@ -39,7 +41,7 @@ typedef struct {
     float share;
 } strategy;
 
-/* PAIR, MIXED and PAYING are the first of STAGES each. */
+/* PAIR, FEW and PAYING are the first of STAGES each, RUN of STAGE_2048. */
 enum {
     MAP_ALONE,
     BRDF_ALONE,
@@ -50,45 +52,53 @@ enum {
     LEARNED_ALONE_256,
     LEARNED_ALONE,
     PAIR,
-    MIXED = PAIR + STAGES,
-    PAYING = MIXED + STAGES,
-    MEASURED = PAYING + STAGES,
+    FEW = PAIR + STAGES,
+    PAYING = FEW + STAGES,
+    RUN = PAYING + STAGES,
+    MEASURED = RUN + STAGE_2048,
     PAIR_ONLINE = MEASURED,
-    MIXED_ONLINE,
+    FEW_ONLINE,
     PAYING_ONLINE,
+    LEARNED_OR_MIS,
     STRATEGIES
 };
 
-/* Lists all strategies. How samples of a table are joined with those of the BRDF depends on the lobe: in pairs, by the
- * power heuristic where the lobe is smaller than a tile; in mixtures, with a share that is the larger, the narrower the
- * lobe; and where a region pays, that is the question of mcs_region_pays. */
+/* Whether all is a lobe that covers less than a tile, seen from above. */
+static int lobe_is_small(const coat *c) {
+    const mcs_reflection r = coat_seen_from_above(c);
+    return r.matte == 0 && 2 * TILES * TILES * r.alpha_x * r.alpha_y < 1;
+}
+/* Lists all strategies. Samples of a table are paired with as many of the BRDF, by the power heuristic where the lobe is
+ * small; or with an eighth of them. A region that is asked, by mcs_region_pays and mcs_region_share, takes one or the
+ * other, or MIS. */
 static void list_strategies(const coat *c, strategy *list) {
     static const strategy plain[] = {{"map", ONE, MAP, 0, 0},
                                      {"BRDF", ONE, BRDF, 0, 0},
-                                     {"MIS power", PAIR_POWER, MAP, 0, 0},
+                                     {"MIS power", PAIR_POWER, MAP, 0, 1},
                                      {"MIS one-sample", ONE, MAP, 0, 0.5f},
                                      {"product", ONE, PRODUCT, 1, 0},
                                      {"product", ONE, PRODUCT_16, 16, 0},
                                      {"product learned 256", ONE, LEARNED_256, 16, 0},
                                      {"product learned 8192", ONE, LEARNED, 16, 0}};
-    static const strategy online[] = {{"region + BRDF online", ONLINE, PAIR, 0, 0},
-                                      {"region or BRDF online", ONLINE, MIXED, 0, 0},
-                                      {"region if it pays online", ONLINE, PAYING, 0, 0}};
+    static const strategy joined[] = {{"region + BRDF online", ONLINE, PAIR, 0, 0},
+                                      {"region + BRDF/8 online", ONLINE, FEW, 0, 0},
+                                      {"region if it pays online", ONLINE, RUN, 0, 0},
+                                      {"product or MIS 8192", BY_LOBE, 0, 16, 0}};
     memcpy(list, plain, sizeof plain);
-    memcpy(list + PAIR_ONLINE, online, sizeof online);
-    const mcs_reflection r = coat_seen_from_above(c);
-    const float tiles = 2 * TILES * TILES * r.alpha_x * r.alpha_y; /* that the lobe covers, seen from above */
+    memcpy(list + PAIR_ONLINE, joined, sizeof joined);
+    const int small = lobe_is_small(c);
     for (int k = 0; k < STAGES; k++) {
         strategy *pair = &list[PAIR + k];
-        strategy *mixed = &list[MIXED + k];
+        strategy *few = &list[FEW + k];
+        *pair = (strategy){"", small ? PAIR_POWER : PAIR_BALANCE, TABLE + k, 0, 1};
+        *few = (strategy){"", PAIR_BALANCE, TABLE + k, 0, 0.125f};
+        list[PAYING + k] = (strategy){"", ASKED, k, 0, 0};
         snprintf(pair->name, sizeof pair->name, "region + BRDF %d", stage_rays(k));
-        snprintf(mixed->name, sizeof mixed->name, "region or BRDF %d", stage_rays(k));
-        list[PAYING + k] = (strategy){"", PAID, PAIR + k, 0, 0};
-        snprintf(list[PAYING + k].name, sizeof mixed->name, "region if it pays %d", stage_rays(k));
-        pair->technique = mixed->technique = TABLE + k;
-        pair->how = tiles < 1 && r.matte == 0 ? PAIR_POWER : PAIR_BALANCE;
-        mixed->how = ONE;
-        mixed->share = fmaxf((1 - r.matte) / (1 + sqrtf(tiles)), 0.1f);
+        snprintf(few->name, sizeof few->name, "region + BRDF/8 %d", stage_rays(k));
+        snprintf(list[PAYING + k].name, sizeof pair->name, "region if it pays %d", stage_rays(k));
+        if (k >= STAGE_2048) continue;
+        list[RUN + k] = (strategy){"", RUNNING, k, 0, 0};
+        snprintf(list[RUN + k].name, sizeof pair->name, "region that learns %d", stage_rays(k));
     }
 }
 
@@ -156,17 +166,19 @@ static drawn draw(const setting *s, const strategy *how, int from_brdf, const fl
     if (!from_brdf && !alone && d.value > 0) d.brdf = setting_pdf(s, BRDF, x.w);
     return d;
 }
-static float estimate(const setting *s, const strategy *how, const float u[4]) {
+static float estimate(const setting *s, const strategy *how, const float u[5]) {
     if (how->how == ONE) {
         const drawn d = draw(s, how, u[2] < how->share, u);
         return d.value > 0 ? d.value / mcs_mix_pdf(how->share, d.brdf, d.pdf) : 0;
     }
     float sum = 0;
     for (int from_brdf = 0; from_brdf < 2; from_brdf++) {
+        if (from_brdf && !(u[4] < how->share)) continue;
         const drawn d = draw(s, how, from_brdf, u + 2 * from_brdf);
         if (!(d.value > 0)) continue;
-        const float own = from_brdf ? d.brdf : d.pdf;
-        const float other = from_brdf ? d.pdf : d.brdf;
+        const float brdf = how->share * d.brdf;
+        const float own = from_brdf ? brdf : d.pdf;
+        const float other = from_brdf ? d.pdf : brdf;
         sum += d.value / own * (how->how == PAIR_POWER ? mcs_mis_power(own, other) : mcs_mis_balance(own, other));
     }
     return sum;
@@ -189,9 +201,11 @@ typedef struct {
 
 static void tally_add(tally *sum, const strategy *how, const look_up *l) {
     const double share = (double)how->share;
-    const double b = (double)l->pdf[BRDF];
-    const double p = share * b + (1 - share) * (double)l->pdf[how->technique];
-    sum->rays += l->weight * (how->how == ONE ? p : p + b);
+    const int one = how->how == ONE;
+    const double b = (one ? 1 : share) * (double)l->pdf[BRDF];
+    const double of_technique = (double)l->pdf[how->technique];
+    const double p = one ? share * b + (1 - share) * of_technique : of_technique;
+    sum->rays += l->weight * (one ? p : p + b);
     if (!l->through || !(p + b > 0)) return;
     double of_brdf = 0;
     if (how->how == PAIR_BALANCE) of_brdf = b / (p + b);
