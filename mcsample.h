@@ -2343,7 +2343,7 @@ MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
 MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r);
 /* How many samples of the BRDF are best paired with each of the region's table p. 1/8 where r is all matte or has a
  * lobe of 64 tiles or more by either alpha (0.354 with 16 rows): such a reflection the table knows well. 0, which is a
- * draw of the map in place of the table's, for a lobe below a tile, and below 8 where p->reach is less than 2.5. Else 1.
+ * draw of the map in place of the table's, for a lobe below a tile, and below 8 where p->reach is under 2.5. Else 1.
  */
 MCS_API float mcs_region_share(const mcs_product *p, const mcs_reflection *r);
 #endif
