@@ -2312,6 +2312,9 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *   256 rays     Give up where an answer is 0: it will hardly change.
  *   1024 rays    Learn no more.
  *
+ * Several draws at a point are best prepared there (mcs_product_build, which takes the region), but for lobes below a
+ * tile: of them MIS finds nearly as much for less.
+ *
  *   g          a region, in memory of yours like a product; it holds no pointers. Tiles and regions of another number
  *              of rows add nothing to it, and MCS_ASSERT tells them.
  *   points     Reflections above the surface; others are not added. Without any, f is 1.
