@@ -122,7 +122,7 @@ static vec3 reflect(lit_point *x, uint32_t estimates) {
         case COSINE: sum = add(sum, reflect_hemisphere(x, 1)); break;
         case BRDF: sum = add(sum, reflect_brdf(x, 0)); break;
         case MIS:
-            if (point_bounce_is_due(x)) sum = add(sum, reflect_brdf(x, 1));
+            if (point_bounce_is_due(x, x->hit->m->share)) sum = add(sum, reflect_brdf(x, 1));
             sum = add(sum, reflect_light(x, 1));
             break;
         default: sum = add(sum, reflect_light(x, 0)); /* ENVIRONMENT, ANGLE, AREA */

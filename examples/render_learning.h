@@ -23,11 +23,13 @@ enum {
 
 typedef struct {
     int object;
-    int learns;         /* 0: its rays are no longer asked for */
-    mcs_region *known;  /* the points, and rays of passes that are over */
-    mcs_region *fresh;  /* rays that wait */
-    mcs_product *table; /* built of `known`; NULL where nobody draws from it */
-    float tabulated;    /* rays when the table was built */
+    int learns;          /* 0: its rays are no longer asked for */
+    float share;         /* BRDF samples for each of the table */
+    mcs_reflection kind; /* of its material: what one point reflects */
+    mcs_region *known;   /* the points, and rays of passes that are over */
+    mcs_region *fresh;   /* rays that wait */
+    mcs_product *table;  /* built of `known`; NULL where nobody draws from it */
+    float tabulated;     /* rays when the table was built */
 } region;
 
 /* Regions 0 to OBJECTS - 1 are whole objects. They stand in where no probe fell. */
@@ -117,6 +119,8 @@ static void region_tabulate(const learning *regions, region *g) {
     if (!g->table) return;
     mcs_product_build_region(g->table, mcs_product_table_bytes(TILES), regions->light->tiles, regions->light->table,
                              g->known);
+    g->share = mcs_region_share(g->table, &g->kind);
+    if (!(g->share > 0)) g->share = 1; /* where MIS may do better */
 }
 
 /* Looks at points all over the picture: each makes the region that it lies in, and is added to it if that has too few.
@@ -134,6 +138,7 @@ static int learning_probe(learning *regions, const scene *s, uint32_t probes) {
         region *g = &regions->list[*number ? *number : hit.object];
         if (g->known->points >= POINTS) continue;
         const mcs_reflection r = reflection_of(&hit);
+        g->kind = regions->list[hit.object].kind = r;
         mcs_region_add_point(g->known, regions->light->tiles, regions->light->table, &r);
         mcs_region_add_point(regions->list[hit.object].known, regions->light->tiles, regions->light->table, &r);
     }

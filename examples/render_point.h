@@ -27,9 +27,8 @@ static bounce point_bounce(const lit_point *x) {
     return material_sample(x->hit->m, x->hit->wo, u_choice, u1, u2);
 }
 
-/* Whether one BRDF sample is due, of which there are m->share for each light sample. */
-static int point_bounce_is_due(lit_point *x) {
-    const float share = x->hit->m->share;
+/* Whether one BRDF sample is due, of which there are `share` for each light sample. */
+static int point_bounce_is_due(lit_point *x, float share) {
     if (share < 1 && !(mcs_pcg32_float(x->rng) < share)) return 0;
     x->drawn++;
     return 1;

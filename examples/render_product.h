@@ -84,15 +84,15 @@ static vec3 region_bounce(const lit_point *x, const mcs_product *table) {
     const mcs_texel t = mcs_product_texel(table, x->e->tiles, x->e->table, w);
     if (point_learns(x)) point_tell(x, t, through);
     if (!through) return black;
-    const float share = x->hit->m->share;
+    const float share = x->region->share;
     return scale(mcs_mis_balance(share * b.pdf, t.pdf) / share, mul(b.weight, radiance_at(x->e, t.col, t.row)));
 }
 
 static vec3 reflect_region(lit_point *x, uint32_t samples) {
     const mcs_product *table = x->region->table;
-    vec3 sum = product_sum(x, table, samples, x->hit->m->share);
+    vec3 sum = product_sum(x, table, samples, x->region->share);
     for (uint32_t i = 0; i < samples; i++)
-        if (point_bounce_is_due(x)) sum = add(sum, region_bounce(x, table));
+        if (point_bounce_is_due(x, x->region->share)) sum = add(sum, region_bounce(x, table));
     return sum;
 }
 
