@@ -499,6 +499,8 @@ static void fuzz_product(const mcs_env *e, bytes *b) {
         : kind == 1 ? mcs_product_build_region(p, mcs_product_table_bytes(16), t, e, g)
                     : mcs_product_build(p, product_size, t, e, &r, kind == 2 ? g : NULL);
     MUST(s == MCS_OK && (kind != 1 || !p->dark));
+    const float share = mcs_region_share(p, &r);
+    MUST(p->reach >= 0 && p->reach <= 1.001e4f && (share == 0 || share == 0.125f || share == 1));
     draw_product(p, t, e, take_u8(b) % 40, b);
     free(g);
     free(p);

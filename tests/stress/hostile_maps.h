@@ -409,6 +409,9 @@ static void check_product(const part_of *q, const mcs_tiles *tiles, uint64_t *st
         : kind == 1 ? mcs_product_build_region(p, bytes, tiles, q->e, g)
                     : mcs_product_build(p, bytes, tiles, q->e, &r, kind == 2 ? g : NULL);
     CHECK(s == MCS_OK && arena_intact(&m) && (kind != 1 || !p->dark), "product: status %d", (int)s);
+    const float share = mcs_region_share(p, &r);
+    CHECK(share == 0 || share == 0.125f || share == 1, "share %a", (double)share);
+    CHECK(p->reach >= 0 && p->reach <= (kind == 1 ? 1.001e4f : 0), "reach %a", (double)p->reach);
     if (mcst_mix(state) % 4 == 0) p->brdf_share = 0; /* as the header allows */
     for (size_t k = 0; k < DRAWS; k++) check_draw_of_product(q, p, tiles, sane, state, t);
     check_arrays_of_product(q, p, tiles, state, count, t);
