@@ -395,8 +395,8 @@ static void check_one_point(const lobe *of, int hidden) {
     scene_free(&m);
 }
 
-/* What part I has of samples of the BRDF, in tiles of which there are 512, for tables of little and of much reach; and the
- * reach itself, where f is 1. */
+/* What part I has of samples of the BRDF, in tiles of which there are 512, for tables of little and of much reach. And
+ * the reach itself, where f is 1. */
 static void check_share(void) {
     static const struct {
         float alpha_x, alpha_y, matte;

@@ -21,7 +21,7 @@
  *                  has not seen, with the rays of the regions that are measured.
  *   online         A region begins without rays; its tables are built anew whenever these have doubled, until 2048
  *                  rays: the variance is the mean over all samples, the seconds are those of learning and building,
- *                  too.
+ *                  too. "If it pays" learns as part I has it: not where it cannot pay, and not after 1024 rays.
  *   largest        sample over the answer of its region */
 #define _POSIX_C_SOURCE 200809L
 #include "shadow_report.h"

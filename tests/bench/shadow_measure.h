@@ -17,9 +17,11 @@ typedef struct {
     double largest[MEASURED];  /* the largest sample over the answer of its region */
     double draw[MEASURED];     /* seconds of one draw without rays */
     double seconds[WORKS];
-    int small; /* the lobe */
-    double starts, builds[STAGE_2048],
-        learns[STAGE_2048]; /* shares of the regions that do, while they learn and draw */
+    int small; /* whether the lobe is */
+    /* Shares of the regions that learn while they draw: how many get points, build a table at a stage, learn in it. */
+    double starts;
+    double builds[STAGE_2048];
+    double learns[STAGE_2048];
 } result;
 
 typedef union {
@@ -85,11 +87,10 @@ static void build_table(bench_case *c, int i, int stage) {
         parts++;
     }
     const mcs_reflection r = coat_seen_from_above(&c->coat);
-    const mcs_product *p = &c->product[i][TABLE + stage].p;
+    mcs_product *p = &c->product[i][TABLE + stage].p;
     c->pays[i][stage] = mcs_region_pays(&c->region[i].g, &r);
     if (parts > 1) mcs_region_inherit(&c->region[i].g, &c->whole.g);
-    mcs_product_build_region(&c->product[i][TABLE + stage].p, sizeof(product), c->map->tiles, c->map->table,
-                             &c->region[i].g);
+    mcs_product_build_region(p, sizeof(product), c->map->tiles, c->map->table, &c->region[i].g);
     const float share = c->pays[i][stage] ? mcs_region_share(p, &r) : 0;
     c->answer[i][stage] = MIS_POWER;
     if (share > 0) c->answer[i][stage] = (share < 1 ? FEW : PAIR) + stage;

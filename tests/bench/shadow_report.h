@@ -20,7 +20,7 @@ static cost measured_cost(const result *r, const strategy *list, int k) {
     return c;
 }
 /* Of a region that learns from nothing while it draws, until it has sent 2048 rays: by the strategy of each stage until
- * the rays have doubled, with the price of learning and building. Regions that are asked learn as run_through has it. */
+ * the rays have doubled, with the price of learning and building. Regions that are asked learn as in run_through. */
 static cost online_cost(const result *r, const strategy *list, int first) {
     const int asked = first == RUN;
     cost sum = {0, (asked ? r->starts : 1) * TABLE_POINTS * r->seconds[ADD_POINT]};

@@ -68,9 +68,9 @@ static int lobe_is_small(const coat *c) {
     const mcs_reflection r = coat_seen_from_above(c);
     return r.matte == 0 && 2 * TILES * TILES * r.alpha_x * r.alpha_y < 1;
 }
-/* Lists all strategies. Samples of a table are paired with as many of the BRDF, by the power heuristic where the lobe is
- * small; or with an eighth of them. A region that is asked, by mcs_region_pays and mcs_region_share, takes one or the
- * other, or MIS. */
+/* Lists all strategies. Samples of a table are paired with as many of the BRDF, by the power heuristic where the lobe
+ * is small; or with an eighth of them. A region that is asked, by mcs_region_pays and mcs_region_share, takes one or
+ * the other, or MIS. */
 static void list_strategies(const coat *c, strategy *list) {
     static const strategy plain[] = {{"map", ONE, MAP, 0, 0},
                                      {"BRDF", ONE, BRDF, 0, 0},
