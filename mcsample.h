@@ -2976,12 +2976,15 @@ MCSI_CORE mcs_f mcsi_to_grid(mcs_f x, float step, float big, mcs_i *k) {
 #endif
 }
 
-/* A double rounded to the nearest integer. Where compilers may take the difference for x, it must be below 0, and what
- * is below -151 becomes -151. */
+/* A double rounded to the nearest integer, and what that leaves of it. Where compilers may take the difference for x,
+ * it must be below 0. Then -151 is the least integer, and what is below -152 leaves 0: its powers would overflow. */
 #if defined(MCSI_SUMS_MAY_MOVE) || MCSI_FLT_EVAL == 2
 #define MCSI_ROUND_D(x) MCSI_INT_WIDEN(MCSI_TRUNC_D(MCSI_MAX_D(x, -151.0) - 0.5))
+#define MCSI_LEFT_D(x, rounded) \
+    (((x) - (rounded)) * MCSI_WIDEN(mcsi_sel(MCSI_NARROW(x) < -152.0f, mcs_set(0.0f), mcs_set(1.0f))))
 #else
 #define MCSI_ROUND_D(x) (((x) + 6755399441055744.0) - 6755399441055744.0)
+#define MCSI_LEFT_D(x, rounded) ((x) - (rounded))
 #endif
 
 /* ---- angles, in turns ---- */
@@ -3150,7 +3153,7 @@ MCSI_CORE mcs_f mcsi_pow_unit(mcs_f x, mcs_f n, double plus, int root, mcs_f *qu
     const mcsi_d y = root ? log2_x * (1.0 / e) : log2_x * e;
     const mcsi_d whole = MCSI_ROUND_D(y);
     const mcs_i j = MCSI_TRUNC_D(root ? whole : MCSI_MAX_D(whole, -126.0));
-    const mcsi_d r = y - whole;
+    const mcsi_d r = MCSI_LEFT_D(y, whole);
     mcsi_d even, odd;
     mcsi_exp2_parts(&r, &even, &odd);
     const mcs_f two_to_r = MCSI_NARROW(even + odd);
@@ -11534,6 +11537,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_TRUNC_D
 #undef MCSI_MAX_D
 #undef MCSI_ROUND_D
+#undef MCSI_LEFT_D
 #undef MCSI_REQUIRE
 #undef MCSI_LOOP
 #undef MCSI_TARGET

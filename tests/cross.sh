@@ -149,6 +149,14 @@ int main(int argc, char **argv) {
             below += mcs_env_sample((const mcs_env *)(const void *)room, 0.5f, ((float)k + 0.5f) / 1000).w.z < 0;
         CHECK(below == 500, "%d of 1000 below the equator", below);
     }
+    if (mcst_case("powers that are 0 in floats")) {
+        volatile float e, x;
+        for (e = 1e5f; e <= 1e9f; e *= 10)
+            for (x = 0; x < 0.9f; x += 0.125f) {
+                const float pdf = mcs_power_pdf(e, x), u = mcs_evenpower_invert(e, x);
+                CHECK(pdf == 0 && u == 0.5f, "%g^%g: density %g, inverse %g", (double)x, (double)e, (double)pdf, (double)u);
+            }
+    }
     for (i = 0; i < MCST_NROWS; i++) {
         const mcst_row *row = &mcst_rows[i];
         if (!mcst_case("%s", row->name)) continue;
