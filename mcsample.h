@@ -2909,8 +2909,8 @@ MCSI_CORE mcs_f mcsi_with_sign(mcs_f magnitude, mcs_f sign) {
 }
 #endif
 
-/* x as a float in memory holds it. Where expressions keep more digits (x87), compilers leave them to variables as
- * well. */
+/* x as a float or a double in memory holds it. Where expressions keep more digits (x87), compilers leave them to
+ * variables as well, until one happens to be stored. */
 MCSI_CORE mcs_f mcsi_stored(mcs_f x) {
 #if MCSI_FLT_EVAL == 2
     volatile float memory = x;
@@ -2919,6 +2919,16 @@ MCSI_CORE mcs_f mcsi_stored(mcs_f x) {
     return x;
 #endif
 }
+#if MCSI_W == 1
+MCSI_CORE double mcsi_stored_d(double x) {
+#if MCSI_FLT_EVAL == 2
+    volatile double memory = x;
+    return memory;
+#else
+    return x;
+#endif
+}
+#endif
 
 /* x / y for x >= 0 and y > 0, but FLT_MAX where that would overflow. */
 MCSI_CORE mcs_f mcsi_quotient(mcs_f x, mcs_f y) {
@@ -7861,7 +7871,7 @@ MCSI_CORE void mcsi_runs_get(float *w, const uint32_t *words, size_t quarter) {
 }
 MCSI_CORE void mcsi_runs_add(mcsi_runs *r, const float *w) {
     MCSI_UNROLL
-    for (int k = 0; k < 4; k++) r->sum[k] += (double)w[k];
+    for (int k = 0; k < 4; k++) r->sum[k] = mcsi_stored_d(r->sum[k] + (double)w[k]);
     MCSI_UNROLL
     for (int k = 0; k < 4; k++) r->seen[k] += w[k] > 0.0f;
 }
@@ -7872,16 +7882,18 @@ MCSI_CORE double mcsi_runs_restart(mcsi_runs *r, uint32_t *some) {
         const uint32_t seen = r->seen[k];
         r->before[k] = total;
         r->seen[k] = *some;
-        total += r->sum[k];
+        total = mcsi_stored_d(total + r->sum[k]);
         *some += seen;
         r->sum[k] = 0.0;
     }
     return total;
 }
 /* The cumulative sum where run k is: scale for the weights, and 1 for each that is not zero. No sum is above the total,
- * as rounding keeps the order, so that the product is below 2^31. */
+ * as rounding keeps the order, so that the product is below 2^31. For that a number has to be rounded alike wherever it
+ * is computed, so sums, scale and products are stored. */
 MCSI_CORE uint32_t mcsi_runs_sum(const mcsi_runs *r, int k, double scale) {
-    return r->seen[k] + (uint32_t)(int32_t)((r->before[k] + r->sum[k]) * scale);
+    const double sum = mcsi_stored_d(r->before[k] + r->sum[k]);
+    return r->seen[k] + (uint32_t)(int32_t)mcsi_stored_d(sum * scale);
 }
 /* Replaces the weights that the runs are at by cumulative sums. */
 MCSI_CORE void mcsi_runs_put(mcsi_runs *r, uint32_t *words, size_t quarter, double scale) {
@@ -7923,7 +7935,7 @@ MCS_FN double mcsi_sums_build(uint32_t *sums, uint32_t n) {
     }
     uint32_t end = n; /* of the entries that are not zero */
     while (!(mcsi_word_weight(sums + end - 1) > 0.0f)) end--;
-    const double scale = (double)(MCSI_ONE - some) / total;
+    const double scale = mcsi_stored_d((double)(MCSI_ONE - some) / total);
     for (uint32_t i = 0; i < quarter; i++) mcsi_runs_put(&r, sums + i, quarter, scale);
     for (uint32_t i = 4 * quarter; i < n; i++) {
         w[3] = mcsi_word_weight(sums + i);
@@ -8075,7 +8087,7 @@ MCS_FN mcsi_entry mcsi_entry_of_x(const mcs_pwc *t, float x) {
 MCS_FN float mcsi_below_one(double x) { return x < 0.99999994 ? (float)x : 0.99999994f; }
 /* (i + within)/n as a float that lies in cell i: rounding must not carry it into the next cell, which may be empty. */
 MCS_FN float mcsi_in_cell(uint32_t i, double within, uint32_t n) {
-    float x = mcsi_below_one(((double)i + within) / n);
+    float x = mcsi_stored(mcsi_below_one(((double)i + within) / n));
     while ((double)x * n >= (double)i + 1.0) x = mcsi_from_bits(mcsi_bits(x) - 1);
     while ((double)x * n < (double)i) x = mcsi_from_bits(mcsi_bits(x) + 1);
     return mcsi_min(x, 0.99999994f);
@@ -8429,9 +8441,9 @@ MCS_FN void mcsi_alias_weights(mcsi_column *c, const float *w, uint32_t n, doubl
     double sum = 0.0;
     for (uint32_t i = 0; i < n; i++) {
         const double v = some ? (double)mcsi_clean(w[i], &uncounted) : 1.0;
-        sum += v;
+        sum = mcsi_stored_d(sum + v);
         seen += v > 0.0;
-        const double share = some ? sum / total * (double)(all - some) : (double)seen * MCSI_ONE;
+        const double share = some ? mcsi_stored_d(sum / total * (double)(all - some)) : (double)seen * MCSI_ONE;
         uint64_t upto = (uint64_t)share;
         upto = upto < all - some ? upto : all - some; /* from 2^53 on, it may be rounded up to a double */
         upto = seen == last ? all : (some ? seen : 0) + upto;

@@ -94,7 +94,7 @@ x87() {
     for flags in "$ia32 -std=c99 -mno-sse" "$ia32 -std=gnu99 -mno-sse" "gcc -std=gnu99 -msse2"; do
         rm -f "$dir/bits.exe"
         # shellcheck disable=SC2086
-        try "x87: $flags" "" "oracle rng points tables:1000 tables_input:1000 env:maps env_input bits:adapters" $flags -O2 -mfpmath=387 $exact
+        try "x87: $flags" "" "oracle rng points tables:1000 tables_input:1000 env:maps env_input env_memory bits:adapters" $flags -O2 -mfpmath=387 $exact
         [ -e "$dir/bits.exe" ] || continue
         "$dir/bits.exe" --print >"$dir/bits.log" 2>&1
         grep '^mcs_' "$dir/bits.log" | sort >"$dir/bits.txt"
