@@ -8567,7 +8567,8 @@ MCSI_CORE mcs_vec3 mcsi_env_direction(const mcs_frame *f, const mcsi_env_point *
     return mcsi_to_world(f, mcsi_vec3(sine * c, sine * s, mcsi_from_bits(mcsi_bits(1.0f - t) ^ south)));
 }
 /* off_pole: 1 - |cos(theta)|, with the sign of cos(theta); 4 for a bad direction. polar: angle to the nearer pole, in
- * turns, to 2e-7; only a guess for directions whose length is not 1. azimuth: in turns, 0 to 1. */
+ * turns, to 2e-7; only a guess for directions whose length is not 1. azimuth: in turns, 0 to 1. Those that decide on a
+ * texel are stored, as array forms have them in memory. */
 typedef struct {
     mcs_f off_pole, polar, azimuth;
 } mcsi_angles;
@@ -8578,9 +8579,9 @@ MCSI_CORE mcsi_angles mcsi_env_angles(const mcs_frame *f, mcs_vec3 w) {
     const mcs_f t = mcsi_min(from_pole, mcs_set(1.0f));
     const mcs_f p_3 = 0.00409757253f + t * (0.00172989792f + t * (-0.000359998172f + t * 0.000685489911f));
     mcsi_angles a;
-    a.off_pole = mcsi_sel(ok, mcsi_with_sign(from_pole, w.z), mcs_set(4.0f));
+    a.off_pole = mcsi_stored(mcsi_sel(ok, mcsi_with_sign(from_pole, w.z), mcs_set(4.0f)));
     a.polar = mcsi_sqrt(t) * (0.225078911f + t * 0.0187679399f + t * t * p_3); /* arcsine of sqrt(t/2), over pi */
-    a.azimuth = mcsi_atan2_turns(w.y, w.x);
+    a.azimuth = mcsi_stored(mcsi_atan2_turns(w.y, w.x));
     return a;
 }
 #if MCSI_W == 1

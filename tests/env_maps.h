@@ -85,7 +85,7 @@ static inline void load(const map *m) {
     for (uint32_t r = 0; r < m->h; r++) {
         row_angle[r] = solid_angle(r, m->w, m->h);
         for (uint32_t c = 0; c < m->w; c++) {
-            const float v = m->value(c, r, m->w, m->h);
+            const volatile float v = m->value(c, r, m->w, m->h); /* with the digits of a float: x87 keeps more */
             pixels[r * m->w + c] = v;
             total += prob[r * m->w + c] = v * row_angle[r];
         }
