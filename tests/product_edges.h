@@ -236,7 +236,7 @@ static void check_refused_products(const sampler *d) {
     CHECK(mcs_product_build(d->p, bytes, NULL, e, r, NULL) == MCS_ERR_ARG, "no tiles");
     CHECK(mcs_product_build(d->p, bytes, t, NULL, r, NULL) == MCS_ERR_ARG, "no map");
     CHECK(mcs_product_build(d->p, bytes, t, e, NULL, NULL) == MCS_ERR_ARG, "no reflection");
-    CHECK(mcs_product_build((mcs_product *)(void *)(d->mem.at + 4), bytes, t, e, r, NULL) == MCS_ERR_ARG, "misaligned");
+    CHECK(mcs_product_build((mcs_product *)(void *)(d->mem.at + 2), bytes, t, e, r, NULL) == MCS_ERR_ARG, "misaligned");
     CHECK(mcs_product_build_weights(d->p, bytes, t, e, NULL) == MCS_ERR_ARG, "no weights");
     CHECK(arena_intact(&d->mem), "refused arguments, yet wrote outside");
     CHECK(mcs_product_build(d->p, bytes, t, e, r, NULL) == MCS_OK, "the same again");
@@ -247,7 +247,7 @@ static void check_refused_tiles(const scene *m) {
     mcs_tiles *t = (mcs_tiles *)(void *)a.at;
     CHECK(mcs_tiles_build(NULL, a.bytes, env_of(m), m->rows) == MCS_ERR_ARG, "no memory");
     CHECK(mcs_tiles_build(t, a.bytes, NULL, m->rows) == MCS_ERR_ARG, "no map");
-    CHECK(mcs_tiles_build((mcs_tiles *)(void *)(a.at + 4), a.bytes, env_of(m), m->rows) == MCS_ERR_ARG, "misaligned");
+    CHECK(mcs_tiles_build((mcs_tiles *)(void *)(a.at + 2), a.bytes, env_of(m), m->rows) == MCS_ERR_ARG, "misaligned");
     CHECK(mcs_tiles_build(t, a.bytes - 1, env_of(m), m->rows) == MCS_ERR_MEMORY, "one byte too few");
     for (int i = 0; i < (int)(sizeof wrong / sizeof *wrong); i++)
         CHECK(mcs_tiles_bytes(env_of(m), wrong[i]) == 0 && mcs_product_bytes(wrong[i]) == 0 &&

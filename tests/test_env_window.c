@@ -257,7 +257,7 @@ static void test_refused_windows(void) {
         CHECK(mcs_env_window_build(m, i, env_in(&a), 3, 4, 18, 5) == MCS_ERR_MEMORY, "%zu of %zu bytes", i, need);
     CHECK(mcs_env_window_build(NULL, need, env_in(&a), 3, 4, 18, 5) == MCS_ERR_ARG, "no memory");
     CHECK(mcs_env_window_build(m, need, NULL, 3, 4, 18, 5) == MCS_ERR_ARG, "no map");
-    CHECK(mcs_env_window_build((mcs_env_window *)(void *)(b.at + 4), need, env_in(&a), 3, 4, 18, 5) == MCS_ERR_ARG,
+    CHECK(mcs_env_window_build((mcs_env_window *)(void *)(b.at + 2), need, env_in(&a), 3, 4, 18, 5) == MCS_ERR_ARG,
           "misaligned");
     CHECK(mcs_env_window_bytes(0) == 0 && mcs_env_window_bytes(65537) == 0 && mcs_env_window_bytes(0xffffffffu) == 0 &&
               mcs_env_window_bytes(65536) > 65536 * 4,

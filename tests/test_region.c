@@ -615,14 +615,14 @@ static void check_refused(void) {
     CHECK(mcs_region_start(g, a.bytes - 1, t) == MCS_ERR_MEMORY, "one byte too few");
     CHECK(mcs_region_start(NULL, a.bytes, t) == MCS_ERR_ARG && mcs_region_start(g, a.bytes, NULL) == MCS_ERR_ARG,
           "NULL");
-    CHECK(mcs_region_start((mcs_region *)(void *)(a.at + 4), a.bytes, t) == MCS_ERR_ARG, "misaligned");
+    CHECK(mcs_region_start((mcs_region *)(void *)(a.at + 2), a.bytes, t) == MCS_ERR_ARG, "misaligned");
     CHECK(mcs_product_build_region(p, b.bytes - 1, t, e, l.g) == MCS_ERR_MEMORY, "one byte too few");
     CHECK(mcs_product_build_region(NULL, b.bytes, t, e, l.g) == MCS_ERR_ARG &&
               mcs_product_build_region(p, b.bytes, NULL, e, l.g) == MCS_ERR_ARG &&
               mcs_product_build_region(p, b.bytes, t, NULL, l.g) == MCS_ERR_ARG &&
               mcs_product_build_region(p, b.bytes, t, e, NULL) == MCS_ERR_ARG,
           "NULL");
-    CHECK(mcs_product_build_region((mcs_product *)(void *)(b.at + 4), b.bytes, t, e, l.g) == MCS_ERR_ARG, "misaligned");
+    CHECK(mcs_product_build_region((mcs_product *)(void *)(b.at + 2), b.bytes, t, e, l.g) == MCS_ERR_ARG, "misaligned");
     arena c = arena_make(mcs_product_bytes(16));
     const surface s = surface_make(normals[4], local_wo(0.5, 0.1), lobes[2]);
     scene finer = scene_make(SUN, 64, 32, 32);
