@@ -91,7 +91,10 @@
  * Same bits     With -ffp-contract=off, which gcc's -std=c99 and -std=c11 imply, the scalar, wide and array forms give
  *               the same bits on every processor. Where the compiler may contract a*b + c, they differ by the rounding
  *               of single operations, and by more where those cancel; array forms are then up to 30 % faster.
- *               -ffast-math compiles, but bad input is not recognised.
+ *               -ffast-math compiles, but bad input is not recognised. The x87 unit keeps more digits than a float has
+ *               (compilers for i386 use it unless told otherwise, as by -msse2 -mfpmath=sse). Results are as accurate
+ *               and as finite there, and tables in integers as sound, but array forms may give other bits than scalar
+ *               ones.
  *
  * Exceptions    Good input raises no invalid operation, no division by zero and no overflow in any width, where the
  *               compiler adds none. gcc adds none; clang needs -ffp-exception-behavior=maytrap. Cosines have to be 0,
