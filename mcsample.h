@@ -7981,25 +7981,27 @@ MCSI_CORE void mcsi_guide_build(void *guide, uint32_t bytes, uint32_t shift, con
     mcsi_guide_put(guide, bytes, end, last);
 }
 
-/* The last i in [lo, hi] with sums[i] <= U. Requires sums[lo] <= U. Free of branches for up to 4 entries, which no
- * predictor could learn. */
-MCSI_CORE uint32_t mcsi_cdf_search(const uint32_t *sums, uint32_t n, uint32_t lo, uint32_t hi, uint32_t U) {
-    uint32_t left = hi - lo + 1;
-    if (left <= 4 && n >= 4) {
-        lo = lo < n - 4 ? lo : n - 4;
-        lo += (uint32_t)(sums[lo + 2] <= U) << 1;
-        return lo + (uint32_t)(sums[lo + 1] <= U);
-    }
-    for (; left > 1; left -= left / 2) lo += (left / 2) * (uint32_t)(sums[lo + left / 2] <= U);
+/* The last i in [lo, hi] with sums[i] <= U. Requires sums[lo] <= U. */
+MCSI_CORE uint32_t mcsi_cdf_search(const uint32_t *sums, uint32_t lo, uint32_t hi, uint32_t U) {
+    for (uint32_t left = hi - lo + 1; left > 1; left -= left / 2)
+        lo += (left / 2) * (uint32_t)(sums[lo + left / 2] <= U);
     return lo;
 }
-/* The entry that holds U, U < 2^31: of a table, or the row of a map or window (mcsi_window_draw_row). Columns are found
- * by mcsi_find_column, tiles by mcsi_shares_find. A search that returns the same entry leaves all bits as they are. */
+/* The entry that holds U, U < 2^31: of a table, or the row of a map or window (mcsi_window_draw_row). It mostly is one
+ * of four from the guide's on, among which it is found without branches, as no predictor could learn them. (size_t: see
+ * mcsi_cdf_mass.) Columns are found by mcsi_find_column, tiles by mcsi_shares_find. A search that returns the same
+ * entry leaves all bits as they are. */
 MCSI_CORE uint32_t mcsi_cdf_find(const mcsi_cdf *c, uint32_t U) {
+    const uint32_t *sums = c->sums;
     const size_t g = U >> c->shift;
     const uint32_t lo = mcsi_guide_get(c->guide, c->guide_bytes, g);
-    const uint32_t hi = mcsi_guide_get(c->guide, c->guide_bytes, g + 1);
-    return mcsi_cdf_search(c->sums, c->n, lo, hi, U);
+    if (c->n >= 4) {
+        size_t i = lo < c->n - 4 ? lo : c->n - 4;
+        i += (size_t)(sums[i + 2] <= U) << 1;
+        i += sums[i + 1] <= U;
+        if (U < sums[i + 1]) return (uint32_t)i;
+    }
+    return mcsi_cdf_search(sums, lo, mcsi_guide_get(c->guide, c->guide_bytes, g + 1), U);
 }
 /* The share of entry i. (size_t: i + 1 in 32 bits, which may wrap, would be an instruction more.) */
 MCSI_CORE uint32_t mcsi_cdf_mass(const mcsi_cdf *c, size_t i) { return c->sums[i + 1] - c->sums[i]; }
@@ -8588,20 +8590,21 @@ MCSI_CORE mcsi_angles mcsi_env_angles(const mcs_frame *f, mcs_vec3 w) {
     return a;
 }
 #if MCSI_W == 1
-/* Draws of a block, for array forms: what is left of each, the row's lists, the texel, and the members of
- * mcsi_env_point. */
+/* Draws of a block, for array forms: what is left of each, also as integers (U1, U2), the row's lists, which are NULL
+ * where there is nothing to search, the first of eight columns, the texel, and the members of mcsi_env_point. */
 enum { MCSI_ENV_BLOCK = 32, MCSI_ENV_FEW = 7 }; /* fewer are drawn one by one, which costs less */
 typedef struct {
     double rest1, rest2, density;
 } mcsi_draw; /* see "draws, in steps" */
 typedef struct {
-    mcsi_draw draw[MCSI_ENV_BLOCK];
+    double rest1[MCSI_ENV_BLOCK], rest2[MCSI_ENV_BLOCK], density[MCSI_ENV_BLOCK];
     const uint32_t *sums[MCSI_ENV_BLOCK];
     const uint16_t *guide[MCSI_ENV_BLOCK];
+    uint32_t U1[MCSI_ENV_BLOCK], U2[MCSI_ENV_BLOCK], first[MCSI_ENV_BLOCK];
     uint32_t in_col[MCSI_ENV_BLOCK], in_row[MCSI_ENV_BLOCK];
     float row_rest[MCSI_ENV_BLOCK], row_mass[MCSI_ENV_BLOCK], edge[MCSI_ENV_BLOCK], height[MCSI_ENV_BLOCK];
     float col[MCSI_ENV_BLOCK], col_rest[MCSI_ENV_BLOCK], col_mass[MCSI_ENV_BLOCK];
-    float x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK], z[MCSI_ENV_BLOCK], pdf[MCSI_ENV_BLOCK];
+    float pdf[MCSI_ENV_BLOCK];
 } mcsi_env_block;
 /* Angles of up to a block of directions, and their texels. */
 typedef struct {
@@ -8617,22 +8620,19 @@ MCSI_CORE mcs_frame mcsi_spread_frame(const mcsi_scalar_frame *f) {
     r.n = mcsi_spread(f->n);
     return r;
 }
-MCSI_LOOP void mcsi_env_directions_loop(const mcsi_scalar_frame *f, size_t n, mcsi_env_block *b, float turn,
-                                        float inner) {
+MCSI_LOOP void mcsi_env_directions_loop(const mcsi_scalar_frame *f, const mcsi_env_block *from, float turn, float inner,
+                                        const mcsi_batch *call) {
     const mcs_frame frame = mcsi_spread_frame(f);
-    for (size_t i = 0; i < n; i += MCSI_W) {
+    MCSI_EACH(b, call) {
         mcsi_env_point p;
-        p.row_rest = mcs_load(b->row_rest + i);
-        p.row_mass = mcs_load(b->row_mass + i);
-        p.edge = mcs_load(b->edge + i);
-        p.height = mcs_load(b->height + i);
-        p.col = mcs_load(b->col + i);
-        p.col_rest = mcs_load(b->col_rest + i);
-        p.col_mass = mcs_load(b->col_mass + i);
-        const mcs_vec3 v = mcsi_env_direction(&frame, &p, turn, inner);
-        mcs_store(b->x + i, v.x);
-        mcs_store(b->y + i, v.y);
-        mcs_store(b->z + i, v.z);
+        p.row_rest = mcs_load(from->row_rest + b.i);
+        p.row_mass = mcs_load(from->row_mass + b.i);
+        p.edge = mcs_load(from->edge + b.i);
+        p.height = mcs_load(from->height + b.i);
+        p.col = mcs_load(from->col + b.i);
+        p.col_rest = mcs_load(from->col_rest + b.i);
+        p.col_mass = mcs_load(from->col_mass + b.i);
+        mcsi_out_towards(&b, mcsi_env_direction(&frame, &p, turn, inner), mcs_load(from->pdf + b.i));
     }
 }
 /* The texel of a direction is that of its angles in texels, unless a border is so near that what they are off by may
@@ -8661,7 +8661,8 @@ MCSI_LOOP void mcsi_env_angles_loop(const mcsi_scalar_frame *f, float w, float h
 
 #if MCSI_W == 1
 /* By the widest loop that this processor has; defined behind the passes. */
-MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner);
+MCS_FN void mcsi_env_directions_n(const mcs_env *e, const mcsi_env_block *b, size_t n, float *x, float *y, float *z,
+                                  float *pdf);
 MCS_FN void mcsi_env_angles_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z,
                               mcsi_angles_block *angles);
 
@@ -9291,10 +9292,10 @@ MCSI_CORE double mcsi_window_row_density(const mcsi_window *r, uint32_t i) {
     return r->part ? density * ((double)MCSI_ONE / r->part[i].mass) : density;
 }
 /* The row for what is left of u2. */
-MCSI_CORE uint32_t mcsi_window_row(const mcsi_window *r, double rest2) {
+MCSI_CORE uint32_t mcsi_window_row(const mcsi_window *r, uint32_t U2) {
     mcsi_cdf rows = r->rows;
     rows.guide_bytes = sizeof(uint16_t); /* which a compiler does not know of a window behind a pointer */
-    return mcsi_cdf_find(&rows, (uint32_t)(int32_t)rest2);
+    return mcsi_cdf_find(&rows, U2);
 }
 /* The draw is from row i of the window: the rest of u2 goes to p. */
 MCSI_CORE void mcsi_window_draw_row(const mcsi_window *r, uint32_t i, mcsi_draw *d, mcsi_env_point *p) {
@@ -9319,44 +9320,40 @@ MCSI_CORE void mcsi_window_narrow(const mcsi_window *r, uint32_t i, mcsi_draw *d
 
 /* -- column: looked for in two steps, so that array forms can fetch memory between them -- */
 
-/* Where to look for the column of U: in [lo, hi], as two neighbouring guide entries tell. Probably it is one of the
- * eight from `first` on, around the place where linear interpolation expects it. */
-typedef struct {
-    uint32_t lo, hi, first;
-} mcsi_candidates;
-MCSI_CORE mcsi_candidates mcsi_candidate_columns(const mcsi_cdf *columns, uint32_t U) {
-    const uint32_t w = columns->n;
-    const uint32_t shift = columns->shift;
-    const size_t g = U >> shift;
-    mcsi_candidates c;
-    c.lo = mcsi_guide_get(columns->guide, sizeof(uint16_t), g);
-    c.hi = mcsi_guide_get(columns->guide, sizeof(uint16_t), g + 1);
+/* What the guide of a row of the map tells of U: this entry and the next one. */
+MCSI_CORE const uint16_t *mcsi_column_guide(const mcs_env *e, uint32_t row, uint32_t U) {
+    return mcsi_env_guide(e, row) + (U >> e->offset.col_shift);
+}
+/* The column of U probably is one of eight from this one on, around the place where linear interpolation between both
+ * entries expects it. */
+MCSI_CORE uint32_t mcsi_first_column(const uint16_t *guide, uint32_t w, uint32_t shift, uint32_t U) {
     const uint32_t rest = U & ((1u << shift) - 1);
-    const uint32_t expected = c.lo + (uint32_t)((uint64_t)rest * (c.hi - c.lo) >> shift);
-    const uint32_t first = expected < 4 ? 0 : expected - 4;
-    c.first = first + 8 < w ? first : w < 8 ? 0 : w - 8;
-    return c;
+    const uint32_t expected = guide[0] + (uint32_t)((uint64_t)rest * (uint32_t)(guide[1] - guide[0]) >> shift);
+    const uint32_t most = w < 8 ? 4 : w - 4;
+    const uint32_t middle = expected < most ? expected : most;
+    return (middle > 4 ? middle : 4) - 4;
 }
-/* Both ends of the eight are asked for at once, so that memory is waited for once. */
-MCSI_CORE uint32_t mcsi_find_column(const mcsi_cdf *columns, const mcsi_candidates *c, uint32_t U) {
-    const uint32_t *sums = columns->sums;
-    uint32_t col = c->first;
-    if (columns->n < 8 || U < sums[col] || U >= sums[col + 8])
-        return mcsi_cdf_search(sums, columns->n, c->lo, c->hi, U);
-    col += (uint32_t)(sums[col + 4] <= U) << 2;
-    col += (uint32_t)(sums[col + 2] <= U) << 1;
-    return col + (uint32_t)(sums[col + 1] <= U);
+/* Both ends of the eight are asked for at once, so that memory is waited for once. (size_t: see mcsi_cdf_mass.) */
+MCSI_CORE size_t mcsi_find_column(const uint32_t *sums, const uint16_t *guide, uint32_t w, size_t first, uint32_t U) {
+    if (w < 8 || U < sums[first] || U >= sums[first + 8]) return mcsi_cdf_search(sums, guide[0], guide[1], U);
+    size_t col = first;
+    col += (size_t)(sums[col + 4] <= U) << 2;
+    col += (size_t)(sums[col + 2] <= U) << 1;
+    return col + (sums[col + 1] <= U);
 }
-/* Chooses a column by u1, of which the rest goes to p. */
-MCSI_CORE uint32_t mcsi_draw_column(const mcsi_cdf *columns, const mcsi_candidates *c, mcsi_draw *d,
-                                    mcsi_env_point *p) {
-    const uint32_t col = mcsi_find_column(columns, c, (uint32_t)(int32_t)d->rest1);
-    const uint32_t mass = mcsi_cdf_mass(columns, col);
+/* Chooses a column of a row of the map by u1, of which the rest goes to p. */
+MCSI_CORE uint32_t mcsi_draw_column(const mcs_env *e, uint32_t row, mcsi_draw *d, mcsi_env_point *p) {
+    const uint32_t U = (uint32_t)(int32_t)d->rest1;
+    const uint32_t *sums = mcsi_env_sums(e, row);
+    const uint16_t *guide = mcsi_column_guide(e, row, U);
+    const uint32_t first = mcsi_first_column(guide, e->w, e->offset.col_shift, U);
+    const size_t col = mcsi_find_column(sums, guide, e->w, first, U);
+    const uint32_t mass = sums[col + 1] - sums[col];
     p->col = (float)(int32_t)col;
-    p->col_rest = (float)(d->rest1 - (int32_t)columns->sums[col]);
+    p->col_rest = (float)(d->rest1 - (int32_t)sums[col]);
     p->col_mass = (float)mass;
     d->density *= mass;
-    return col;
+    return (uint32_t)col;
 }
 
 /* -- constant maps: no tables are read -- */
@@ -9464,13 +9461,11 @@ MCSI_CORE mcs_texel mcsi_window_look_up(const mcs_env *e, const mcsi_window *r, 
 /* A point of a window that is not constant, and its texel. */
 MCSI_CORE mcsi_env_point mcsi_window_draw_point(const mcs_env *e, const mcsi_window *r, mcsi_draw *d, mcs_texel *x) {
     mcsi_env_point p;
-    const uint32_t i = mcsi_window_row(r, d->rest2);
+    const uint32_t i = mcsi_window_row(r, (uint32_t)(int32_t)d->rest2);
     mcsi_window_draw_row(r, i, d, &p);
     mcsi_window_narrow(r, i, d);
-    const mcsi_cdf columns = mcsi_env_columns(e, r->row0 + i);
-    const mcsi_candidates c = mcsi_candidate_columns(&columns, (uint32_t)(int32_t)d->rest1);
     x->row = r->row0 + i;
-    x->col = mcsi_draw_column(&columns, &c, d, &p);
+    x->col = mcsi_draw_column(e, x->row, d, &p);
     return p;
 }
 /* A constant map has no texels to choose from: they lie where the rounded directions do. */
@@ -9495,9 +9490,9 @@ MCSI_CORE mcs_texel mcsi_window_draw(const mcs_env *e, const mcsi_window *r, mcs
 
 #ifndef MCS_NO_BATCH
 /* ---- window: array forms ----
- * A block of 32 draws goes through in two stages, so that the cache misses of one stage overlap. block_row finds the
- * row of a draw and fetches its guide; block_columns fetches and searches the columns of all, then computes their
- * directions. */
+ * A block of 32 draws goes through every stage together: the row, what is stored of it, where to look for the column,
+ * the column, the direction. Each is a short loop, so that the processor works on many draws at once, and fetches the
+ * memory that the next one reads. */
 
 /* Results, of which any may be NULL. */
 typedef struct {
@@ -9518,75 +9513,111 @@ MCSI_CORE void mcsi_block_start(mcsi_env_block *b, size_t n) {
     MCSI_FILL(b, 0, sizeof *b);
     for (size_t k = n; k < MCSI_ENV_BLOCK; k++) b->row_mass[k] = b->col_mass[k] = 1.0f;
 }
-MCSI_CORE void mcsi_block_column(mcsi_env_block *b, size_t k, const mcsi_env_point *p, double density) {
-    b->col[k] = p->col;
-    b->col_rest[k] = p->col_rest;
-    b->col_mass[k] = p->col_mass;
-    b->pdf[k] = (float)density;
+/* Draw k of the block, from its start or from where a product leaves it. */
+MCSI_CORE void mcsi_block_draw(mcsi_env_block *b, size_t k, mcsi_draw d) {
+    b->rest1[k] = d.rest1;
+    b->rest2[k] = d.rest2;
+    b->density[k] = d.density;
+    b->U1[k] = (uint32_t)(int32_t)d.rest1;
+    b->U2[k] = (uint32_t)(int32_t)d.rest2;
 }
-/* Draw k of the block, from a row of the window that b->in_row[k] tells. */
-MCSI_CORE void mcsi_block_row(const mcs_env *e, const mcsi_window *r, mcsi_draw d, mcsi_env_block *b, size_t k) {
-    b->sums[k] = NULL; /* constant: there is nothing to search */
+#ifndef MCS_NO_WIDE
+/* What is left of four random numbers at the start. Returns 0 where one of them is not in [0, 1). */
+MCSI_CORE int mcsi_four_rests(const float *u, double *rest, uint32_t *U) {
+    mcsi4_f four;
+    MCSI_COPY(&four, u, sizeof four);
+    const mcsi4_i good = ((mcsi4_i)four >= 0) & ((mcsi4_i)four < 0x3f800000); /* the bits of 1 */
+    uint64_t both[2];
+    MCSI_COPY(both, &good, sizeof both);
+    if (~(both[0] & both[1])) return 0;
+    four *= 2147483648.0f;
+    const mcsi4_d wide = __builtin_convertvector(four, mcsi4_d);
+    const mcsi4_i whole = __builtin_convertvector(four, mcsi4_i);
+    MCSI_COPY(rest, &wide, sizeof wide);
+    MCSI_COPY(U, &whole, sizeof whole);
+    return 1;
+}
+#endif
+/* The first n draws of a block, by u1 and u2. */
+MCS_FN void mcsi_block_draws(mcsi_env_block *b, size_t n, const float *u1, const float *u2) {
+    size_t k = 0;
+#ifndef MCS_NO_WIDE
+    for (; k + 4 <= n; k += 4) {
+        if (!mcsi_four_rests(u1 + k, b->rest1 + k, b->U1 + k)) break;
+        if (!mcsi_four_rests(u2 + k, b->rest2 + k, b->U2 + k)) break;
+        b->density[k] = b->density[k + 1] = b->density[k + 2] = b->density[k + 3] = 1.0;
+    }
+#endif
+    for (; k < n; k++) mcsi_block_draw(b, k, mcsi_draw_start(u1[k], u2[k]));
+}
+/* What is stored of the row of draw k, which b->in_row[k] tells as one of the window. */
+MCSI_CORE void mcsi_block_row(const mcs_env *e, const mcsi_window *r, mcsi_env_block *b, size_t k) {
+    mcsi_draw d = mcsi_draw_make(b->rest1[k], b->rest2[k], b->density[k]);
     mcsi_env_point p;
     if (r->uniform) {
         p = mcsi_window_draw_uniform(e, r, &d);
-        mcsi_block_column(b, k, &p, d.density);
+        b->sums[k] = NULL; /* there is nothing to search */
+        b->col[k] = p.col;
+        b->col_rest[k] = p.col_rest;
+        b->col_mass[k] = p.col_mass;
+        b->pdf[k] = (float)d.density;
     } else {
         const uint32_t i = b->in_row[k];
         mcsi_window_draw_row(r, i, &d, &p);
-        mcsi_window_narrow(r, i, &d);
+        if (r->part) {
+            mcsi_window_narrow(r, i, &d);
+            b->rest1[k] = d.rest1;
+            b->U1[k] = (uint32_t)(int32_t)d.rest1;
+        }
+        b->density[k] = d.density;
         b->in_row[k] = r->row0 + i;
         b->sums[k] = mcsi_env_sums(e, r->row0 + i);
-        b->guide[k] = mcsi_env_guide(e, r->row0 + i);
-        b->draw[k] = d;
-        MCSI_PREFETCH(b->guide[k] + ((uint32_t)(int32_t)d.rest1 >> e->offset.col_shift));
+        b->guide[k] = mcsi_column_guide(e, r->row0 + i, b->U1[k]);
+        MCSI_PREFETCH(b->guide[k]);
     }
     b->row_rest[k] = p.row_rest;
     b->row_mass[k] = p.row_mass;
     b->edge[k] = p.edge;
     b->height[k] = p.height;
 }
-MCS_FN void mcsi_block_search(const mcs_env *e, mcsi_env_block *b, size_t n) {
-    mcsi_candidates c[MCSI_ENV_BLOCK];
-    mcsi_cdf columns = {NULL, NULL, 0, 0, sizeof(uint16_t)};
-    columns.n = e->w;
-    columns.shift = e->offset.col_shift;
+/* The columns of n draws. */
+MCS_FN void mcsi_block_columns(const mcs_env *e, mcsi_env_block *b, size_t n) {
+    const uint32_t w = e->w;
+    const uint32_t shift = e->offset.col_shift;
     for (size_t k = 0; k < n; k++) {
         if (!b->sums[k]) continue;
-        columns.guide = b->guide[k];
-        c[k] = mcsi_candidate_columns(&columns, (uint32_t)(int32_t)b->draw[k].rest1);
-        MCSI_PREFETCH(b->sums[k] + c[k].first);
-        MCSI_PREFETCH(b->sums[k] + c[k].first + 8);
+        b->first[k] = mcsi_first_column(b->guide[k], w, shift, b->U1[k]);
+        MCSI_PREFETCH(b->sums[k] + b->first[k]);
+        MCSI_PREFETCH(b->sums[k] + b->first[k] + 8);
     }
     for (size_t k = 0; k < n; k++) {
-        if (!b->sums[k]) continue;
-        columns.sums = b->sums[k];
-        mcsi_env_point p;
-        b->in_col[k] = mcsi_draw_column(&columns, &c[k], &b->draw[k], &p);
-        mcsi_block_column(b, k, &p, b->draw[k].density);
+        const uint32_t *sums = b->sums[k];
+        if (!sums) continue;
+        const size_t col = mcsi_find_column(sums, b->guide[k], w, b->first[k], b->U1[k]);
+        const uint32_t mass = sums[col + 1] - sums[col];
+        b->in_col[k] = (uint32_t)col;
+        b->col[k] = (float)(int32_t)col;
+        b->col_rest[k] = (float)(b->rest1[k] - (int32_t)sums[col]);
+        b->col_mass[k] = (float)mass;
+        b->pdf[k] = (float)(b->density[k] * mass);
     }
 }
-/* Full blocks have a constant size, which compilers copy by vectors: gcc copies so few bytes of another by `rep movs`,
- * which takes longer to start than to copy. */
-MCSI_CORE void mcsi_block_put(float *out, size_t first, const float *in, size_t n) {
-    if (!out) return;
-    if (n == MCSI_ENV_BLOCK) MCSI_COPY(out + first, in, MCSI_ENV_BLOCK * sizeof *out);
-    else MCSI_COPY(out + first, in, n * sizeof *out);
-}
-/* The other stage, of n draws; results go to out->x[first] and so on. */
-MCS_FN void mcsi_block_columns(const mcs_env *e, mcsi_env_block *b, size_t n, const mcsi_texels *out, size_t first) {
-    mcsi_block_search(e, b, n);
-    const int find_texels = !b->sums[0] && (out->col || out->row); /* of a constant map */
-    if (out->x || out->y || out->z || find_texels) mcsi_env_directions_n(&e->frame, n, b, e->turn, e->inner);
-    for (size_t k = 0; find_texels && k < n; k++) {
-        const mcsi_angles a = mcsi_env_angles(&e->frame, mcsi_vec3(b->x[k], b->y[k], b->z[k]));
+/* Of a constant map: the texels of the directions. */
+MCS_FN void mcsi_block_texels(const mcs_env *e, mcsi_env_block *b, size_t n) {
+    float x[MCSI_ENV_BLOCK], y[MCSI_ENV_BLOCK], z[MCSI_ENV_BLOCK];
+    mcsi_env_directions_n(e, b, n, x, y, z, NULL);
+    for (size_t k = 0; k < n; k++) {
+        const mcsi_angles a = mcsi_env_angles(&e->frame, mcsi_vec3(x[k], y[k], z[k]));
         b->in_row[k] = mcsi_env_row_at(e, a.off_pole, a.polar);
         b->in_col[k] = mcsi_env_col_at(e, a.azimuth);
     }
-    mcsi_block_put(out->x, first, b->x, n);
-    mcsi_block_put(out->y, first, b->y, n);
-    mcsi_block_put(out->z, first, b->z, n);
-    mcsi_block_put(out->pdf, first, b->pdf, n);
+}
+/* The last stages, of n draws; results go to out->x[first] and so on. */
+MCS_FN void mcsi_block_finish(const mcs_env *e, mcsi_env_block *b, size_t n, const mcsi_texels *out, size_t first) {
+    mcsi_block_columns(e, b, n);
+    mcsi_env_directions_n(e, b, n, out->x ? out->x + first : NULL, out->y ? out->y + first : NULL,
+                          out->z ? out->z + first : NULL, out->pdf ? out->pdf + first : NULL);
+    if (!b->sums[0] && (out->col || out->row)) mcsi_block_texels(e, b, n);
     if (out->col) MCSI_COPY(out->col + first, b->in_col, n * sizeof *out->col);
     if (out->row) MCSI_COPY(out->row + first, b->in_row, n * sizeof *out->row);
 }
@@ -9601,10 +9632,11 @@ MCS_FN void mcsi_window_draw_n(const mcs_env *e, const mcsi_window *r, size_t n,
     size_t m;
     for (size_t i = 0; i < n; i += m) {
         m = n - i < MCSI_ENV_BLOCK ? n - i : (size_t)MCSI_ENV_BLOCK;
-        for (size_t k = 0; k < m; k++) b.draw[k] = mcsi_draw_start(u1[i + k], u2[i + k]);
-        for (size_t k = 0; !r->uniform && k < m; k++) b.in_row[k] = mcsi_window_row(r, b.draw[k].rest2);
-        for (size_t k = 0; k < m; k++) mcsi_block_row(e, r, b.draw[k], &b, k);
-        mcsi_block_columns(e, &b, m, out, i);
+        mcsi_block_draws(&b, m, u1 + i, u2 + i);
+        if (!r->uniform)
+            for (size_t k = 0; k < m; k++) b.in_row[k] = mcsi_window_row(r, b.U2[k]);
+        for (size_t k = 0; k < m; k++) mcsi_block_row(e, r, &b, k);
+        mcsi_block_finish(e, &b, m, out, i);
     }
 }
 MCS_API void mcs_env_sample_n(const mcs_env *e, size_t n, const float *u1, const float *u2, float *x, float *y,
@@ -11227,10 +11259,11 @@ MCS_FN void mcsi_product_block_draw(mcsi_product_block *b, size_t n, const mcsi_
     mcsi_product_block_points(b, n);
     for (size_t k = 0; k < n; k++) {
         const mcsi_window window = mcsi_window_of(b->e, b->window[k]);
-        if (!window.uniform) b->of_map.in_row[k] = mcsi_window_row(&window, b->draw[k].rest2);
-        mcsi_block_row(b->e, &window, b->draw[k], &b->of_map, k);
+        mcsi_block_draw(&b->of_map, k, b->draw[k]);
+        if (!window.uniform) b->of_map.in_row[k] = mcsi_window_row(&window, b->of_map.U2[k]);
+        mcsi_block_row(b->e, &window, &b->of_map, k);
     }
-    mcsi_block_columns(b->e, &b->of_map, n, out, first);
+    mcsi_block_finish(b->e, &b->of_map, n, out, first);
 }
 
 /* -- densities -- */
@@ -12828,8 +12861,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #endif
 
 #ifdef MCSI_TABLES
-MCS_FN void mcsi_env_directions_n(const mcs_frame *f, size_t n, mcsi_env_block *b, float turn, float inner) {
-    MCSI_WIDE(n, env_directions_loop, (f, n, b, turn, inner));
+MCS_FN void mcsi_env_directions_n(const mcs_env *e, const mcsi_env_block *b, size_t n, float *x, float *y, float *z,
+                                  float *pdf) {
+    mcsi_batch call;
+    mcsi_batch_dir(&call, n, NULL, NULL, x, y, z, pdf);
+    MCSI_WIDE(n, env_directions_loop, (&e->frame, b, e->turn, e->inner, &call));
 }
 MCS_FN void mcsi_env_angles_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z,
                               mcsi_angles_block *angles) {

@@ -263,6 +263,27 @@ static void test_batch(void) {
     arena_free(&a);
 }
 
+/* One number that is bad, or an end, among good ones: all draws are as they are one by one. */
+static void test_odd_numbers(void) {
+    enum { N = 67 };
+    static const float odd[] = {1, 2, -0.5f, -1e-30f, -0.0f, 0, INFINITY, -INFINITY, NAN, 0.99999994f};
+    arena a = build(&maps[SKY]);
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 89);
+    for (size_t k = 0; k < 2 * N * sizeof odd / sizeof *odd; k++) {
+        float u[2][N], x[N], y[N], z[N], pdf[N];
+        mcs_pcg32_fill_n(&rng, N, u[0]);
+        mcs_pcg32_fill_n(&rng, N, u[1]);
+        u[k % 2][k / 2 % N] = odd[k / 2 / N];
+        mcs_env_sample_n(env_in(&a), N, u[0], u[1], x, y, z, pdf, NULL, NULL);
+        for (size_t i = 0; i < N; i++) {
+            const mcs_texel s = mcs_env_sample(env_in(&a), u[0][i], u[1][i]);
+            CHECK(x[i] == s.w.x && y[i] == s.w.y && z[i] == s.w.z && pdf[i] == s.pdf, "draw %zu, u%zu of %zu is %g", i,
+                  k % 2 + 1, k / 2 % N, (double)odd[k / 2 / N]);
+        }
+    }
+    arena_free(&a);
+}
+
 static void test_relocation(void) {
     enum { N = 20000 };
     static mcs_texel before[N];
@@ -317,6 +338,7 @@ int main(int argc, char **argv) {
     if (mcst_case("uniform in solid angle inside both caps of 4099 rows")) test_caps();
     mcst_group("env memory and batches");
     if (mcst_case("n = 0..67 and 2053, shifted, NULL outputs, in place, pdf_n")) test_batch();
+    if (mcst_case("odd numbers in arrays")) test_odd_numbers();
     if (mcst_case("moved by memcpy")) test_relocation();
     if (mcst_case("bytes a texel")) test_size();
     return mcst_finish();

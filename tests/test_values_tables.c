@@ -56,26 +56,37 @@ static void alias_of_many(void) {
     arena_free(&a);
 }
 
-/* The last i in [lo, hi] with cdf[i] <= U, for U on borders and between them. */
+/* The last i with sums[i] <= U, for U on borders and between them: among some entries, and by a guide. Half of the steps
+ * are small beside what an entry of the guide stands for, so that many entries share one. */
 static void searches(void) {
-    enum { N = 40 };
+    enum { N = 40, GUIDE = 2 * N };
     uint64_t seed = mcst_seed_for("cdf", "search", 0);
     for (int round = 0; round < 20000; round++) {
         const uint32_t n = 1 + (uint32_t)(mcst_mix(&seed) % N);
-        uint32_t cdf[N + 1];
-        cdf[0] = 0;
-        for (uint32_t i = 1; i <= n; i++)
-            cdf[i] = cdf[i - 1] + (uint32_t)(mcst_mix(&seed) % 4 ? mcst_mix(&seed) % 1000 : 0);
-        if (cdf[n] == 0) continue;
+        uint32_t sums[N + 1];
+        sums[0] = 0;
+        for (uint32_t i = 1; i <= n; i++) {
+            const uint32_t most = mcst_mix(&seed) % 2 ? 1000 : MCSI_ONE / N;
+            sums[i] = sums[i - 1] + (uint32_t)(mcst_mix(&seed) % 4 ? mcst_mix(&seed) % most : 0);
+        }
+        if (mcst_mix(&seed) % 2) sums[n] = sums[n - 1] + 1; /* the last entry is small, too: those before it move up */
+        for (uint32_t i = n, gap = MCSI_ONE - sums[n]; i > mcst_mix(&seed) % n; i--) sums[i] += gap;
+        uint32_t guide[GUIDE + 1];
+        const uint32_t shift = mcsi_guide_shift(n, 1);
+        CHECK(mcsi_guide_length(shift) <= GUIDE + 1, "a guide of %u for %u", mcsi_guide_length(shift), n);
+        mcsi_guide_build(guide, sizeof *guide, shift, sums, n);
         uint32_t U;
-        do U = mcst_mix(&seed) % 2 ? cdf[mcst_mix(&seed) % (n + 1)] : (uint32_t)(mcst_mix(&seed) % cdf[n]);
-        while (U >= cdf[n]);
+        do U = mcst_mix(&seed) % 2 ? sums[mcst_mix(&seed) % (n + 1)] : (uint32_t)(mcst_mix(&seed) % MCSI_ONE);
+        while (U >= MCSI_ONE);
         uint32_t want;
-        for (want = n; cdf[want] > U;) want--;
+        for (want = n; sums[want] > U;) want--;
         const uint32_t lo = (uint32_t)(mcst_mix(&seed) % (want + 1));
         const uint32_t hi = want + (uint32_t)(mcst_mix(&seed) % (n - want));
-        const uint32_t i = mcsi_cdf_search(cdf, n, lo, hi, U);
+        const uint32_t i = mcsi_cdf_search(sums, lo, hi, U);
         CHECK(i == want, "%u in [%u, %u] of %u: %u, not %u", U, lo, hi, n, i, want);
+        const mcsi_cdf c = {sums, guide, n, shift, sizeof *guide};
+        const uint32_t found = mcsi_cdf_find(&c, U);
+        CHECK(found == want, "%u by the guide of %u: %u, not %u", U, n, found, want);
     }
 }
 
