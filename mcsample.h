@@ -76,7 +76,9 @@
  *               and reads and writes n numbers of each. A result may be NULL and is then left out. A result may be the
  *               array of an input. BRDFs take one material and one wo for all n; X_hits_n takes a wo, and parameters
  *               of the material, for each. The widest unit of the processor is found at run time; mcs_lanes tells it.
- *               Calls of few points take a narrower one, at about the price of as many calls of X or less.
+ *               Calls of few points take a narrower one, at about the price of as many calls of X or less. Results of
+ *               2^21 points and more go past the caches where a unit of 16 lanes writes arrays that begin at multiples
+ *               of 64 bytes, which takes up to half of the time.
  *
  * Lanes         mcs4_X, mcs8_X and mcs16_X do for 4, 8 and 16 points what mcs_X does for one. MCS_PACKETS asks for
  *               them: 8 gives those of 4 and of 8 lanes. They exist for mcs_u01, mcs_u01_open, mcs_sobol,
@@ -2675,18 +2677,6 @@ MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const fl
     b->n = n;
     b->i = 0;
 }
-MCS_FN void mcsi_batch_sample1(mcsi_batch *b, size_t n, const float *u, float *x, float *pdf) {
-    mcsi_batch_start(b, n, u, NULL, NULL);
-    b->out[0] = x;
-    b->out[1] = pdf;
-}
-MCS_FN void mcsi_batch_sample2(mcsi_batch *b, size_t n, const float *u1, const float *u2, float *x, float *y,
-                               float *pdf) {
-    mcsi_batch_start(b, n, u1, u2, NULL);
-    b->out[0] = x;
-    b->out[1] = y;
-    b->out[2] = pdf;
-}
 MCS_FN void mcsi_batch_dir(mcsi_batch *b, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
                            float *pdf) {
     mcsi_batch_start(b, n, u1, u2, NULL);
@@ -3389,6 +3379,7 @@ MCSI_CORE mcs_vec3 mcsi_spread_direction(mcsi_scalar_vec3 w) {
  * that has its members in registers. */
 #define MCSI_EACH(b, call) for (mcsi_batch b = *(call); b.i < b.n; b.i += MCSI_W)
 #if MCSI_W == 1
+#define MCSI_LONG(n) __builtin_expect((n) >= (size_t)1 << 21, 0)
 MCSI_CORE mcs_f mcsi_in(const mcsi_batch *b, int k) { return b->in[k][b->i]; }
 MCSI_CORE void mcsi_out(const mcsi_batch *b, int k, mcs_f v) {
     if (b->out[k]) b->out[k][b->i] = v;
@@ -3455,11 +3446,27 @@ MCSI_CORE mcs_f mcsi_in(const mcsi_batch *b, int k) {
     const size_t left = b->n - b->i;
     return left < MCSI_W ? mcsi_load_first(b->in[k] + b->i, left) : mcs_load(b->in[k] + b->i);
 }
-/* Lanes to output array k, which may be NULL. */
+#if defined(MCSI_AVX512)
+/* A whole line, past the caches: else it would be read from memory before it is written. `left` numbers of the array
+ * are not written yet. The fence behind the last line keeps all of them before what the caller writes next. */
+MCSI_CORE void mcsi_stream(float *p, mcs_f v, size_t left) {
+#if defined(__clang__)
+    typedef float line __attribute__((vector_size(64)));
+    __builtin_nontemporal_store((line)v, (line *)(void *)p);
+#else
+    __builtin_ia32_movntps512(p, v);
+#endif
+    if (left < 2 * MCSI_W) __builtin_ia32_sfence();
+}
+#endif
+/* Lanes to output array k, which may be NULL. Arrays of MCSI_LONG numbers are larger than caches. */
 MCSI_CORE void mcsi_out(const mcsi_batch *b, int k, mcs_f v) {
     const size_t left = b->n - b->i;
     if (!b->out[k]) return;
     if (left < MCSI_W) mcsi_store_first(b->out[k] + b->i, v, left);
+#if defined(MCSI_AVX512)
+    else if (MCSI_LONG(b->n) && !((uintptr_t)b->out[k] & 63)) mcsi_stream(b->out[k] + b->i, v, left);
+#endif
     else mcs_store(b->out[k] + b->i, v);
 }
 #endif
@@ -7860,6 +7867,15 @@ typedef struct {
     const void *guide;
     uint32_t n, shift, guide_bytes;
 } mcsi_cdf;
+MCSI_CORE mcsi_cdf mcsi_cdf_make(const uint32_t *sums, const void *guide, uint32_t n, uint32_t shift, uint32_t bytes) {
+    mcsi_cdf c;
+    c.sums = sums;
+    c.guide = guide;
+    c.n = n;
+    c.shift = shift;
+    c.guide_bytes = bytes;
+    return c;
+}
 
 /* Runs over the quarters of a list: for each, the sum of all quarters before it, its own so far, and how many entries
  * so far, from the start of the list, are not zero. */
@@ -8041,13 +8057,8 @@ MCSI_CORE mcsi_pwc_offsets mcsi_pwc_layout(uint32_t n, uint32_t shift) {
 }
 MCSI_CORE mcsi_cdf mcsi_pwc_cdf(const mcs_pwc *t) {
     const mcsi_pwc_offsets o = mcsi_pwc_layout(t->n, t->shift);
-    mcsi_cdf c;
-    c.sums = MCSI_READ(uint32_t, t, o.sums);
-    c.guide = MCSI_READ(uint32_t, t, o.guide);
-    c.n = t->n;
-    c.shift = t->shift;
-    c.guide_bytes = sizeof(uint32_t);
-    return c;
+    return mcsi_cdf_make(MCSI_READ(uint32_t, t, o.sums), MCSI_READ(uint32_t, t, o.guide), t->n, t->shift,
+                         sizeof(uint32_t));
 }
 /* An entry of a table, its share of 2^31, and a position within it, 0 to 1. */
 typedef struct {
@@ -8812,23 +8823,12 @@ MCSI_CORE size_t mcsi_env_padding(const mcs_env *e) {
 }
 /* The columns of a row. */
 MCSI_CORE mcsi_cdf mcsi_env_columns(const mcs_env *e, uint32_t row) {
-    mcsi_cdf c;
-    c.sums = mcsi_env_sums(e, row);
-    c.guide = mcsi_env_guide(e, row);
-    c.n = e->w;
-    c.shift = e->offset.col_shift;
-    c.guide_bytes = sizeof(uint16_t);
-    return c;
+    return mcsi_cdf_make(mcsi_env_sums(e, row), mcsi_env_guide(e, row), e->w, e->offset.col_shift, sizeof(uint16_t));
 }
 /* The rows of the map. */
 MCSI_CORE mcsi_cdf mcsi_env_rows(const mcs_env *e) {
-    mcsi_cdf c;
-    c.sums = MCSI_READ(uint32_t, e, e->offset.row_sums);
-    c.guide = MCSI_READ(uint16_t, e, e->offset.row_guide);
-    c.n = e->h;
-    c.shift = e->offset.row_shift;
-    c.guide_bytes = sizeof(uint16_t);
-    return c;
+    return mcsi_cdf_make(MCSI_READ(uint32_t, e, e->offset.row_sums), MCSI_READ(uint16_t, e, e->offset.row_guide), e->h,
+                         e->offset.row_shift, sizeof(uint16_t));
 }
 /* 1 - cos(pi x), x in [0,1], without libm so that tables are the same everywhere: 2 sin^2(pi x/2) by Taylor to x^17. */
 MCS_FN double mcsi_one_minus_cos_pi(double x) {
@@ -9200,11 +9200,8 @@ MCSI_CORE mcsi_window_offsets mcsi_window_layout(uint32_t rows, uint32_t shift) 
 MCSI_CORE mcsi_window mcsi_window_of(const mcs_env *e, const mcs_env_window *m) {
     const mcsi_window_offsets o = mcsi_window_layout(m->rows, m->shift);
     mcsi_window r;
-    r.rows.sums = MCSI_READ(uint32_t, m, o.sums);
-    r.rows.guide = MCSI_READ(uint16_t, m, o.guide);
-    r.rows.n = m->rows;
-    r.rows.shift = m->shift;
-    r.rows.guide_bytes = sizeof(uint16_t);
+    r.rows = mcsi_cdf_make(MCSI_READ(uint32_t, m, o.sums), MCSI_READ(uint16_t, m, o.guide), m->rows, m->shift,
+                           sizeof(uint16_t));
     r.row = MCSI_READ(mcsi_row, e, e->offset.row) + m->row;
     r.part = MCSI_READ(mcsi_row_part, m, o.part);
     r.row0 = m->row;
@@ -12109,6 +12106,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_store_first MCSI_(store_first)
 #define mcsi_store_int MCSI_(store_int)
 #define mcsi_stored MCSI_(stored)
+#define mcsi_stream MCSI_(stream)
 #define mcsi_sum MCSI_(sum)
 #define mcsi_take_lane MCSI_(take_lane)
 #define mcsi_tan2 MCSI_(tan2)
@@ -12771,6 +12769,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_store_first
 #undef mcsi_store_int
 #undef mcsi_stored
+#undef mcsi_stream
 #undef mcsi_sum
 #undef mcsi_take_lane
 #undef mcsi_tan2
@@ -12916,13 +12915,13 @@ MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, 
 #define MCSI_ARRAY_LINE(NAME)                                                                     \
     MCS_API void mcs_##NAME##_sample_n(float a, size_t n, const float *u, float *x, float *pdf) { \
         mcsi_batch call;                                                                          \
-        mcsi_batch_sample1(&call, n, u, x, pdf);                                                  \
+        mcsi_batch_dir(&call, n, u, NULL, x, pdf, NULL, NULL);                                    \
         MCSI_BATCH_LOOP(NAME##_loop, (a, &call));                                                 \
     }
 #define MCSI_ARRAY_LINE_2(NAME)                                                                              \
     MCS_API void mcs_##NAME##_sample_n(float a1, float a2, size_t n, const float *u, float *x, float *pdf) { \
         mcsi_batch call;                                                                                     \
-        mcsi_batch_sample1(&call, n, u, x, pdf);                                                             \
+        mcsi_batch_dir(&call, n, u, NULL, x, pdf, NULL, NULL);                                               \
         MCSI_BATCH_LOOP(NAME##_loop, (a1, a2, &call));                                                       \
     }
 MCSI_ARRAY_LINE_2(linear)
@@ -12939,7 +12938,7 @@ MCSI_ARRAY_LINE_2(smoothstep)
 MCS_API void mcs_bilinear_sample_n(float w00, float w10, float w01, float w11, size_t n, const float *u1,
                                    const float *u2, float *x, float *y, float *pdf) {
     mcsi_batch call;
-    mcsi_batch_sample2(&call, n, u1, u2, x, y, pdf);
+    mcsi_batch_dir(&call, n, u1, u2, x, y, pdf, NULL);
     MCSI_BATCH_LOOP(bilinear_loop, (w00, w10, w01, w11, &call));
 }
 #endif
@@ -12947,7 +12946,7 @@ MCS_API void mcs_bilinear_sample_n(float w00, float w10, float w01, float w11, s
     MCS_API void mcs_##NAME##_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y, \
                                        float *pdf) {                                                                 \
         mcsi_batch call;                                                                                             \
-        mcsi_batch_sample2(&call, n, u1, u2, x, y, pdf);                                                             \
+        mcsi_batch_dir(&call, n, u1, u2, x, y, pdf, NULL);                                                           \
         MCSI_BATCH_LOOP(NAME##_loop, (radius, &call));                                                               \
     }
 #define MCSI_ARRAY_SPHERE(NAME)                                                                                  \
@@ -12968,7 +12967,7 @@ MCSI_ARRAY_DISK(disk)
 MCSI_ARRAY_DISK(concentric)
 MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, float *b0, float *b1, float *pdf) {
     mcsi_batch call;
-    mcsi_batch_sample2(&call, n, u1, u2, b0, b1, pdf);
+    mcsi_batch_dir(&call, n, u1, u2, b0, b1, pdf, NULL);
     MCSI_BATCH_LOOP(triangle_loop, (&call));
 }
 MCSI_ARRAY_SPHERE(sphere)

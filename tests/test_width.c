@@ -309,6 +309,39 @@ static void check_hits(const mcst_row *row, uint64_t *state) {
     }
 }
 
+/* --- arrays larger than caches, which are written past them --- */
+
+/* Draws of n = 2^21 + 13 points at once are those of calls of 1000, and nothing else is written: arrays begin at a
+ * multiple of 64 bytes (off 0), do not, and are those of the input (in place). */
+static void check_long(size_t off, int in_place) {
+    enum { LONG = (1 << 21) + 13, PIECE = 1000, SPACE = LONG + 64, ARRAYS = 6 };
+    float *const memory = (float *)malloc((ARRAYS * SPACE + 16) * sizeof *memory);
+    float *array[ARRAYS];
+    if (!memory) exit(2);
+    for (int k = 0; k < ARRAYS; k++)
+        array[k] = memory + (64 - ((uintptr_t)memory & 63)) / sizeof *memory % 16 + (size_t)k * (SPACE / 16 * 16) + off;
+    mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 11);
+    mcs_pcg32_fill_n(&rng, LONG, array[0]);
+    mcs_pcg32_fill_n(&rng, LONG, array[1]);
+    float *const x = in_place ? array[0] : array[2];
+    for (int k = 2; k < ARRAYS; k++) array[k][LONG] = -7.0f;
+    float piece[4][PIECE], *u1 = (float *)malloc(LONG * sizeof *u1);
+    if (!u1) exit(2);
+    memcpy(u1, array[0], LONG * sizeof *u1);
+    mcs_cosine_sample_n(LONG, array[0], array[1], x, array[3], array[4], array[5]);
+    int differ = 0;
+    for (size_t i = 0; i < LONG; i += PIECE) {
+        const size_t n = LONG - i < PIECE ? LONG - i : (size_t)PIECE;
+        mcs_cosine_sample_n(n, u1 + i, array[1] + i, piece[0], piece[1], piece[2], piece[3]);
+        differ += memcmp(piece[0], x + i, n * sizeof *x) != 0;
+        for (int k = 1; k < 4; k++) differ += memcmp(piece[k], array[2 + k] + i, n * sizeof *x) != 0;
+    }
+    CHECK(differ == 0, "%d pieces differ", differ);
+    for (int k = 2; k < ARRAYS; k++) CHECK(array[k][LONG] == -7.0f, "written behind array %d", k);
+    free(u1);
+    free(memory);
+}
+
 /* --- is the registry complete? ------------------------------------------------------------------------------------ */
 
 static int is_known(const char *name) {
@@ -365,5 +398,8 @@ int main(int argc, char **argv) {
         }
         if (row->sample_hits_n && mcst_case("hits")) check_hits(row, &state);
     }
+    mcst_group("long arrays");
+    for (i = 0; i < 3; i++)
+        if (mcst_case("%s", i == 0 ? "aligned" : i == 1 ? "not aligned" : "in place")) check_long(i == 1, i == 2);
     return mcst_finish();
 }
