@@ -669,6 +669,8 @@ static void print_targets(void) {
         const table_row *const window = row_of(r, "window", "scalar");
         const table_row *const window_n = row_of(r, "window", "n");
         if (strcmp(r->table, "env") || strcmp(r->form, "scalar") || !n || !window || !window_n) continue;
+        if (r->w == 256) verdict("n, ns (bound: about 180 instructions a draw)", r, n->sample.median, "<=", 10);
+        if (r->w == 1024) verdict("n, ns (bound: about 180 instructions a draw)", r, n->sample.median, "<=", 14);
         if (r->w >= 4096) {
             if (!strcmp(r->source, "sky")) {
                 verdict("n, times as fast as text", r, n->faster, ">=", 12);
