@@ -2677,13 +2677,14 @@ MCS_FN void mcsi_batch_start(mcsi_batch *b, size_t n, const float *in0, const fl
     b->n = n;
     b->i = 0;
 }
-MCS_FN void mcsi_batch_dir(mcsi_batch *b, size_t n, const float *u1, const float *u2, float *x, float *y, float *z,
-                           float *pdf) {
+/* Samples of up to four results, in the order in which their loop puts them out. */
+MCS_FN void mcsi_batch_u(mcsi_batch *b, size_t n, const float *u1, const float *u2, float *out0, float *out1,
+                         float *out2, float *out3) {
     mcsi_batch_start(b, n, u1, u2, NULL);
-    b->out[0] = x;
-    b->out[1] = y;
-    b->out[2] = z;
-    b->out[3] = pdf;
+    b->out[0] = out0;
+    b->out[1] = out1;
+    b->out[2] = out2;
+    b->out[3] = out3;
 }
 #ifndef MCS_NO_LOBES
 MCS_FN void mcsi_batch_hits(mcsi_batch *b, const mcs_hits *hits) {
@@ -12863,7 +12864,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 MCS_FN void mcsi_env_directions_n(const mcs_env *e, const mcsi_env_block *b, size_t n, float *x, float *y, float *z,
                                   float *pdf) {
     mcsi_batch call;
-    mcsi_batch_dir(&call, n, NULL, NULL, x, y, z, pdf);
+    mcsi_batch_u(&call, n, NULL, NULL, x, y, z, pdf);
     MCSI_WIDE(n, env_directions_loop, (&e->frame, b, e->turn, e->inner, &call));
 }
 MCS_FN void mcsi_env_angles_n(const mcs_env *e, size_t n, const float *x, const float *y, const float *z,
@@ -12915,13 +12916,13 @@ MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, 
 #define MCSI_ARRAY_LINE(NAME)                                                                     \
     MCS_API void mcs_##NAME##_sample_n(float a, size_t n, const float *u, float *x, float *pdf) { \
         mcsi_batch call;                                                                          \
-        mcsi_batch_dir(&call, n, u, NULL, x, pdf, NULL, NULL);                                    \
+        mcsi_batch_u(&call, n, u, NULL, x, pdf, NULL, NULL);                                      \
         MCSI_BATCH_LOOP(NAME##_loop, (a, &call));                                                 \
     }
 #define MCSI_ARRAY_LINE_2(NAME)                                                                              \
     MCS_API void mcs_##NAME##_sample_n(float a1, float a2, size_t n, const float *u, float *x, float *pdf) { \
         mcsi_batch call;                                                                                     \
-        mcsi_batch_dir(&call, n, u, NULL, x, pdf, NULL, NULL);                                               \
+        mcsi_batch_u(&call, n, u, NULL, x, pdf, NULL, NULL);                                                 \
         MCSI_BATCH_LOOP(NAME##_loop, (a1, a2, &call));                                                       \
     }
 MCSI_ARRAY_LINE_2(linear)
@@ -12938,7 +12939,7 @@ MCSI_ARRAY_LINE_2(smoothstep)
 MCS_API void mcs_bilinear_sample_n(float w00, float w10, float w01, float w11, size_t n, const float *u1,
                                    const float *u2, float *x, float *y, float *pdf) {
     mcsi_batch call;
-    mcsi_batch_dir(&call, n, u1, u2, x, y, pdf, NULL);
+    mcsi_batch_u(&call, n, u1, u2, x, y, pdf, NULL);
     MCSI_BATCH_LOOP(bilinear_loop, (w00, w10, w01, w11, &call));
 }
 #endif
@@ -12946,28 +12947,28 @@ MCS_API void mcs_bilinear_sample_n(float w00, float w10, float w01, float w11, s
     MCS_API void mcs_##NAME##_sample_n(float radius, size_t n, const float *u1, const float *u2, float *x, float *y, \
                                        float *pdf) {                                                                 \
         mcsi_batch call;                                                                                             \
-        mcsi_batch_dir(&call, n, u1, u2, x, y, pdf, NULL);                                                           \
+        mcsi_batch_u(&call, n, u1, u2, x, y, pdf, NULL);                                                             \
         MCSI_BATCH_LOOP(NAME##_loop, (radius, &call));                                                               \
     }
 #define MCSI_ARRAY_SPHERE(NAME)                                                                                  \
     MCS_API void mcs_##NAME##_sample_n(size_t n, const float *u1, const float *u2, float *x, float *y, float *z, \
                                        float *pdf) {                                                             \
         mcsi_batch call;                                                                                         \
-        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                          \
+        mcsi_batch_u(&call, n, u1, u2, x, y, z, pdf);                                                            \
         MCSI_BATCH_LOOP(NAME##_loop, (&call));                                                                   \
     }
 #define MCSI_ARRAY_ABOUT_Z(NAME)                                                                                \
     MCS_API void mcs_##NAME##_sample_n(float a, size_t n, const float *u1, const float *u2, float *x, float *y, \
                                        float *z, float *pdf) {                                                  \
         mcsi_batch call;                                                                                        \
-        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                         \
+        mcsi_batch_u(&call, n, u1, u2, x, y, z, pdf);                                                           \
         MCSI_BATCH_LOOP(NAME##_loop, (a, &call));                                                               \
     }
 MCSI_ARRAY_DISK(disk)
 MCSI_ARRAY_DISK(concentric)
 MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, float *b0, float *b1, float *pdf) {
     mcsi_batch call;
-    mcsi_batch_dir(&call, n, u1, u2, b0, b1, pdf, NULL);
+    mcsi_batch_u(&call, n, u1, u2, b0, b1, pdf, NULL);
     MCSI_BATCH_LOOP(triangle_loop, (&call));
 }
 MCSI_ARRAY_SPHERE(sphere)
@@ -12986,7 +12987,7 @@ MCSI_ARRAY_ABOUT_Z(von_mises_fisher)
 MCS_API void mcs_ball_sample_n(mcs_vec3 p, mcs_vec3 centre, float radius, size_t n, const float *u1, const float *u2,
                                float *x, float *y, float *z, float *pdf, float *distance) {
     mcsi_batch call;
-    mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);
+    mcsi_batch_u(&call, n, u1, u2, x, y, z, pdf);
     call.out[4] = distance;
     MCSI_BATCH_LOOP(ball_loop, (p, centre, radius, &call));
 }
@@ -12994,7 +12995,7 @@ MCS_API void mcs_disk_light_sample_n(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 norma
                                      const float *u1, const float *u2, float *x, float *y, float *z, float *pdf,
                                      float *distance) {
     mcsi_batch call;
-    mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);
+    mcsi_batch_u(&call, n, u1, u2, x, y, z, pdf);
     call.out[4] = distance;
     MCSI_BATCH_LOOP(disk_light_loop, (p, centre, normal, radius, &call));
 }
@@ -13003,7 +13004,7 @@ MCS_API void mcs_disk_light_sample_n(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 norma
                                        float *y, float *z, float *pdf, float *distance, float *light_x,           \
                                        float *light_y) {                                                          \
         mcsi_batch call;                                                                                          \
-        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                           \
+        mcsi_batch_u(&call, n, u1, u2, x, y, z, pdf);                                                             \
         call.out[4] = distance;                                                                                   \
         call.out[5] = light_x;                                                                                    \
         call.out[6] = light_y;                                                                                    \
@@ -13018,7 +13019,7 @@ MCSI_ARRAY_OF_LIGHT(spherical_triangle)
     MCS_API void mcs_##NAME##_sample_n(const mcs_##MATERIAL *m, mcs_vec3 wo, size_t n, const float *u1,            \
                                        const float *u2, float *x, float *y, float *z, float *pdf, float *weight) { \
         mcsi_batch call;                                                                                           \
-        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                            \
+        mcsi_batch_u(&call, n, u1, u2, x, y, z, pdf);                                                              \
         call.out[4] = weight;                                                                                      \
         MCSI_BATCH_LOOP(NAME##_sample_loop, (m, wo, &call));                                                       \
     }
@@ -13034,14 +13035,14 @@ MCSI_ARRAY_OF_LIGHT(spherical_triangle)
     MCS_API void mcs_##NAME##_sample_n(const mcs_##MATERIAL *m, size_t n, const float *u1, const float *u2, float *x, \
                                        float *y, float *z, float *pdf) {                                              \
         mcsi_batch call;                                                                                              \
-        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                               \
+        mcsi_batch_u(&call, n, u1, u2, x, y, z, pdf);                                                                 \
         MCSI_BATCH_LOOP(NAME##_loop, (m, &call));                                                                     \
     }
 #define MCSI_ARRAY_VISIBLE(NAME, MATERIAL)                                                              \
     MCS_API void mcs_##NAME##_sample_n(const mcs_##MATERIAL *m, mcs_vec3 wo, size_t n, const float *u1, \
                                        const float *u2, float *x, float *y, float *z, float *pdf) {     \
         mcsi_batch call;                                                                                \
-        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                 \
+        mcsi_batch_u(&call, n, u1, u2, x, y, z, pdf);                                                   \
         MCSI_BATCH_LOOP(NAME##_loop, (m, wo, &call));                                                   \
     }
 /* Both functions for hits. */
@@ -13050,7 +13051,7 @@ MCSI_ARRAY_OF_LIGHT(spherical_triangle)
                                             const float *u2, float *x, float *y, float *z, float *pdf,                \
                                             float *weight) {                                                          \
         mcsi_batch call;                                                                                              \
-        mcsi_batch_dir(&call, n, u1, u2, x, y, z, pdf);                                                               \
+        mcsi_batch_u(&call, n, u1, u2, x, y, z, pdf);                                                                 \
         call.out[4] = weight;                                                                                         \
         mcsi_batch_hits(&call, hits);                                                                                 \
         MCSI_BATCH_LOOP(NAME##_sample_hits_loop, (m, &call));                                                         \
