@@ -468,7 +468,10 @@ TABLE_PICKS(alias)
     mcs_pwc2 *t = (mcs_pwc2 *)(void *)room;                                \
     const mcs_status status = mcs_pwc2_build(t, sizeof room, f, w, n / w); \
     (void)status
-FN(pwc2_bytes) { PUT_WORD(0, (uint32_t)mcs_pwc2_bytes(WORD(11) >> (WORD(13) & 31), WORD(12) >> (WORD(11) & 31))); }
+FN(pwc2_bytes) { /* of sizes that a machine of 32 bits has room for, or of none */
+    const uint32_t w = WORD(11) >> (WORD(13) & 31), h = WORD(12) >> (WORD(11) & 31);
+    PUT_WORD(0, (uint32_t)mcs_pwc2_bytes(w, 1 + h % 256)), PUT_WORD(1, (uint32_t)mcs_pwc2_bytes(1 + w % 256, h));
+}
 FN(pwc2_build) {
     TABLE2;
     PUT_WORD(0, bits_said(status, t->uniform)), PUT_WORD(1, t->bad), bits_put_double(out, 2, t->total);
