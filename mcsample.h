@@ -6035,7 +6035,8 @@ MCSI_CORE mcsi_von_mises_fisher mcsi_von_mises_fisher_make(mcs_f kappa) {
 }
 /* e - 1 is 2^k (e^r - 1) + (2^k - 1) with |r| <= ln(2)/2, and e^r - 1 Taylor's series to r^8. 1 + x is 2^k m with m in
  * [sqrt(1/2), sqrt(2)), and ln(m) twice the inverse hyperbolic tangent of (m - 1)/(m + 1), whose series goes to the
- * ninth power. m - 1 is x 2^-k + (2^-k - 1). A k of the float 1 + x is known sooner, and serves as well. */
+ * ninth power. m - 1 is x 2^-k + (2^-k - 1). A k of the float 1 + x is known sooner, and serves as well. `behind` is
+ * not 1 - `ahead`, which -ffast-math would multiply out: 1/e is too large for the sum to cancel. */
 MCSI_SAMPLE mcs_dir mcs_von_mises_fisher_sample(mcs_f kappa, mcs_f u1, mcs_f u2) {
     const mcsi_von_mises_fisher d = mcsi_von_mises_fisher_make(kappa);
     mcs_i ok = d.ok;
@@ -6052,9 +6053,10 @@ MCSI_SAMPLE mcs_dir mcs_von_mises_fisher_sample(mcs_f kappa, mcs_f u1, mcs_f u2)
     const mcs_f v = 1.0f - u1;
     const mcs_f front = mcsi_sel(d.flat, v - u1, v * v - u1 * u1 * MCSI_NARROW(e));
     const mcsi_d ahead = MCSI_WIDEN(mcsi_sel(front < 0.0f, mcs_set(0.0f), mcs_set(1.0f)));
+    const mcsi_d behind = MCSI_WIDEN(mcsi_sel(front < 0.0f, mcs_set(1.0f), mcs_set(0.0f)));
     const mcs_f nearer_u = mcsi_sel(front < 0.0f, v, -u1);
     const mcsi_d behind_e = one_minus_e * (1.0 / e);
-    const mcsi_d x = MCSI_WIDEN(nearer_u) * (ahead * one_minus_e + (1.0 - ahead) * behind_e);
+    const mcsi_d x = MCSI_WIDEN(nearer_u) * (ahead * one_minus_e + behind * behind_e);
     const mcs_f factor = mcsi_sel(front < 0.0f, MCSI_NARROW(behind_e), MCSI_NARROW(one_minus_e));
     const mcs_i k_bits = mcsi_exponent_bits(mcsi_bits(1.0f + nearer_u * factor));
     const mcsi_d scale = MCSI_WIDEN(mcsi_from_bits(0x3f800000 - k_bits));
@@ -6063,7 +6065,7 @@ MCSI_SAMPLE mcs_dir mcs_von_mises_fisher_sample(mcs_f kappa, mcs_f u1, mcs_f u2)
     const mcsi_d ss = s * s;
     const mcsi_d log_m = s * (2.0 + ss * (2.0 / 3 + ss * (2.0 / 5 + ss * (2.0 / 7 + ss * (2.0 / 9)))));
     const mcsi_d logarithm = MCSI_INT_WIDEN(k_bits >> 23) * 0.6931471805599453 + log_m;
-    const mcsi_d distance = ((1.0 - 2.0 * ahead) * (1.0 / MCSI_WIDEN(d.kappa))) * logarithm;
+    const mcsi_d distance = ((behind - ahead) * (1.0 / MCSI_WIDEN(d.kappa))) * logarithm;
     const mcs_f flat_t = 2.0f * mcsi_min(u1, v);
     const mcs_f t = mcsi_sel(d.flat, flat_t, MCSI_NARROW(distance));
     const mcs_f sin2 = mcsi_sel(d.flat, flat_t * (2.0f - flat_t), MCSI_NARROW(distance * (2.0 - distance)));
