@@ -1,7 +1,7 @@
 /* An adversary: for every figure of accuracy that the header states for densities, coordinates, directions, lights,
- * reflectances and frames it looks for the input that breaks it, by random starts and by climbing from the best of them, against the __float128 truth of
- * exact.h. Directions are unit to half an ulp, what a caller in double gives; nothing else is forgiven: no condition
- * comes on top of a figure.
+ * reflectances and frames it looks for the input that breaks it, by random starts and by climbing from the best of
+ * them, against the __float128 truth of exact.h. Directions are unit to half an ulp, what a caller in double gives;
+ * nothing else is forgiven: no condition comes on top of a figure.
  *
  * The figures are those of claims.h; test_oracle.c looks up that the header states them.
  * At full size the seed is the day, and printed; --seed picks another, MCS_TEST_SCALE scales the number of climbs. */
