@@ -138,7 +138,7 @@ QUADMATH = $(eval QUADMATH := $(QUADMATH_PROBE))$(QUADMATH)
 QUADMATH_PROBE = $(shell mkdir -p $(BUILD) && printf '\043include <quadmath.h>\nint main(void) { return sqrtq(4) != 2; }\n' | \
 	$(CC) -x c - -o $(BUILD)/quadmath.probe -lquadmath 2>/dev/null && echo -lquadmath)
 
-test: ## build and run every tests/test_*.c (the default); two to three minutes; build/tests; FILTER=text and SEED=number narrow it
+test: ## build and run every tests/test_*.c (the default); two minutes; build/tests; FILTER=text and SEED=number narrow it
 	$(SAY)
 	@echo '$(CC) ($(shell $(CC) --version 2>/dev/null | head -n 1)): $(FLAGS) $(EXACT); programs that only call: $(CALLING_FLAGS)'
 	+@$(SUBMAKE) test-binaries

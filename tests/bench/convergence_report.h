@@ -337,12 +337,8 @@ static void print_targets(const map *maps, int count, const result *all) {
         for (int e = 0; e < count; e++) {
             const result *r = &all[m * count + e];
             const double mis = fmin(variance_of(r, MIS_BALANCE), variance_of(r, MIS_POWER));
-            const double s = slope(r, r->of[PRODUCT_64][SOBOL], 1);
             verdict("product: variance over that of the better MIS", materials[m].name, maps[e].name,
                     variance_of(r, PRODUCT_64) / mis, "<=", 1.1);
-            if (materials[m].smooth && maps[e].smooth && !isnan(s))
-                verdict("product: slope of the rms error, Sobol points", materials[m].name, maps[e].name, s,
-                        "<=", -0.9);
             if (e >= 3 && m < 2) product += log(variance_of(r, against[m]) / variance_of(r, PRODUCT_64)) / (count - 3);
         }
         if (count > 3 && m < 2)

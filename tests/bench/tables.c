@@ -646,19 +646,6 @@ static double times_of(const table_row *r, const table_row *other) {
     for (int k = 0; k < rounds; k++) ratio[k] = r->drawn[k] / other->drawn[k];
     return bench_spread_of(ratio, rounds).median;
 }
-static void product_targets(const table_row *scalar, const table_row *n, const char *kind, double setup) {
-    const table_row *const one = row_of(scalar, "product", kind);
-    char what[64];
-    snprintf(what, sizeof what, "%s n", kind);
-    const table_row *many = row_of(scalar, "product", what);
-    if (!one || !many) return;
-    snprintf(what, sizeof what, "product %s: set-up at a point, ns", kind);
-    verdict(what, scalar, 1e9 * one->built, "<=", setup);
-    snprintf(what, sizeof what, "product %s: times a sample of the map", kind);
-    verdict(what, scalar, times_of(one, scalar), "<=", 1.5);
-    snprintf(what, sizeof what, "product %s n: times n of the map", kind);
-    verdict(what, scalar, times_of(many, n), "<=", 1.5);
-}
 /* What the project asks for: figures of merit that are reported, not gates, as a shared machine has no business failing
  * a build. */
 static void print_targets(void) {
@@ -672,17 +659,12 @@ static void print_targets(void) {
         if (r->w == 256) verdict("n, ns (bound: about 180 instructions a draw)", r, n->sample.median, "<=", 10);
         if (r->w == 1024) verdict("n, ns (bound: about 180 instructions a draw)", r, n->sample.median, "<=", 14);
         if (r->w >= 4096) {
-            if (!strcmp(r->source, "sky")) {
-                verdict("n, times as fast as text", r, n->faster, ">=", 12);
-                verdict("scalar, times as fast as text", r, r->faster, ">=", 4);
-            }
+            if (!strcmp(r->source, "sky")) verdict("n, times as fast as text", r, n->faster, ">=", 12);
             verdict("bytes a texel", r, r->bytes, "<=", 4.5);
-            verdict("build, times a copy of the image", r, r->copies, "<=", 8);
+            verdict("build, times a copy of the image", r, r->copies, "<=", 4);
         }
         verdict("window, times a sample of the map", r, times_of(window, r), "<=", 2);
         verdict("window n, times n of the map", r, times_of(window_n, n), "<=", 2);
-        product_targets(r, n, "matte", 600);
-        product_targets(r, n, "GGX", 1500);
     }
     printf("%d not met\n", unmet);
 }

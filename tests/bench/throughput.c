@@ -151,7 +151,7 @@ typedef struct {
     int subset;
     float a, b; /* the parameters that are timed */
     bench_form *text;
-    double target, scalar_target; /* text against n and against scalar */
+    double target; /* text against n */
     void (*text_map)(const float *p, ld u1, ld u2, ld *x);
     ld (*text_pdf_u)(const float *p, ld u1, ld u2);
 } sampler;
@@ -159,54 +159,54 @@ typedef struct {
 /* Rows that the list leaves out are measured without a text. Ward 1992 and Duer have the samples and densities of ward
  * and other weights: their function is in the list. */
 static const sampler listed[] = {
-    {"linear", "linear", ALL, 1, 3, linear_text, 0, 1, NULL, NULL},
-    {"tent", "tent", ALL, 2, 0, tent_text, 0, 1, NULL, NULL},
-    {"exponential", "exponential", ALL, 2, 0, exponential_text, 0, 1, NULL, NULL},
-    {"truncexp", "truncexp", ALL, 3, 1, truncexp_text, 0, 1, NULL, NULL},
-    {"normal", "normal", ALL, 1, 2, normal_text, 0, 1, NULL, NULL},
-    {"logistic", "logistic", ALL, 1, 2, logistic_text, 0, 1, NULL, NULL},
-    {"truncnormal", "truncnormal", ALL, -1, 2, truncnormal_text, 0, 1, NULL, NULL},
-    {"trunclogistic", "trunclogistic", ALL, -1, 2, trunclogistic_text, 0, 1, NULL, NULL},
-    {"power", "power", ALL, 10, 0, power_text, 0, 1, NULL, NULL},
-    {"evenpower", "evenpower", ALL, 2, 0, evenpower_text, 0, 1, NULL, NULL},
-    {"smoothstep", "smoothstep", ALL, 2, 5, smoothstep_text, 0, 1, NULL, NULL},
-    {"disk", "disk", ALL, 2, 0, disk_text, 10, 1, NULL, NULL},
-    {"concentric", "concentric", ALL, 2, 0, concentric_text, 0, 1, NULL, NULL},
-    {"bilinear", "bilinear", ALL, 2, 5, bilinear_text, 0, 1, NULL, NULL},
-    {"triangle", "triangle", ALL, 0, 0, triangle_text, 0, 1, NULL, NULL},
-    {"sphere", "sphere", ALL, 0, 0, sphere_text, 0, 1, NULL, NULL},
-    {"hemisphere", "hemisphere", ALL, 0, 0, hemisphere_text, 0, 1, NULL, NULL},
-    {"cosine", "cosine", ALL, 0, 0, cosine_text, 10, 1, NULL, NULL},
-    {"cone", "cone", ALL, 0.5f, 0, cone_text, 0, 1, NULL, NULL},
-    {"ball", "ball", ALL, 2, 1, ball_text, 0, 1, NULL, NULL},
-    {"disk_light", "disk_light", ALL, 2, 1, disk_light_text, 0, 1, NULL, NULL},
-    {"spherical_rectangle", "spherical_rectangle", ALL, 0.5f, 1, spherical_rectangle_text, 0, 1, NULL, NULL},
-    {"spherical_triangle", "spherical_triangle", ALL, 0.5f, 1, spherical_triangle_text, 0, 1, NULL, NULL},
-    {"henyey_greenstein", "henyey_greenstein", ALL, 0.5f, 0, henyey_greenstein_text, 0, 1, NULL, NULL},
-    {"rayleigh", "rayleigh", ALL, 0, 0, rayleigh_text, 0, 1, NULL, NULL},
-    {"von_mises_fisher", "von_mises_fisher", ALL, 10, 0, von_mises_fisher_text, 0, 1, NULL, NULL},
-    {"phong_lobe", "phong_lobe", ALL, 50, 0, phong_lobe_text, 12, 1, NULL, NULL},
-    {"phong", "phong", ALL, 50, 0, phong_text, 12, 1, NULL, NULL},
-    {"ward_h iso", "ward_h", ISO, 0.3f, 0.3f, ward_h_iso_text, 0, 2, NULL, NULL},
-    {"ward_h aniso", "ward_h", ANISO, 0.1f, 0.4f, ward_h_text, 40, 2, NULL, NULL},
-    {"ward iso", "ward_gmd", ISO, 0.3f, 0.3f, ward_iso_text, 0, 2, NULL, NULL},
-    {"ward aniso", "ward_gmd", ANISO, 0.1f, 0.4f, ward_text, 40, 2, NULL, NULL},
-    {"beckmann_h iso", "beckmann_h", ISO, 0.3f, 0.3f, beckmann_h_iso_text, 0, 1, NULL, NULL},
-    {"beckmann_h aniso", "beckmann_h", ANISO, 0.1f, 0.4f, beckmann_h_text, 0, 1, NULL, NULL},
-    {"beckmann iso", "beckmann", ISO, 0.3f, 0.3f, beckmann_iso_text, 0, 1, NULL, NULL},
-    {"beckmann aniso", "beckmann", ANISO, 0.1f, 0.4f, beckmann_text, 0, 1, NULL, NULL},
-    {"ggx_h iso", "ggx_h", ISO, 0.3f, 0.3f, ggx_h_iso_text, 15, 1, NULL, NULL},
-    {"ggx_h aniso", "ggx_h", ANISO, 0.1f, 0.4f, ggx_h_text, 0, 1, NULL, NULL},
-    {"ggx iso", "ggx", ISO, 0.3f, 0.3f, ggx_iso_text, 15, 1, NULL, NULL},
-    {"ggx aniso", "ggx", ANISO, 0.1f, 0.4f, ggx_text, 0, 1, NULL, NULL},
-    {"ggx_vndf_h", "ggx_vndf_h", ALL, 0.1f, 0.4f, ggx_vndf_h_text, 25, 1, heitz_h_map, heitz_h_pdf_u},
-    {"ggx_vndf", "ggx_vndf", ALL, 0.1f, 0.4f, ggx_vndf_text, 25, 1, heitz_map, heitz_pdf_u},
-    {"ggx_bounded_h", "ggx_bounded_h", ALL, 0.1f, 0.4f, ggx_bounded_h_text, 0, 1, caps_h_map, caps_h_pdf_u},
-    {"ggx_bounded", "ggx_bounded", ALL, 0.1f, 0.4f, ggx_bounded_text, 0, 1, caps_map, caps_pdf_u},
-    {"ashikhmin_h iso", "ashikhmin_h", ISO, 50, 50, ashikhmin_h_iso_text, 0, 2, NULL, NULL},
-    {"ashikhmin_h aniso", "ashikhmin_h", ANISO, 10, 100, ashikhmin_h_text, 30, 2, NULL, NULL},
-    {"ashikhmin iso", "ashikhmin", ISO, 50, 50, ashikhmin_iso_text, 0, 2, NULL, NULL},
-    {"ashikhmin aniso", "ashikhmin", ANISO, 10, 100, ashikhmin_text, 30, 2, NULL, NULL},
+    {"linear", "linear", ALL, 1, 3, linear_text, 0, NULL, NULL},
+    {"tent", "tent", ALL, 2, 0, tent_text, 0, NULL, NULL},
+    {"exponential", "exponential", ALL, 2, 0, exponential_text, 0, NULL, NULL},
+    {"truncexp", "truncexp", ALL, 3, 1, truncexp_text, 0, NULL, NULL},
+    {"normal", "normal", ALL, 1, 2, normal_text, 0, NULL, NULL},
+    {"logistic", "logistic", ALL, 1, 2, logistic_text, 0, NULL, NULL},
+    {"truncnormal", "truncnormal", ALL, -1, 2, truncnormal_text, 0, NULL, NULL},
+    {"trunclogistic", "trunclogistic", ALL, -1, 2, trunclogistic_text, 0, NULL, NULL},
+    {"power", "power", ALL, 10, 0, power_text, 0, NULL, NULL},
+    {"evenpower", "evenpower", ALL, 2, 0, evenpower_text, 0, NULL, NULL},
+    {"smoothstep", "smoothstep", ALL, 2, 5, smoothstep_text, 0, NULL, NULL},
+    {"disk", "disk", ALL, 2, 0, disk_text, 10, NULL, NULL},
+    {"concentric", "concentric", ALL, 2, 0, concentric_text, 0, NULL, NULL},
+    {"bilinear", "bilinear", ALL, 2, 5, bilinear_text, 0, NULL, NULL},
+    {"triangle", "triangle", ALL, 0, 0, triangle_text, 0, NULL, NULL},
+    {"sphere", "sphere", ALL, 0, 0, sphere_text, 0, NULL, NULL},
+    {"hemisphere", "hemisphere", ALL, 0, 0, hemisphere_text, 0, NULL, NULL},
+    {"cosine", "cosine", ALL, 0, 0, cosine_text, 10, NULL, NULL},
+    {"cone", "cone", ALL, 0.5f, 0, cone_text, 0, NULL, NULL},
+    {"ball", "ball", ALL, 2, 1, ball_text, 0, NULL, NULL},
+    {"disk_light", "disk_light", ALL, 2, 1, disk_light_text, 0, NULL, NULL},
+    {"spherical_rectangle", "spherical_rectangle", ALL, 0.5f, 1, spherical_rectangle_text, 0, NULL, NULL},
+    {"spherical_triangle", "spherical_triangle", ALL, 0.5f, 1, spherical_triangle_text, 0, NULL, NULL},
+    {"henyey_greenstein", "henyey_greenstein", ALL, 0.5f, 0, henyey_greenstein_text, 0, NULL, NULL},
+    {"rayleigh", "rayleigh", ALL, 0, 0, rayleigh_text, 0, NULL, NULL},
+    {"von_mises_fisher", "von_mises_fisher", ALL, 10, 0, von_mises_fisher_text, 0, NULL, NULL},
+    {"phong_lobe", "phong_lobe", ALL, 50, 0, phong_lobe_text, 12, NULL, NULL},
+    {"phong", "phong", ALL, 50, 0, phong_text, 12, NULL, NULL},
+    {"ward_h iso", "ward_h", ISO, 0.3f, 0.3f, ward_h_iso_text, 0, NULL, NULL},
+    {"ward_h aniso", "ward_h", ANISO, 0.1f, 0.4f, ward_h_text, 40, NULL, NULL},
+    {"ward iso", "ward_gmd", ISO, 0.3f, 0.3f, ward_iso_text, 0, NULL, NULL},
+    {"ward aniso", "ward_gmd", ANISO, 0.1f, 0.4f, ward_text, 40, NULL, NULL},
+    {"beckmann_h iso", "beckmann_h", ISO, 0.3f, 0.3f, beckmann_h_iso_text, 0, NULL, NULL},
+    {"beckmann_h aniso", "beckmann_h", ANISO, 0.1f, 0.4f, beckmann_h_text, 0, NULL, NULL},
+    {"beckmann iso", "beckmann", ISO, 0.3f, 0.3f, beckmann_iso_text, 0, NULL, NULL},
+    {"beckmann aniso", "beckmann", ANISO, 0.1f, 0.4f, beckmann_text, 0, NULL, NULL},
+    {"ggx_h iso", "ggx_h", ISO, 0.3f, 0.3f, ggx_h_iso_text, 15, NULL, NULL},
+    {"ggx_h aniso", "ggx_h", ANISO, 0.1f, 0.4f, ggx_h_text, 0, NULL, NULL},
+    {"ggx iso", "ggx", ISO, 0.3f, 0.3f, ggx_iso_text, 15, NULL, NULL},
+    {"ggx aniso", "ggx", ANISO, 0.1f, 0.4f, ggx_text, 0, NULL, NULL},
+    {"ggx_vndf_h", "ggx_vndf_h", ALL, 0.1f, 0.4f, ggx_vndf_h_text, 25, heitz_h_map, heitz_h_pdf_u},
+    {"ggx_vndf", "ggx_vndf", ALL, 0.1f, 0.4f, ggx_vndf_text, 25, heitz_map, heitz_pdf_u},
+    {"ggx_bounded_h", "ggx_bounded_h", ALL, 0.1f, 0.4f, ggx_bounded_h_text, 0, caps_h_map, caps_h_pdf_u},
+    {"ggx_bounded", "ggx_bounded", ALL, 0.1f, 0.4f, ggx_bounded_text, 0, caps_map, caps_pdf_u},
+    {"ashikhmin_h iso", "ashikhmin_h", ISO, 50, 50, ashikhmin_h_iso_text, 0, NULL, NULL},
+    {"ashikhmin_h aniso", "ashikhmin_h", ANISO, 10, 100, ashikhmin_h_text, 30, NULL, NULL},
+    {"ashikhmin iso", "ashikhmin", ISO, 50, 50, ashikhmin_iso_text, 0, NULL, NULL},
+    {"ashikhmin aniso", "ashikhmin", ANISO, 10, 100, ashikhmin_text, 30, NULL, NULL},
 };
 enum { LISTED = sizeof listed / sizeof listed[0], SAMPLERS_MAX = LISTED + MCST_NROWS };
 static sampler samplers[SAMPLERS_MAX];
@@ -224,7 +224,7 @@ static void list_samplers(void) {
     sampler_count = LISTED;
     for (i = 0; i < MCST_NROWS; i++) {
         const mcst_row *const row = &mcst_rows[i];
-        const sampler plain = {row->name, row->name, ALL, row->grid[0][0], row->grid[0][1], NULL, 0, 0, NULL, NULL};
+        const sampler plain = {row->name, row->name, ALL, row->grid[0][0], row->grid[0][1], NULL, 0, NULL, NULL};
         if (!is_listed(row)) samplers[sampler_count++] = plain;
     }
 }
@@ -480,10 +480,11 @@ static float float_between(float lo, float hi, uint32_t i, uint32_t n) {
 }
 
 /* Largest and rms error over the range that samplers use: log over all normal floats, log1p from -1 to 1e38, exp and
- * expm1 of what is negative, with normal results, sincos over a turn. Double libm counts as exact. */
+ * expm1 of what is negative, the former down to 2^-100, below which it may be 0, sincos over a turn. Double libm counts as
+ * exact. */
 static void kernel_error(int k, bench_kernel *f, int turns, extra *e) {
     static const float lo[BENCH_KERNELS] = {0x1p-30f, FLT_MIN, -0x1p-60f, -0x1p-40f, -0x1p-60f};
-    static const float hi[BENCH_KERNELS] = {1, 1e38f, -0.99999994f, -87, -80};
+    static const float hi[BENCH_KERNELS] = {1, 1e38f, -0.99999994f, -69, -80};
     const uint32_t n = bench.quick ? 1u << 17 : 1u << 21;
     double sum = 0, values = 0;
     uint32_t i, j;
@@ -831,6 +832,22 @@ static void verdict(const char *what, const char *of, double measured, const cha
     unmet += !met;
 }
 
+/* Where one call takes longer than the formula: apart, where the formula is as good as ours but for some ulp, and where
+ * it buys its time by results that are not finite or off by more. */
+static void print_slower(int as_good) {
+    int some = 0;
+    printf("slower, one by one, than a formula that is %s:", as_good ? "as exact" : "not (see its errors)");
+    for (int k = 0; k < sampler_count; k++) {
+        const errors *const t = &error_of[k][TEXT];
+        const int good = !t->bad && t->max <= 16 && t->pdf_max <= 100;
+        const double times = samplers[k].text ? speedup(ns[k], TEXT, SCALAR) : 1;
+        if (times >= 1 || good != as_good) continue;
+        printf("%s %s %.2fx", some ? "," : "", samplers[k].name, times);
+        some = 1;
+    }
+    puts(some ? "" : " none");
+}
+
 /* What the project asks for: figures of merit that are reported, not gates, as a shared machine has no business failing
  * a build. */
 static void print_targets(void) {
@@ -841,15 +858,9 @@ static void print_targets(void) {
         if (samplers[k].target > 0)
             verdict("n, times as fast as text", samplers[k].name, speedup(ns[k], TEXT, ARRAY), ">=", samplers[k].target,
                     speedup(ns[k], TEXT, ARRAY) >= samplers[k].target);
-    for (k = 0; k < sampler_count; k++)
-        if (samplers[k].text && (samplers[k].scalar_target > 1 || !(speedup(ns[k], TEXT, SCALAR) >= 1)))
-            verdict("scalar, times as fast as text", samplers[k].name, speedup(ns[k], TEXT, SCALAR),
-                    ">=", samplers[k].scalar_target, speedup(ns[k], TEXT, SCALAR) >= samplers[k].scalar_target);
     for (k = 0; k < sampler_count; k++) {
         const errors *const e = &error_of[k][ARRAY];
         if (!(e->max <= 4)) verdict("n, largest error, ulp", samplers[k].name, e->max, "<=", 4, 0);
-        if (samplers[k].text && e->worse)
-            verdict("n, sets with more than text", samplers[k].name, e->worse, "<=", 0, 0);
         if (!(e->pdf_max <= 1)) verdict("n, error of the density", samplers[k].name, e->pdf_max, "<=", 1, 0);
         if (e->bad) verdict("n, results not finite", samplers[k].name, (double)e->bad, "<=", 0, 0);
     }
@@ -861,6 +872,8 @@ static void print_targets(void) {
     }
     against = fmax(extra_speedup("pcg32", "scalar", "n"), extra_speedup("philox", "scalar", "n"));
     verdict("fill, times as fast as scalar", "pcg32 or philox", against, ">=", 3, against >= 3);
+    print_slower(1);
+    print_slower(0);
     printf("%d not met\n", unmet);
 }
 
