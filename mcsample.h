@@ -2349,10 +2349,10 @@ MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
  * 8 tiles may where at most half the rays came through, a smaller one nowhere: where the answer is 0 before any ray,
  * nothing need be learned. */
 MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r);
-/* How many samples of the BRDF are best paired with each of the region's table p. 1/8 where r is all matte or has a
- * lobe of 64 tiles or more by either alpha (0.354 with 16 rows): such a reflection the table knows well. 0, which is a
- * draw of the map in place of the table's, for a lobe below a tile, and below 8 where p->reach is under 2.5. Else 1.
- */
+/* How many samples of the BRDF are best paired with each of the region's table p. 1/8 where r is all matte, or where
+ * 2 rows^2 alpha^2 is 64 tiles or more for both of its alphas (0.354 with 16 rows): such a reflection the table knows
+ * well. 0, which is a draw of the map in place of the table's, where r has no matte part and its lobe is below a tile,
+ * or below 8 tiles while p->reach is under 2.5. Else 1. */
 MCS_API float mcs_region_share(const mcs_product *p, const mcs_reflection *r);
 #endif
 
@@ -2577,7 +2577,7 @@ MCS_FN double mcsi_sqrt_d(double x) {
 
 /* On x86 array functions ask the processor what it has beyond the flags of the build, and passes for AVX2 and AVX-512
  * compile the body again. The library of MSVC lacks the query. MCSI_TARGET stands before the functions of these passes
- * for gcc, which looks at all its options anew for each function in the scope of a #pragma GCC target: an eighth of
+ * for gcc, which looks at all its options anew for each function in the scope of a #pragma GCC target: a sixth of
  * what an include costs. clang takes longer over attributes than over a pragma. */
 #define MCSI_UNITS_AVX2 __attribute__((target("avx2,fma")))
 #define MCSI_UNITS_AVX512 __attribute__((target("avx512f,avx512dq,avx512bw,avx512vl")))
