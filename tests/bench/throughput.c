@@ -878,7 +878,8 @@ static void print_targets(void) {
 }
 
 /* Arrays that a compiled kernel of Mitsuba beats, or that miss what was asked, and what bounds them: instructions on
- * vectors of 512 bits in the loop for 16 points, as gcc 12 makes them. Two of them a cycle is what Zen 4 issues. */
+ * vectors of 512 bits that gcc 12 makes for 16 points, with those before and behind the loop. Two a cycle is what Zen 4
+ * issues. */
 static void print_bounds(void) {
     static const struct {
         const char *row;
