@@ -2827,9 +2827,13 @@ MCSI_SAMPLE mcs_f mcs_set(float x) {
     return x - zero;
 }
 /* A vector that may lie anywhere in memory. gcc 12 copies by memcpy in pieces of 16 bytes, for which a vector then
- * waits. */
+ * waits. gcc for 32 bit ARM passes what it reads through this type in other registers than a function expects that is
+ * not inlined, so that mcs_load has a copy of the plain type. */
 typedef float mcsi_anywhere __attribute__((vector_size(4 * MCSI_W), aligned(4), may_alias));
-MCSI_SAMPLE mcs_f mcs_load(const float *p) { return *(const mcsi_anywhere *)(const void *)p; }
+MCSI_SAMPLE mcs_f mcs_load(const float *p) {
+    const mcs_f v = *(const mcsi_anywhere *)(const void *)p;
+    return v;
+}
 MCSI_SAMPLE void mcs_store(float *p, mcs_f v) { *(mcsi_anywhere *)(void *)p = v; }
 MCSI_CORE void mcsi_store_int(uint32_t *p, mcs_i i) { *(mcsi_anywhere *)(void *)p = (mcs_f)i; }
 MCSI_CORE mcs_i mcsi_bits(mcs_f x) { return (mcs_i)x; }
