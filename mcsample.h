@@ -759,7 +759,9 @@ MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, f
  *             that a light nearby keeps its digits far from the origin. If your scene is in double, pass (0, 0, 0), and
  *             the light less p.
  *   w         a direction from p to the light. Where its density is above 0 it meets the light, or misses a ball by an
- *             angle below 2^-20 or a disk by one below 2^-23/|w.normal|: take it as met, without a test of your own.
+ *             angle below 2^-20, a disk by one below 2^-23/|w.normal|, a rectangle or triangle by one below 2^-22: take
+ *             it as met, without a test of your own. A sampled w may be rounded so far over the rim, and its density is
+ *             that of the sample all the same, in each of its functions.
  *   distance  of the light along w: a shadow ray goes from p to p + distance w. It is 0 where the density is 0.
  *
  * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24 */
@@ -831,9 +833,10 @@ MCS_API void mcs_disk_light_sample_n(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 norma
  * leave out samples whose w meets its back. Small, distant, thin and grazing lights are as exact as others. A light is
  * what the floats say that are given.
  *
- * density    1/(solid angle); 0 in directions that miss the light, whose sides are off by up to 1e-15 of its size and
- *            distance, and for bad input. It is a member of the prepared light, too, for those who know that a ray
- *            hits. Where p is in the plane of the light, all densities are 0, and samples are the direction to its
+ * density    1/(solid angle); 0 in directions that miss the light by an angle of 2^-22 or more, that do not meet its
+ *            plane, and for bad input. Sides are off by up to 1e-15 of the light's size and distance. MIS is right with
+ *            that, as light is 0 there. The density is a member of the prepared light, too, for those who know that a
+ *            ray hits. Where p is in the plane of the light, all densities are 0, and samples are the direction to its
  *            centre. The same holds for a rectangle whose plane is nearer than 1e-15 of its size and distance, and for
  *            a triangle where p is over it, or over a side, and nearer to it than about 1e-8 of its size.
  * bad        A light is bad if one of its numbers is not finite or its area is 0.
@@ -3248,6 +3251,7 @@ MCS_FN float mcsi_project(double a, double b, float t) {
 #define MCSI_1_2PI 0.159154937f
 #define MCSI_1_4PI 0.0795774683f
 #define MCSI_3_16PI 0.0596831031f
+#define MCSI_RIM 1.1920929e-07f /* 2^-23: how far rounding may move a sampled direction past the rim of a light */
 
 /* ==== [vectors] points and directions ============================================================================= */
 
@@ -4948,7 +4952,7 @@ MCSI_FN mcs_f mcs_ball_pdf(mcs_vec3 p, mcs_vec3 centre, mcs_f radius, mcs_vec3 w
     mcs_i ok = b.ok;
     w = mcsi_sane_direction(w, &ok);
     const mcs_f k = MCSI_NARROW(b.k);
-    const mcs_f rim = 1.0000005f * k + 1.1920929e-07f * mcsi_sqrt(k * (2.0f - k)) + 7.1054274e-15f;
+    const mcs_f rim = 1.0000005f * k + MCSI_RIM * mcsi_sqrt(k * (2.0f - k)) + 7.1054274e-15f;
     const mcs_i hit = mcsi_one_minus_z(mcsi_ball_local(&b, w)) <= rim;
     return mcsi_sane_result(ok & hit, MCSI_NARROW(0.15915494309189535 / b.k));
 }
@@ -5056,7 +5060,7 @@ MCSI_CORE mcsi_disk_hit mcsi_disk_light_hit(const mcsi_disk_light *d, mcs_vec3 w
     const mcsi_d t = ahead * height * inverse;
     const mcsi_d x = t * v.x - d->centre.x;
     const mcsi_d y = t * v.y - d->centre.y;
-    const mcsi_d rim = d->radius + 1.1920928955078125e-07 * t * inverse; /* 2^-23 */
+    const mcsi_d rim = d->radius + (double)MCSI_RIM * t * inverse;
     const mcsi_d length2 = v.x * v.x + v.y * v.y + v.z * v.z;
     const mcsi_d length3 = length2 * (0.5 + 0.5 * length2); /* its cube, where it is nearly 1 */
     hit.x = MCSI_NARROW(x);
@@ -5436,6 +5440,10 @@ MCSI_SAMPLE mcs_spherical_rectangle mcs_spherical_rectangle_make(mcs_vec3 p, mcs
     }
     return l;
 }
+/* Whether the point at x past the side at x0, for z = 1, is outside by more than rounding makes of a sampled direction,
+ * whose error has the length sqrt(3) 1.1 x 2^-24 at most. The normal of the plane of p and the side has the length
+ * sqrt(1 + x0^2). */
+MCSI_CORE mcs_i mcsi_not_outside(mcs_f past, mcs_f x0) { return past >= -MCSI_RIM * (1.0f + mcsi_abs(x0)); }
 MCSI_FN mcs_f mcs_spherical_rectangle_pdf(const mcs_spherical_rectangle *l, mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     w = mcsi_sane_direction(w, &ok);
@@ -5443,9 +5451,11 @@ MCSI_FN mcs_f mcs_spherical_rectangle_pdf(const mcs_spherical_rectangle *l, mcs_
     const mcsi_d x = MCSI_DOT_D(d, l->axis_x);
     const mcsi_d y = MCSI_DOT_D(d, l->axis_y);
     const mcsi_d z = MCSI_DOT_D(d, l->normal);
-    const mcs_f past_x = mcsi_min(MCSI_NARROW(x - l->x0 * z), MCSI_NARROW(l->x1 * z - x));
-    const mcs_f past_y = mcsi_min(MCSI_NARROW(y - l->y0 * z), MCSI_NARROW(l->y1 * z - y));
-    ok = ok & (mcsi_min(past_x, past_y) >= 0.0f); /* where z < 0 it is not */
+    ok = ok & (MCSI_NARROW(z) > 0.0f);
+    ok = ok & mcsi_not_outside(MCSI_NARROW(x - l->x0 * z), MCSI_NARROW(l->x0));
+    ok = ok & mcsi_not_outside(MCSI_NARROW(l->x1 * z - x), MCSI_NARROW(l->x1));
+    ok = ok & mcsi_not_outside(MCSI_NARROW(y - l->y0 * z), MCSI_NARROW(l->y0));
+    ok = ok & mcsi_not_outside(MCSI_NARROW(l->y1 * z - y), MCSI_NARROW(l->y1));
     return mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
 }
 MCSI_FN mcs_vec2 mcs_spherical_rectangle_invert(const mcs_spherical_rectangle *l, mcs_vec3 w) {
@@ -5670,14 +5680,24 @@ MCSI_SAMPLE mcs_spherical_triangle mcs_spherical_triangle_make(mcs_vec3 p, mcs_v
     }
     return l;
 }
+/* How far a change of MCSI_RIM in each coordinate of w moves it towards a side with this normal. */
+MCSI_CORE mcs_f mcsi_rim_of_side(const mcsi_vec3_d *n) {
+    return MCSI_RIM * (mcsi_abs(MCSI_NARROW(n->x)) + mcsi_abs(MCSI_NARROW(n->y)) + mcsi_abs(MCSI_NARROW(n->z)));
+}
+/* The side of the plane of the light is that of the sum of from_x/distance of x. As no distance is above 1e19, that is no
+ * subnormal float after the factor. */
 MCSI_FN mcs_f mcs_spherical_triangle_pdf(const mcs_spherical_triangle *l, mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     w = mcsi_sane_direction(w, &ok);
     const mcsi_vec3_d d = mcsi_from_to(mcsi_origin(), w);
-    const mcs_f from_a = MCSI_NARROW(MCSI_DOT_D(l->past_a, d));
-    const mcs_f from_b = MCSI_NARROW(MCSI_DOT_D(l->past_b, d));
-    const mcs_f from_c = MCSI_NARROW(MCSI_DOT_D(l->past_c, d));
-    ok = ok & (mcsi_min(mcsi_min(from_a, from_b), from_c) >= 0.0f);
+    const mcsi_d from_a = MCSI_DOT_D(l->past_a, d);
+    const mcsi_d from_b = MCSI_DOT_D(l->past_b, d);
+    const mcsi_d from_c = MCSI_DOT_D(l->past_c, d);
+    const mcsi_d z = l->per_a * from_a + l->per_b * from_b + l->per_c * from_c;
+    ok = ok & (MCSI_NARROW(1e18 * z) > 0.0f);
+    ok = ok & (MCSI_NARROW(from_a) >= -mcsi_rim_of_side(&l->past_a));
+    ok = ok & (MCSI_NARROW(from_b) >= -mcsi_rim_of_side(&l->past_b));
+    ok = ok & (MCSI_NARROW(from_c) >= -mcsi_rim_of_side(&l->past_c));
     return mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
 }
 MCSI_FN mcs_vec2 mcs_spherical_triangle_invert(const mcs_spherical_triangle *l, mcs_vec3 w) {
@@ -12021,6 +12041,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_normal_quantile MCSI_(normal_quantile)
 #define mcsi_normal_start MCSI_(normal_start)
 #define mcsi_normal_tail MCSI_(normal_tail)
+#define mcsi_not_outside MCSI_(not_outside)
 #define mcsi_off_zero MCSI_(off_zero)
 #define mcsi_one_minus_cos_power MCSI_(one_minus_cos_power)
 #define mcsi_one_minus_z MCSI_(one_minus_z)
@@ -12062,6 +12083,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_region_points_loop MCSI_(region_points_loop)
 #define mcsi_region_values_loop MCSI_(region_values_loop)
 #define mcsi_reverse_bits MCSI_(reverse_bits)
+#define mcsi_rim_of_side MCSI_(rim_of_side)
 #define mcsi_root MCSI_(root)
 #define mcsi_row_at MCSI_(row_at)
 #define mcsi_row_ends MCSI_(row_ends)
@@ -12684,6 +12706,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_normal_quantile
 #undef mcsi_normal_start
 #undef mcsi_normal_tail
+#undef mcsi_not_outside
 #undef mcsi_off_zero
 #undef mcsi_one_minus_cos_power
 #undef mcsi_one_minus_z
@@ -12725,6 +12748,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_region_points_loop
 #undef mcsi_region_values_loop
 #undef mcsi_reverse_bits
+#undef mcsi_rim_of_side
 #undef mcsi_root
 #undef mcsi_row_at
 #undef mcsi_row_ends

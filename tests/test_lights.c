@@ -76,6 +76,10 @@ static shape any_shape(mcs_pcg32 *r, const kind *k, int edges) {
 
 static o_vec3 wide(mcs_vec3 v) { return o_v3(v.x, v.y, v.z); }
 static o_vec3 seen(const shape *s, mcs_vec3 v) { return o_add(wide(v), o_scale(-1.0L, wide(s->p))); }
+static mcs_vec3 opposite(mcs_vec3 w) {
+    const mcs_vec3 v = {-w.x, -w.y, -w.z};
+    return v;
+}
 static double off(o_vec3 w, mcs_vec3 got) {
     return fmax(fabs((double)(w.x - (ld)got.x)),
                 fmax(fabs((double)(w.y - (ld)got.y)), fabs((double)(w.z - (ld)got.z))));
@@ -111,9 +115,10 @@ static void rectangles(mcs_pcg32 *r, const kind *k) {
             const float u2 = any_u(r);
             const mcs_light_point d = mcs_spherical_rectangle_sample(&l, u1, u2);
             check_sample(k->name, d, o_rectangle_light(o, u1, u2), pdf, u1, u2);
-            const int lit = o_spherical_rectangle_pdf(o, wide(d.w)) > 0;
-            CHECK(mcs_spherical_rectangle_pdf(&l, d.w) == (lit ? d.pdf : 0), "%s: pdf of w", k->name);
-            if (lit && o.width > 0.1L * o.z && o.height > 0.1L * o.z && o.z > 0.1L * o.width)
+            CHECK(mcs_spherical_rectangle_pdf(&l, d.w) == d.pdf && mcs_spherical_rectangle_pdf(&l, opposite(d.w)) == 0,
+                  "%s: pdf of w and -w", k->name);
+            if (o_spherical_rectangle_pdf(o, wide(d.w)) > 0 && o.width > 0.1L * o.z && o.height > 0.1L * o.z &&
+                o.z > 0.1L * o.width)
                 check_inverse(k->name, mcs_spherical_rectangle_invert(&l, d.w),
                               o_spherical_rectangle_invert(o, wide(d.w)));
         }
@@ -133,9 +138,9 @@ static void triangles(mcs_pcg32 *r, const kind *k) {
             check_sample(k->name, d, o_triangle_light(o, u1, u2), pdf, u1, u2);
             CHECK(1 - d.x - d.y >= 0 && d.x >= 0 && d.y >= 0, "%s: weights %.9g %.9g", k->name, (double)d.x,
                   (double)d.y);
-            const int lit = o_spherical_triangle_pdf(o, wide(d.w)) > 0;
-            CHECK(mcs_spherical_triangle_pdf(&l, d.w) == (lit ? d.pdf : 0), "%s: pdf of w", k->name);
-            if (lit && pdf < 10) {
+            CHECK(mcs_spherical_triangle_pdf(&l, d.w) == d.pdf && mcs_spherical_triangle_pdf(&l, opposite(d.w)) == 0,
+                  "%s: pdf of w and -w", k->name);
+            if (o_spherical_triangle_pdf(o, wide(d.w)) > 0 && pdf < 10) {
                 const o_vec2 exact = o_spherical_triangle_invert(o, wide(d.w));
                 if (exact.y > 0.01L) check_inverse(k->name, mcs_spherical_triangle_invert(&l, d.w), exact);
             }

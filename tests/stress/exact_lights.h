@@ -260,14 +260,16 @@ static inline void find_sides(light *l) {
         if (dot(l->inwards[i], corner[(i + 2) % n]) < 0) l->inwards[i] = times(-1, l->inwards[i]);
     }
     l->normal = unit(cross(minus(corner[1], corner[0]), minus(corner[2], corner[0])));
+    if (dot(l->normal, corner[0]) < 0) l->normal = times(-1, l->normal);
     l->farthest = 0;
     for (int i = 0; i < n; i++) l->farthest = fmaxq(l->farthest, len(corner[i]));
     l->sides = n;
 }
-/* By which angle w misses a cone of corners: that to the plane of the side that it is furthest beyond. */
+/* By which angle w misses a cone of corners: that to the plane of the side that it is furthest beyond. Behind p all
+ * sides of a small light are close to w, but the plane of the light is not. */
 static inline qd corners_miss(const light *l, q3 w) {
     const qd length = len(w);
-    qd miss = -pi;
+    qd miss = -dot(l->normal, w) / length;
     for (int i = 0; i < l->sides; i++) miss = fmaxq(miss, -dot(l->inwards[i], w) / length);
     return miss;
 }
@@ -277,10 +279,8 @@ static inline qd light_miss(const light *l, q3 w) {
     return corners_miss(l, w);
 }
 /* How far off a direction has the density of the light nevertheless, as rounding may move a sample over the rim: by half
- * an ulp in each coordinate. Of corners that of the truth itself. */
-static inline qd light_needed(const light *l) {
-    return l->id == ID_ball || l->id == ID_disk_light ? (qd)0x1p-24 : (qd)1e-25;
-}
+ * an ulp in each coordinate. Prepared lights have it in front of their plane alone. */
+static inline qd light_needed(const light *l, q3 w) { return l->sides && dot(l->normal, w) <= 0 ? -pi : (qd)0x1p-24; }
 /* The angle by which the sides of corners are off along w. In double, axes and corners seen from p are off by 4 x 2^-53
  * of the farthest one; part I states 1e-15. Where w meets the plane at the distance t, that is as much over t. */
 static inline qd side_slack(const light *l, q3 w) {
@@ -291,13 +291,12 @@ static inline qd side_slack(const light *l, q3 w) {
 static inline qd light_forgiven(const light *l, q3 w) {
     if (l->id == ID_ball) return (qd)0x1p-20;
     if (l->id == ID_disk_light) return (qd)0x1p-23 * len(w) * len(l->at[1]) / fabsq(dot(w, l->at[1]));
-    return side_slack(l, w);
+    return (qd)0x1p-22 + side_slack(l, w);
 }
 /* Where either answer is right. */
 static inline int light_at_rim(const light *l, q3 w) {
     const qd miss = light_miss(l, w);
-    const int beside = l->id == ID_ball || l->id == ID_disk_light;
-    return miss > (beside ? light_needed(l) : -side_slack(l, w)) && miss <= light_forgiven(l, w);
+    return miss > light_needed(l, w) && miss <= light_forgiven(l, w);
 }
 
 static inline light seen_from_p(const given_light *g) {
@@ -329,7 +328,7 @@ static inline place light_seen(const light *l, qd u1, qd u2) {
 }
 static inline qd light_pdf(const light *l, q3 w) {
     qd t;
-    if (!(light_miss(l, w) <= light_needed(l))) return 0;
+    if (!(light_miss(l, w) <= light_needed(l, w))) return 0;
     return l->id == ID_disk_light ? disk_density(l, add(l->at[0], disk_off(l, w, &t))) : 1 / l->all;
 }
 
