@@ -560,7 +560,8 @@ MCS_FN float mcs_tent_invert(float r, float x);
 
 /* ---- exponential: the way to the next collision in an even medium ----
  * density    rate e^(-rate x) for x >= 0
- * rate       in [1e-18, 1e18]; the mean is 1/rate
+ * rate       in [0, 1e18]; the mean is 1/rate. Below 1e-18 it is that of a vacuum: x is FLT_MAX, which is beyond any
+ *            end, and all densities are 0.
  * cost       1 logarithm, 1 division
  * functions  mcs_exponential_sample, mcs_exponential_pdf, mcs_exponential_invert */
 MCS_FN mcs_sample1 mcs_exponential_sample(float rate, float u);
@@ -4024,23 +4025,28 @@ MCSI_FN mcs_f mcs_tent_invert(mcs_f r, mcs_f x) {
 
 /* ---- exponential: x = -ln(1 - u) / rate, where e^(-rate x) = 1 - u ---- */
 
+/* A rate that is nothing to collide with, though not a bad one. */
+MCSI_CORE mcs_i mcsi_is_vacuum(mcs_f rate) { return (rate >= 0.0f) & (rate < 1e-18f); }
 MCSI_SAMPLE mcs_sample1 mcs_exponential_sample(mcs_f rate, mcs_f u) {
+    const mcs_i vacuum = mcsi_is_vacuum(rate);
     mcs_i ok = mcsi_scale_ok(rate);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok | vacuum);
     u = mcsi_sane_u(u, &ok);
-    return mcsi_sample1(ok, mcsi_log1m(u) / -rate, rate * (1.0f - u));
+    mcs_sample1 s = mcsi_sample1(ok, mcsi_log1m(u) / -mcsi_sel(vacuum, mcs_set(1.0f), rate), rate * (1.0f - u));
+    s.x = mcsi_sel(vacuum, mcs_set(FLT_MAX), s.x);
+    return s;
 }
 #ifdef MCSI_PUBLIC
 /* At 1e20 the density is 0 for every rate. */
 MCSI_FN mcs_f mcs_exponential_pdf(mcs_f rate, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(rate);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok | mcsi_is_vacuum(rate));
     x = mcsi_min(x, mcs_set(1e20f));
     return mcsi_sane_result(ok & (x >= 0.0f), rate * mcsi_exp_neg(-rate * mcsi_max(x, mcs_set(0.0f))));
 }
 MCSI_FN mcs_f mcs_exponential_invert(mcs_f rate, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(rate);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok | mcsi_is_vacuum(rate));
     x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1e20f));
     mcs_f minus_u;
     mcsi_exp_both(-mcsi_min(mcsi_max(rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &minus_u);
@@ -5684,8 +5690,7 @@ MCSI_SAMPLE mcs_spherical_triangle mcs_spherical_triangle_make(mcs_vec3 p, mcs_v
 MCSI_CORE mcs_f mcsi_rim_of_side(const mcsi_vec3_d *n) {
     return MCSI_RIM * (mcsi_abs(MCSI_NARROW(n->x)) + mcsi_abs(MCSI_NARROW(n->y)) + mcsi_abs(MCSI_NARROW(n->z)));
 }
-/* The side of the plane of the light is that of the sum of from_x/distance of x. As no distance is above 1e19, that is no
- * subnormal float after the factor. */
+/* z is in proportion to the cosine of w and the normal of the light that points away from p. */
 MCSI_FN mcs_f mcs_spherical_triangle_pdf(const mcs_spherical_triangle *l, mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     w = mcsi_sane_direction(w, &ok);
@@ -5694,7 +5699,7 @@ MCSI_FN mcs_f mcs_spherical_triangle_pdf(const mcs_spherical_triangle *l, mcs_ve
     const mcsi_d from_b = MCSI_DOT_D(l->past_b, d);
     const mcsi_d from_c = MCSI_DOT_D(l->past_c, d);
     const mcsi_d z = l->per_a * from_a + l->per_b * from_b + l->per_c * from_c;
-    ok = ok & (MCSI_NARROW(1e18 * z) > 0.0f);
+    ok = ok & (MCSI_NARROW(z / (l->per_a + l->per_b + l->per_c)) > 0.0f);
     ok = ok & (MCSI_NARROW(from_a) >= -mcsi_rim_of_side(&l->past_a));
     ok = ok & (MCSI_NARROW(from_b) >= -mcsi_rim_of_side(&l->past_b));
     ok = ok & (MCSI_NARROW(from_c) >= -mcsi_rim_of_side(&l->past_c));
@@ -12011,6 +12016,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_in_turns MCSI_(in_turns)
 #define mcsi_inverse_root MCSI_(inverse_root)
 #define mcsi_inverted MCSI_(inverted)
+#define mcsi_is_vacuum MCSI_(is_vacuum)
 #define mcsi_lane3 MCSI_(lane3)
 #define mcsi_largest MCSI_(largest)
 #define mcsi_linear MCSI_(linear)
@@ -12676,6 +12682,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_in_turns
 #undef mcsi_inverse_root
 #undef mcsi_inverted
+#undef mcsi_is_vacuum
 #undef mcsi_lane3
 #undef mcsi_largest
 #undef mcsi_linear

@@ -310,7 +310,11 @@ static inline int mcst_bad_linear(int i, float v) {
     return !(v >= 0 && v <= FLT_MAX);
 }
 static inline int mcst_bad_radius(int i, float v) { return i == 0 && mcst_outside(v, 1e-18f, 1e18f); }
-static inline int mcst_bad_rate(int i, float v) { return i == 0 && mcst_outside(v, 1e-18f, 1e18f); }
+/* Below 1e-18 nothing is met, at FLT_MAX and with density 0. */
+static inline int mcst_bad_rate(int i, float v) {
+    if (i != 0) return 0;
+    return mcst_outside(v, 0, 1e18f) ? 1 : v >= 1e-18f ? 0 : -1;
+}
 static inline int mcst_bad_truncexp(int i, float v) {
     if (i == 1) return mcst_outside(v, 1e-18f, 1e18f);
     return !(v >= 0) ? 1 : v <= 1e18f ? 0 : -1;

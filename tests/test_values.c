@@ -47,6 +47,24 @@ static void constants(const char *name, double bound) {
     }
 }
 
+/* In a vacuum there is no next collision before any end, by arrays neither, and MCS_ASSERT has nothing to tell. */
+static void vacuum(void) {
+    static const float rates[] = {0, -0.0f, 0x1p-149f, 1e-30f, 0.99e-18f};
+    for (int i = 0; i < 5; i++) {
+        const float u[4] = {0, 0.25f, 0.5f, 1 - 0x1p-24f};
+        float x[4];
+        float pdf[4];
+        mcs_exponential_sample_n(rates[i], 4, u, x, pdf);
+        for (int k = 0; k < 4; k++) {
+            const mcs_sample1 s = mcs_exponential_sample(rates[i], u[k]);
+            CHECK(s.x == FLT_MAX && s.pdf == 0 && x[k] == FLT_MAX && pdf[k] == 0, "rate %a: %g %g, arrays %g %g",
+                  (double)rates[i], (double)s.x, (double)s.pdf, (double)x[k], (double)pdf[k]);
+        }
+        CHECK(mcs_exponential_pdf(rates[i], 1) == 0 && mcs_exponential_invert(rates[i], 1) == 0, "rate %a",
+              (double)rates[i]);
+    }
+    CHECK(mcs_exponential_sample(-1, 0.5f).x == 0 && mcs_exponential_sample(1e-18f, 0.5f).pdf > 0, "other rates");
+}
 /* Outside the support densities are 0 and inverses are the nearer end. Rims take in the rounding of what lies on them,
  * 5e-7. */
 static void beyond_the_ends(void) {
@@ -322,6 +340,7 @@ int main(int argc, char **argv) {
     for (size_t i = 0; i < 6; i++)
         if (mcst_case("constants of %s", even[i])) constants(even[i], i < 2 ? 0.1 : 0.15);
     if (mcst_case("beyond the ends")) beyond_the_ends();
+    if (mcst_case("a vacuum")) vacuum();
     if (mcst_case("truncexp of small u")) truncexp_small_u();
     if (mcst_case("bilinear without a good height")) bilinear_uniform();
     if (mcst_case("triangle: nearest floats, inside")) triangle_points();
