@@ -66,11 +66,15 @@
  *
  * Bad input     It never crashes and never gives NaN. It gives pdf 0, weight 0 and a finite point. Bad are NaN
  *               anywhere, u outside [0,1), a direction whose squared length is not within (1/4, 4), wo below the
- *               surface, and a parameter out of its range. A density above FLT_MAX is returned as FLT_MAX.
+ *               surface, and a parameter out of its range. A density above FLT_MAX is returned as FLT_MAX. All this is
+ *               of numbers: pointers have to be good ones, and what was not built must not be drawn from. Compilers
+ *               warn where the status of a builder is ignored.
  *
- * Mistakes      Define MCS_ASSERT, as assert for example, to be told of them. Scalar functions tell parameters out of
- *               range, u outside [0,1), and directions whose squared length is not within 0.001 of 1. Array functions
- *               of one wo tell such a wo; a call of one point tells what X tells.
+ * Mistakes      Define MCS_ASSERT, as assert for example, to be told of them in words. Scalar functions tell parameters
+ *               out of range, u outside [0,1), directions whose squared length is not within 0.001 of 1, and tables
+ *               and maps that were not built. Array functions of one wo tell such a wo; a call of one point tells what
+ *               X tells. Nothing tells a wo or wi below the surface, which is no mistake, and bad numbers in arrays
+ *               and lanes: look for mistakes with scalar functions.
  *
  * Arrays        X_n does for n points what X does for one. It takes plain arrays, one per component, of any alignment,
  *               and reads and writes n numbers of each. A result may be NULL and is then left out. A result may be the
@@ -104,8 +108,6 @@
  *
  * Rounding      It must be to nearest. In another mode results are finite at best. Flush to zero and denormals-are-zero
  *               may be on. Subnormal numbers then count as 0; cosines have to be 0, or 1e-7 and more.
- *
- * slide 9       and the like are slides of the lecture "Monte Carlo Integration" (A. Ghosh, Imperial College, 2024).
  *
  * State         There is none: no globals, no allocation, no input and output. Threads may call everything at once that
  *               does not share an object of the caller.
@@ -181,7 +183,9 @@
  * These add something or leave it out. Functions that are not used leave no code in any case: what is left out saves
  * compile time alone. None of them is on by default.
  *
- * MCS_PACKETS         4, 8 or 16. The functions of so many lanes exist, mcs8_ggx_pdf say, and those of fewer.
+ * MCS_PACKETS         4, 8 or 16. The functions of so many lanes exist, mcs8_ggx_pdf say, and those of fewer. gcc notes
+ *                     how it passes vectors; -Wno-psabi silences that. Files compiled for other processors pass them in
+ *                     another way.
  * MCS_NO_WIDE         No vector types. Array functions loop over one point at a time, and there are no packets. It is
  *                     on by itself where the compiler has no vector types, for kernels of graphics processors, and
  *                     where this file was pasted into another one, so that it cannot include itself.
@@ -196,12 +200,14 @@
  *
  * MCS_MAX_LANES       The widest unit that array functions use on x86: 4 is SSE2, 8 is AVX2, 16, the default, AVX-512.
  *                     With 8 and 16, a processor that lacks AVX2 takes the points of arrays one by one.
- * MCS_ASSERT          Called with conditions on arguments; see "Mistakes" above. assert is a good value.
+ * MCS_ASSERT          Called with conditions on arguments; see "Mistakes" above. assert is a good value. Include
+ *                     <assert.h> before this file then.
  * MCS_FN              The linkage of every public function, static inline by default. Defined as nothing, it makes a
  *                     library of a C file that includes this one. Defined as inline, it lets a C++ module export them.
  * MCS_API             The linkage of what MCS_DECLARE declares: MCS_FN by default, extern with MCS_DECLARE. In C++ it
  *                     has to say extern "C".
- * MCS_SELF            The name under which the header includes itself. Only a renamed copy needs it. */
+ * MCS_SELF            The name under which the header includes itself, "mcsample.h" if it is not defined. A renamed
+ *                     copy needs it, else array functions take the points one by one. */
 
 #if defined(MCS_IMPLEMENTATION) && !defined(MCS_DECLARE)
 #define MCS_DECLARE
@@ -245,6 +251,9 @@
 /* Passes for more than one lane need this file under its name. It has none where its text was pasted into another. */
 #if !defined(MCS_NO_WIDE) && defined(__has_include)
 #if !__has_include(MCS_SELF)
+#ifdef MCS_PACKETS
+#error "MCS_PACKETS needs MCS_SELF, the name of this file, as it is no mcsample.h"
+#endif
 #define MCS_NO_WIDE
 #endif
 #endif
@@ -274,7 +283,8 @@
  * MCSI_HOT      stands before public functions of the same kind.
  * MCSI_APART    stands before functions that have a body of their own. They are declared inline all the same, so that
  *               they vanish where nothing calls them. gcc warns of both together, unless MCSI_QUIET stands before the
- *               function and MCSI_LOUD behind it. */
+ *               function and MCSI_LOUD behind it.
+ * MCSI_CHECKED  stands in the prototypes of functions whose result must not be ignored. */
 #if defined(MCS_FN) && defined(__cplusplus)
 #define MCSI_PRIVATE inline
 #else
@@ -319,6 +329,11 @@
 #else
 #define MCSI_HOT MCSI_INLINE
 #endif
+#ifdef MCSI_GNU
+#define MCSI_CHECKED __attribute__((warn_unused_result))
+#else
+#define MCSI_CHECKED
+#endif
 
 /* ================================================================================================================ */
 /* PART I: THE INTERFACE                                                                                            */
@@ -362,7 +377,8 @@ typedef struct {
     float weight; /* f(wo, wi) wi.z / pdf; 0 where the sample is lost */
 } mcs_brdf;
 
-/* What functions return that build a table or check one. Below 0 are errors. */
+/* What functions return that build a table or check one. Below 0 are errors. Compilers warn where it is ignored: what
+ * was not built must not be drawn from. */
 typedef enum {
     MCS_OK = 0,
     MCS_ERR_ARG = -1,    /* a pointer is NULL or not aligned */
@@ -632,7 +648,7 @@ MCS_FN float mcs_power_pdf(float e, float x);
 MCS_FN float mcs_power_invert(float e, float x);
 
 /* ---- evenpower: the same to both sides ----
- * density    (e + 1)/2 |x|^e on [-1,1]; slide 13 of the lecture for e = 2
+ * density    (e + 1)/2 |x|^e on [-1,1]
  * e          the exponent; in [0, 1e9]
  * cost       1 power, 1 division
  * functions  mcs_evenpower_sample, mcs_evenpower_pdf, mcs_evenpower_invert */
@@ -699,7 +715,7 @@ MCS_API void mcs_bilinear_sample_n(float w00, float w10, float w01, float w11, s
  *
  * density   1/(pi radius^2) per area, 0 outside the disk
  * accuracy  coordinates within 2^-22 of the radius, pdf within 0.16 E; 1 E is a relative error of 1e-6 here.
- * source    Shirley and Chiu 1997, "A low distortion map between disk and square" (concentric); slide 14 (polar) */
+ * source    Shirley and Chiu 1997, "A low distortion map between disk and square" (concentric) */
 
 /* ---- concentric: squares become circles. Use this one. ----
  * It keeps neighbours together, so that stratified points stay well spread. It is continuous.
@@ -975,7 +991,8 @@ MCS_API void mcs_cosine_sample_n(size_t n, const float *u1, const float *u2, flo
 /* ---- cone: all directions within an angle theta_max of +z ----
  * z          1 - k u1
  * k          1 - cos(theta_max), in [1e-30, 2]. The cosine itself could not hold a narrow cone, as it rounds to 1.
- * density    1/(2 pi k)
+ * density    1/(2 pi k). A direction that a frame turned away and back may be rounded over the rim of a narrow cone,
+ *            where the density is 0: keep that of the sample. mcs_ball_sample has no such rim, and needs no frame.
  * functions  mcs_cone_sample, mcs_cone_pdf, mcs_cone_invert, mcs_cone_sample_n for arrays */
 MCS_FN mcs_dir mcs_cone_sample(float k, float u1, float u2);
 MCS_FN float mcs_cone_pdf(float k, mcs_vec3 w);
@@ -1091,7 +1108,7 @@ MCS_FN mcs_vec3 mcs_to_local(const mcs_frame *f, mcs_vec3 v);
  * accuracy  What the blocks of the lobes state holds where the cosines of wo, wi and h to the normal, and Phong's to
  *           the mirror direction, are 1e-15 or more. Nearer to the horizon squares of cosines underflow; results are
  *           finite and not negative there, no more.
- * source    Torrance and Sparrow 1967; Walter et al. 2007, equation 14, slide 21 (the density); Schlick 1994 */
+ * source    Torrance and Sparrow 1967; Walter et al. 2007, equation 14 (the density); Schlick 1994 */
 #ifndef MCS_NO_LOBES
 
 /* wo mirrored at h: 2 (wo.h) h - wo. */
@@ -1196,7 +1213,7 @@ typedef struct {
     const float *parameter_x;        /* NULL: all hits have the material m. Else what mcs_x_make is to be given along x
                                         for each: alpha_x, or nu, or n of [phong]. m may then be NULL, but the model of
                                         [ward] is that of m. */
-    const float *parameter_y;        /* the same along y: alpha_y, or nv; NULL in [phong] */
+    const float *parameter_y;        /* the same along y: alpha_y, or nv; NULL: as along x */
 } mcs_hits;
 #endif
 
@@ -1211,7 +1228,7 @@ typedef struct {
  * +z, which has functions of its own, mcs_phong_lobe_*, and turns it to R by mcs_frame_make(R):
  *
  *   pdf of w   = (n + 1)/(2 pi) cos^n(theta)
- *   (u1, u2)     cos(theta) = (1 - u1)^(1/(n + 1)), azimuth 2 pi u2 (slide 15)
+ *   (u1, u2)     cos(theta) = (1 - u1)^(1/(n + 1)), azimuth 2 pi u2
  *
  * The lobe loses up to half of its samples at grazing incidence: prefer [ggx] for anything measured.
  *
@@ -1280,7 +1297,7 @@ MCS_API void mcs_phong_pdf_hits_n(const mcs_phong *m, const mcs_hits *hits, size
  *
  *   pdf of h   = exp(-e) / (pi alpha_x alpha_y cos^3(theta_h))
  *   pdf of wi  = pdf of h / (4 wo.h)
- *   (u1, u2)     slopes (alpha_x r cos, alpha_y r sin)(2 pi u2) of h, r = sqrt(-ln(1 - u1)) (slides 17, 19). The map is
+ *   (u1, u2)     slopes (alpha_x r cos, alpha_y r sin)(2 pi u2) of h, r = sqrt(-ln(1 - u1)). The map is
  *                continuous but for the seam at u2 = 0.
  *
  *   model           f pi alpha_x alpha_y exp(e)         weight
@@ -1439,8 +1456,10 @@ MCS_API void mcs_beckmann_pdf_hits_n(const mcs_beckmann *m, const mcs_hits *hits
  *
  *   mcs_ggx_bounded_*  visible normals, limited to those that can reflect upwards. Use this one.
  *   mcs_ggx_vndf_*     all visible normals. The same as bounded where alpha is small.
- *   mcs_ggx_*          half-vectors in proportion to D cos(theta_h), as in the course notes (slide 18). At 88 degrees
- *                      it loses 40 to 50 % of its samples.
+ *   mcs_ggx_*          half-vectors in proportion to D cos(theta_h), as in most course notes. At 88 degrees it loses
+ *                      40 to 50 % of its samples.
+ *
+ * A sample, its density and its weight have to be of one family; eval is that of all.
  *
  * The BRDF is f = D G2 / (4 wo.z wi.z). With t(w) = |(alpha_x w.x, alpha_y w.y, w.z)|:
  *
@@ -1805,7 +1824,7 @@ typedef struct {
 } mcs_pick;
 /* The header of a table; its lists follow in memory. Read it, do not write to it. */
 typedef struct {
-    double total;     /* sum of the entries */
+    double total;     /* sum of the entries; total/n is the integral over [0,1] */
     uint32_t n;       /* cells */
     uint32_t bad;     /* entries that were negative, NaN or infinite */
     uint32_t shift;   /* private */
@@ -1825,10 +1844,10 @@ typedef struct {
 /* Bytes of a table of n cells; 0 where n is 0 or too large. */
 MCS_API size_t mcs_pwc_bytes(uint32_t n);
 /* From n densities, of any scale. f may lie in the table's own memory. */
-MCS_API mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n);
+MCS_API MCSI_CHECKED mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n);
 /* From a function on [0,1]: f(x, context) is called 4 n times, for a Gauss rule with 4 points in each cell. */
-MCS_API mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context), void *context,
-                                    uint32_t n);
+MCS_API MCSI_CHECKED mcs_status mcs_pwc_build_fn(mcs_pwc *t, size_t bytes, float (*f)(float x, void *context),
+                                                 void *context, uint32_t n);
 /* Draws x. u in [0,1), else the density is 0. */
 MCS_API mcs_cell mcs_pwc_sample(const mcs_pwc *t, float u);
 /* Draws x by 64 random bits, b1 the upper 32. */
@@ -1841,7 +1860,7 @@ MCS_API float mcs_pwc_invert(const mcs_pwc *t, float x);
 /* Bytes of a table of n probabilities; 0 where n is 0 or too large. */
 MCS_API size_t mcs_discrete_bytes(uint32_t n);
 /* From n weights, of any scale. w may lie in the table's own memory. */
-MCS_API mcs_status mcs_discrete_build(mcs_discrete *t, size_t bytes, const float *w, uint32_t n);
+MCS_API MCSI_CHECKED mcs_status mcs_discrete_build(mcs_discrete *t, size_t bytes, const float *w, uint32_t n);
 /* Draws an entry. u in [0,1), else the probability is 0. */
 MCS_API mcs_pick mcs_discrete_sample(const mcs_discrete *t, float u);
 /* Draws an entry by 64 random bits, b1 the upper 32. */
@@ -1851,8 +1870,9 @@ MCS_API float mcs_discrete_pmf(const mcs_discrete *t, uint32_t i);
 
 /* Bytes of a table of n cells, which has n + 1 vertices; 0 where n is 0 or too large. */
 MCS_API size_t mcs_pwl_bytes(uint32_t n);
-/* From densities at n + 1 vertices, of any scale. f may lie in the table's own memory. */
-MCS_API mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n);
+/* From densities at n + 1 vertices, of any scale: for a list of k vertices, n is k - 1. f may lie in the table's own
+ * memory. */
+MCS_API MCSI_CHECKED mcs_status mcs_pwl_build(mcs_pwl *t, size_t bytes, const float *f, uint32_t n);
 /* Draws x. u in [0,1), else the density is 0. */
 MCS_API mcs_cell mcs_pwl_sample(const mcs_pwl *t, float u);
 /* Draws x by 64 random bits, b1 the upper 32. */
@@ -1879,7 +1899,7 @@ typedef struct {
 /* Bytes of a table of w x h cells; 0 where one of them is 0 or above 65536, or where they are too many for memory. */
 MCS_API size_t mcs_pwc2_bytes(uint32_t w, uint32_t h);
 /* From w h densities, of any scale, row by row from y = 0 on. f must not overlap the table. */
-MCS_API mcs_status mcs_pwc2_build(mcs_pwc2 *t, size_t bytes, const float *f, uint32_t w, uint32_t h);
+MCS_API MCSI_CHECKED mcs_status mcs_pwc2_build(mcs_pwc2 *t, size_t bytes, const float *f, uint32_t w, uint32_t h);
 /* Draws (x, y). u1 (columns) and u2 (rows) in [0,1), else the density is 0. x increases with u1, y with u2. */
 MCS_API mcs_cell2 mcs_pwc2_sample(const mcs_pwc2 *t, float u1, float u2);
 /* Density at (x, y); 0 outside the unit square. */
@@ -1895,7 +1915,7 @@ MCS_API void mcs_pwc2_sample_n(const mcs_pwc2 *t, size_t n, const float *u1, con
 /* Bytes of a table of n probabilities; 0 where n is 0 or too large. */
 MCS_API size_t mcs_alias_bytes(uint32_t n);
 /* From n weights, of any scale. w must not overlap the table. */
-MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n);
+MCS_API MCSI_CHECKED mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, uint32_t n);
 /* Draws an entry. u in [0,1), else the probability is 0. */
 MCS_API mcs_pick mcs_alias_sample(const mcs_alias *t, float u);
 /* Draws an entry by 64 random bits, b1 the upper 32. */
@@ -1932,7 +1952,7 @@ MCS_API void mcs_alias_sample_n(const mcs_alias *t, size_t n, const float *u, ui
  *                makes the same bytes, whatever the memory held.
  * density        Per solid angle: probability of the texel (luminance times solid angle) over its solid angle,
  *                2 pi/w (cos t0 - cos t1). It is constant within a texel, because there cos(theta), not theta, is
- *                linear in u2; no division by sin(theta) is left (slide 23). Probabilities of rows, and of columns
+ *                linear in u2; no division by sin(theta) is left. Probabilities of rows, and of columns
  *                within a row, are integers over 2^31, exact as in [tables]. A texel that is not black can be drawn,
  *                black ones never are. Samples stay away from the borders of their texel by more than a direction is
  *                rounded: mcs_env_texel of a sampled direction gives back the texel and the density of the sample.
@@ -1944,9 +1964,13 @@ MCS_API void mcs_alias_sample_n(const mcs_alias *t, size_t n, const float *u, ui
  *                that a lamp of such a colour is drawn. +infinity, which a sun in halves may be, counts as FLT_MAX.
  *                mcs_env_mean does the same; whoever looks radiance up has to.
  * black map      is no error: it is drawn as even light, e->uniform is 1 and e->total is 0.
- * bilinear       For radiance that is looked up with a bilinear filter: weights are the texels filtered by (1 2 1)/4
- *                along rows and columns, at least a quarter of what a filtered look-up finds anywhere in the texel.
- *                L/pdf is at most 4 times the filtered total.
+ * orientation    Azimuths grow from +x to +y, as seen from +z. From inside, with +z up, columns run to the left: negate
+ *                e->frame.t to see a photograph as it was taken. Where +y is up in the world, take the frame that
+ *                mcs_frame_make has for (0, 1, 0), and then negate its t.
+ * bilinear       For radiance that is looked up with a bilinear filter between centres of texels, at (col + 1/2,
+ *                row + 1/2). Columns wrap around, and rows stop at the first and last one: so has a look-up to. Weights
+ *                are the texels filtered by (1 2 1)/4 along rows and columns, at least a quarter of what a filtered
+ *                look-up finds anywhere in the texel. L/pdf is at most 4 times the filtered total.
  * floor          MIS compensation (Karlik et al. 2019): with image.floor = mcs_env_mean(&image), what is darker than
  *                the mean is left to the other strategy. Such a map is incomplete (e->incomplete): its density is 0
  *                where the image is not black.
@@ -1984,8 +2008,7 @@ typedef struct {
     uint32_t incomplete;             /* 1 where the image had a floor */
     float turn, inner;               /* private: width of a column, and of its part within the margins */
     /* World directions of the map's x, y, z, orthonormal. build makes it the axes; it may be changed at any time but
-     * for products built with it. Where +y is up in the world, take mcs_frame_make of (0, 1, 0). Seen from inside, with
-     * the map's z up, columns run to the left: a mirrored frame (t negated) shows a photograph as it was taken. */
+     * for products built with it. */
     mcs_frame frame;
     uint64_t checksum; /* private: of all but the frame */
 } mcs_env;
@@ -2009,19 +2032,20 @@ MCS_API size_t mcs_env_bytes(uint32_t w, uint32_t h);
 /* Builds a map. MCS_ERR_ARG: e, im or its pixels are NULL, e is misaligned, or there are 0 or 2 channels. MCS_ERR_SIZE:
  * mcs_env_bytes is 0, a stride is too short or too long, or pixel_stride is negative. MCS_ERR_MEMORY: bytes are too
  * few. After an error nothing was written. */
-MCS_API mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im);
+MCS_API MCSI_CHECKED mcs_status mcs_env_build(mcs_env *e, size_t bytes, const mcs_image *im);
 /* A part of a build: rows [y0, y1). Threads may build other rows of the same map at the same time. Errors as in
  * mcs_env_build; MCS_ERR_SIZE also where y0 > y1 or y1 > h. */
-MCS_API mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0, uint32_t y1);
+MCS_API MCSI_CHECKED mcs_status mcs_env_build_rows(mcs_env *e, size_t bytes, const mcs_image *im, uint32_t y0,
+                                                   uint32_t y1);
 /* The end of a build, after every row was built. Bits are those of mcs_env_build, whatever the parts. Errors as there.
  */
-MCS_API mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im);
+MCS_API MCSI_CHECKED mcs_status mcs_env_finish(mcs_env *e, size_t bytes, const mcs_image *im);
 /* Whether memory (a file read or mapped) is a map. MCS_ERR_MEMORY when it is cut short, MCS_ERR_ARG when e is NULL or
  * misaligned, else MCS_ERR_FORMAT. MCS_OK promises that all bytes but e->frame are those of a build, by a checksum of
  * 64 bits: damage to one byte never passes, other damage once in 2^64 times; that e->frame, which is yours to change,
  * is orthonormal to 1e-4; and that samplers keep to the table's memory, even if the table was forged. It reads the
  * whole table. A file of another version of the format, or of another byte order, is refused. */
-MCS_API mcs_status mcs_env_check(const mcs_env *e, size_t bytes);
+MCS_API MCSI_CHECKED mcs_status mcs_env_check(const mcs_env *e, size_t bytes);
 /* Mean luminance over the sphere, without regard to the floor; 0 for an image that build refuses. */
 MCS_API float mcs_env_mean(const mcs_image *im);
 
@@ -2046,8 +2070,8 @@ MCS_API size_t mcs_env_window_bytes(uint32_t rows);
  * is NULL, or m is misaligned. MCS_ERR_SIZE: rows or columns are none, more than the map has, or begin beyond it; rows
  * may not go beyond the last. MCS_ERR_MEMORY: bytes are too few. A window without light is no error: it is drawn as
  * even light. It goes with any map of the same image. */
-MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
-                                        uint32_t col, uint32_t cols);
+MCS_API MCSI_CHECKED mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row,
+                                                     uint32_t rows, uint32_t col, uint32_t cols);
 /* Draws a direction from the window: as mcs_env_sample, with densities that integrate to 1 over the window. */
 MCS_API mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2);
 /* Density of mcs_env_window_sample at w; 0 outside the window, and for a bad w. */
@@ -2167,7 +2191,7 @@ typedef struct {
     mcs_vec3 wo;     /* the unit direction to the eye, in this frame; wo.z > 0 */
     /* Widths of the lobe: tiles are weighed by alphas within [1e-4, 1e4], samples of the lobe go down to 1e-7. */
     float alpha_x, alpha_y;
-    float matte;         /* weight of the diffuse part, 0 to 1; the lobe has the rest */
+    float matte;         /* weight of the diffuse part, 0 to 1: kd/(kd + ks) for kd/pi + ks times the lobe's f */
     mcs_profile profile; /* any other value counts as MCS_PROFILE_GGX */
 } mcs_reflection;
 
@@ -2232,7 +2256,7 @@ typedef struct {
 MCS_API size_t mcs_tiles_bytes(const mcs_env *e, uint32_t rows);
 /* Builds tiles of a finished map, which may be turned (e->frame) afterwards: tiles know directions in the map's
  * own frame only. */
-MCS_API mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows);
+MCS_API MCSI_CHECKED mcs_status mcs_tiles_build(mcs_tiles *t, size_t bytes, const mcs_env *e, uint32_t rows);
 /* The world direction in which the light of tile k lies, k < rows cols; any larger k counts as the last. It is the
  * middle of a tile that has no light. */
 MCS_API mcs_vec3 mcs_tiles_direction(const mcs_tiles *t, const mcs_env *e, uint32_t k);
@@ -2250,16 +2274,16 @@ MCS_API size_t mcs_product_table_bytes(uint32_t rows);
 /* Builds the product of a map and a reflection. It holds for the orientation (e->frame) that the map has now. g: the
  * region that the point belongs to, or NULL. The light is then that which comes through to the region, and at least a
  * tenth of the samples comes from the lobe, unless the surface is all matte. */
-MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                     const mcs_reflection *r, const mcs_region *g);
+MCS_API MCSI_CHECKED mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
+                                                  const mcs_reflection *r, const mcs_region *g);
 /* Builds the product of a map and a region: one table for all its points. */
-MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                            const mcs_region *g);
+MCS_API MCSI_CHECKED mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const mcs_tiles *t,
+                                                         const mcs_env *e, const mcs_region *g);
 /* Builds the product of a map and any reflection. weight has rows cols entries, one per tile: the reflection times the
  * cosine about mcs_tiles_direction(t, e, k), in any unit. It must be > 0 wherever the reflection may be. Negative
  * entries and NaN count as 0, +infinity as FLT_MAX. The lobe gets no share. */
-MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
-                                             const float *weight);
+MCS_API MCSI_CHECKED mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const mcs_tiles *t,
+                                                          const mcs_env *e, const float *weight);
 /* Draws a world direction. Its texel is where its light is to be looked up. MCS_ASSERT tells tiles of another size than
  * p was built from; nothing else protects from tiles or maps that p was not built from. */
 MCS_API mcs_texel mcs_product_sample(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, float u1, float u2);
@@ -2310,10 +2334,11 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  * So all light can be drawn, whatever was learned. Nothing is biased, as no table knows the ray of a sample that was
  * drawn from it: the rays of a pass wait in `fresh` until it is over.
  *
- * Pair each sample with one of the BRDF by mcs_mis_balance, or with as many as mcs_region_share says, and add their
- * rays, too (mcs_tiles_of_direction). Narrow lobes gain by a table only where much is hidden, in a pattern that all
- * points of the region share. As learning costs, too, a region that shall never lose draws from the map by
- * mcs_mis_power until it knows better:
+ * Pair each sample with as many of the BRDF as mcs_region_share says, share: where it is below 1, take one with that
+ * probability. By the balance heuristic, what either of them finds is divided by the table's density of its direction
+ * plus share times that of the BRDF. Add the rays of both (mcs_tiles_of_direction). Narrow lobes gain by a table only
+ * where much is hidden, in a pattern that all points of the region share. As learning costs, too, a region that shall
+ * never lose draws from the map by mcs_mis_power until it knows better:
  *
  *   no rays      mcs_region_pays: where that is 0, no table can pay. Else count rays.
  *   32 rays      The same question. Where the answer is 1, add the points, build the table and ask mcs_region_share of
@@ -2335,7 +2360,7 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
 /* Bytes of a region; 0 for rows other than 16, 32 and 64. */
 MCS_API size_t mcs_region_bytes(uint32_t rows);
 /* Starts an empty region. Errors are those of the builders of products. */
-MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles *t);
+MCS_API MCSI_CHECKED mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles *t);
 /* Adds what a point of the region reflects. */
 MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r);
 /* Adds a shadow ray towards tile k; through: whether the light is seen. Nothing is added where k is no tile. */
@@ -2696,7 +2721,7 @@ MCS_FN void mcsi_batch_hits(mcsi_batch *b, const mcs_hits *hits) {
     b->in[MCSI_IN_WO + 1] = hits->wo_y;
     b->in[MCSI_IN_WO + 2] = hits->wo_z;
     b->in[MCSI_IN_X] = hits->parameter_x;
-    b->in[MCSI_IN_Y] = hits->parameter_y;
+    b->in[MCSI_IN_Y] = hits->parameter_y ? hits->parameter_y : hits->parameter_x;
 }
 #endif
 #endif /* MCSI_BASE_W > 0 */
@@ -2775,13 +2800,13 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
 #define MCSI_SAMPLE MCSI_HOT
 #endif
 
-/* Tells mistakes of the caller, in the scalar pass alone. */
+/* Tells mistakes of the caller, in the scalar pass alone, in words: assert prints its whole condition. */
 #if MCSI_W == 1
 #define MCSI_LOOP MCS_FN
-#define MCSI_REQUIRE(ok) MCS_ASSERT(ok)
+#define MCSI_REQUIRE(ok, what) MCS_ASSERT((ok) && what)
 #else
 #define MCSI_LOOP MCSI_TARGET __attribute__((unused)) MCSI_PRIVATE
-#define MCSI_REQUIRE(ok) ((void)0)
+#define MCSI_REQUIRE(ok, what) ((void)0)
 #endif
 
 /* ==== [lanes] what C has no operator for ==========================================================================
@@ -3327,7 +3352,7 @@ MCSI_CORE mcs_f mcsi_sane_u(mcs_f u, mcs_i *ok) {
 #if MCSI_W == 1
     if (u > 0.0f && u < 1.0f) return u;
 #endif
-    MCSI_REQUIRE(u >= 0.0f && u < 1.0f);
+    MCSI_REQUIRE(u >= 0.0f && u < 1.0f, "u in [0, 1)");
     const mcs_f v = mcsi_min(mcsi_max(u, mcs_set(0.0f)), mcs_set(0.99999994f));
     *ok = *ok & (v == u);
     return v;
@@ -3356,7 +3381,7 @@ MCSI_CORE mcs_i mcsi_scale_ok(mcs_f scale) { return (scale >= 1e-18f) & (scale <
 MCSI_CORE mcs_vec3 mcsi_sane_where(mcs_i wanted, mcs_vec3 w, mcs_i *ok) {
     const mcs_f length2 = mcsi_dot(w, w);
     const mcs_i good = (length2 > 0.25f) & (length2 < 4.0f) & wanted;
-    MCSI_REQUIRE(MCSI_IS_UNIT(length2));
+    MCSI_REQUIRE(MCSI_IS_UNIT(length2), "directions are of unit length");
     *ok = *ok & good;
     return mcsi_sel3(good, w, mcsi_vec3(mcs_set(0.0f), mcs_set(0.0f), mcs_set(1.0f)));
 }
@@ -3380,7 +3405,7 @@ MCSI_CORE mcs_vec2 mcsi_uv(mcs_i ok, mcs_f u1, mcs_f u2) {
 MCSI_CORE mcs_vec3 mcsi_spread(mcsi_scalar_vec3 v) { return mcsi_vec3(mcs_set(v.x), mcs_set(v.y), mcs_set(v.z)); }
 /* The same for a direction, whose length is looked at here, once for the call. */
 MCSI_CORE mcs_vec3 mcsi_spread_direction(mcsi_scalar_vec3 w) {
-    MCS_ASSERT(MCSI_IS_UNIT(w.x * w.x + w.y * w.y + w.z * w.z));
+    MCS_ASSERT(MCSI_IS_UNIT(w.x * w.x + w.y * w.y + w.z * w.z) && "directions are of unit length");
     return mcsi_spread(w);
 }
 
@@ -3959,7 +3984,7 @@ MCSI_CORE mcsi_linear mcsi_linear_make(mcs_f a, mcs_f b) {
     const mcsi_power_of_2 scale = mcsi_power_to_60(larger);
     mcsi_linear ends;
     ends.ok = (a >= 0.0f) & (b >= 0.0f) & (larger > 0.0f) & (larger <= FLT_MAX);
-    MCSI_REQUIRE(ends.ok);
+    MCSI_REQUIRE(ends.ok, "linear: a, b >= 0, finite, not both 0");
     ends.a = a * scale.first * scale.second;
     ends.b = b * scale.first * scale.second;
     return ends;
@@ -4002,7 +4027,7 @@ MCSI_FN mcs_f mcs_linear_invert(mcs_f a, mcs_f b, mcs_f x) {
 
 MCSI_SAMPLE mcs_sample1 mcs_tent_sample(mcs_f r, mcs_f u) {
     mcs_i ok = mcsi_scale_ok(r);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "tent: r in [1e-18, 1e18]");
     u = mcsi_sane_u(u, &ok);
     const mcs_f v = 2.0f * mcsi_min(u, 1.0f - u);
     const mcs_f q = mcsi_sqrt(v);
@@ -4011,12 +4036,12 @@ MCSI_SAMPLE mcs_sample1 mcs_tent_sample(mcs_f r, mcs_f u) {
 #ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_tent_pdf(mcs_f r, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(r);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "tent: r in [1e-18, 1e18]");
     return mcsi_sane_result(ok, (r - mcsi_min(mcsi_abs(x), r)) / r / r);
 }
 MCSI_FN mcs_f mcs_tent_invert(mcs_f r, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(r);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "tent: r in [1e-18, 1e18]");
     const mcs_f q = mcsi_max((r - mcsi_min(mcsi_abs(x), r)) / r, mcs_set(0.0f));
     const mcs_f outside = 0.5f * q * q; /* the mass beyond x on its side */
     return mcsi_inverted(ok & (x == x), mcsi_sel(x < 0.0f, outside, 1.0f - outside));
@@ -4030,7 +4055,7 @@ MCSI_CORE mcs_i mcsi_is_vacuum(mcs_f rate) { return (rate >= 0.0f) & (rate < 1e-
 MCSI_SAMPLE mcs_sample1 mcs_exponential_sample(mcs_f rate, mcs_f u) {
     const mcs_i vacuum = mcsi_is_vacuum(rate);
     mcs_i ok = mcsi_scale_ok(rate);
-    MCSI_REQUIRE(ok | vacuum);
+    MCSI_REQUIRE(ok | vacuum, "exponential: rate in [0, 1e18]");
     u = mcsi_sane_u(u, &ok);
     mcs_sample1 s = mcsi_sample1(ok, mcsi_log1m(u) / -mcsi_sel(vacuum, mcs_set(1.0f), rate), rate * (1.0f - u));
     s.x = mcsi_sel(vacuum, mcs_set(FLT_MAX), s.x);
@@ -4040,13 +4065,13 @@ MCSI_SAMPLE mcs_sample1 mcs_exponential_sample(mcs_f rate, mcs_f u) {
 /* At 1e20 the density is 0 for every rate. */
 MCSI_FN mcs_f mcs_exponential_pdf(mcs_f rate, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(rate);
-    MCSI_REQUIRE(ok | mcsi_is_vacuum(rate));
+    MCSI_REQUIRE(ok | mcsi_is_vacuum(rate), "exponential: rate in [0, 1e18]");
     x = mcsi_min(x, mcs_set(1e20f));
     return mcsi_sane_result(ok & (x >= 0.0f), rate * mcsi_exp_neg(-rate * mcsi_max(x, mcs_set(0.0f))));
 }
 MCSI_FN mcs_f mcs_exponential_invert(mcs_f rate, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(rate);
-    MCSI_REQUIRE(ok | mcsi_is_vacuum(rate));
+    MCSI_REQUIRE(ok | mcsi_is_vacuum(rate), "exponential: rate in [0, 1e18]");
     x = mcsi_min(mcsi_max(x, mcs_set(0.0f)), mcs_set(1e20f));
     mcs_f minus_u;
     mcsi_exp_both(-mcsi_min(mcsi_max(rate * x, mcs_set(0.0f)), mcs_set(80.0f)), &minus_u);
@@ -4069,7 +4094,7 @@ MCSI_CORE mcsi_truncexp mcsi_truncexp_make(mcs_f rate, mcs_f m) {
     const mcs_f t = rate * m;
     mcsi_truncexp d;
     d.ok = (rate >= 0.0f) & (rate <= 1e18f) & mcsi_scale_ok(m);
-    MCSI_REQUIRE(d.ok);
+    MCSI_REQUIRE(d.ok, "truncexp: rate in [0, 1e18], m in [1e-18, 1e18]");
     d.flat = t < 1e-8f;
     mcs_f e_minus_one;
     d.e = mcsi_exp_both(-mcsi_sel(d.ok & (t < 80.0f), t, mcs_set(80.0f)), &e_minus_one);
@@ -4120,7 +4145,7 @@ MCSI_CORE mcs_f mcsi_deviation(mcs_f mean, mcs_f scale, mcs_f x) {
 
 MCSI_SAMPLE mcs_sample1 mcs_normal_sample(mcs_f mean, mcs_f sd, mcs_f u) {
     mcs_i ok = mcsi_bell_ok(mean, sd);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "normal: mean in [-1e30, 1e30], sd in [1e-18, 1e18]");
     u = mcsi_sane_u(u, &ok);
     const mcs_f z = mcsi_normal_quantile(mcsi_off_zero(u));
     return mcsi_sample1(ok, mean + sd * z, mcsi_exp_neg(-0.5f * z * z) * (0.398942280f / sd)); /* 1/sqrt(2 pi) */
@@ -4128,13 +4153,13 @@ MCSI_SAMPLE mcs_sample1 mcs_normal_sample(mcs_f mean, mcs_f sd, mcs_f u) {
 #ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_normal_pdf(mcs_f mean, mcs_f sd, mcs_f x) {
     const mcs_i ok = mcsi_bell_ok(mean, sd);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "normal: mean in [-1e30, 1e30], sd in [1e-18, 1e18]");
     const mcs_f z = mcsi_deviation(mean, sd, x);
     return mcsi_sane_result(ok & (x == x), 0.398942280f * mcsi_exp_neg(-0.5f * z * z) / sd);
 }
 MCSI_FN mcs_f mcs_normal_invert(mcs_f mean, mcs_f sd, mcs_f x) {
     const mcs_i ok = mcsi_bell_ok(mean, sd);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "normal: mean in [-1e30, 1e30], sd in [1e-18, 1e18]");
     const mcs_f tail = mcsi_normal_tail(mcsi_deviation(mean, sd, x));
     return mcsi_inverted(ok & (x == x), mcsi_sel(x < mean, tail, 1.0f - tail));
 }
@@ -4143,20 +4168,20 @@ MCSI_FN mcs_f mcs_normal_invert(mcs_f mean, mcs_f sd, mcs_f x) {
 /* P(x) = 1/(1 + e^-z), so that z = ln(u / (1 - u)) and the density is u (1 - u) / scale. */
 MCSI_SAMPLE mcs_sample1 mcs_logistic_sample(mcs_f mean, mcs_f scale, mcs_f u) {
     mcs_i ok = mcsi_bell_ok(mean, scale);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "logistic: mean in [-1e30, 1e30], scale in [1e-18, 1e18]");
     const mcs_f v = mcsi_off_zero(mcsi_sane_u(u, &ok));
     return mcsi_sample1(ok, mean + scale * mcsi_log(v / (1.0f - v)), v * (1.0f - v) / scale);
 }
 #ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_logistic_pdf(mcs_f mean, mcs_f scale, mcs_f x) {
     const mcs_i ok = mcsi_bell_ok(mean, scale);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "logistic: mean in [-1e30, 1e30], scale in [1e-18, 1e18]");
     const mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, scale, x));
     return mcsi_sane_result(ok & (x == x), e / ((1.0f + e) * (1.0f + e)) / scale);
 }
 MCSI_FN mcs_f mcs_logistic_invert(mcs_f mean, mcs_f scale, mcs_f x) {
     const mcs_i ok = mcsi_bell_ok(mean, scale);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "logistic: mean in [-1e30, 1e30], scale in [1e-18, 1e18]");
     const mcs_f e = mcsi_exp_neg(-mcsi_deviation(mean, scale, x));
     return mcsi_inverted(ok & (x == x), mcsi_sel(x < mean, e, mcs_set(1.0f)) / (1.0f + e));
 }
@@ -4191,7 +4216,7 @@ MCSI_CORE mcsi_cut mcsi_cut_make(mcs_f a, mcs_f b) {
     d.a = mcsi_max(mcs_set(-1e18f), a);
     d.b = mcsi_min(mcs_set(1e18f), b);
     d.ok = d.b - d.a >= 1e-18f;
-    MCSI_REQUIRE(d.ok);
+    MCSI_REQUIRE(d.ok, "a < 1e18, b > -1e18, b - a >= 1e-18");
     d.bent = d.ok & ((d.b - d.a) * mcsi_max(mcsi_abs(d.a), mcsi_abs(d.b)) > 1e-7f);
     const mcs_f right = mcsi_sel(d.bent, d.b, mcs_set(1.0f));
     const mcs_f left = mcsi_sel(d.bent, -d.a, zero);
@@ -4444,7 +4469,7 @@ MCSI_CORE mcs_sample1 mcsi_root(mcs_f e, mcs_f u) {
 
 MCSI_SAMPLE mcs_sample1 mcs_power_sample(mcs_f e, mcs_f u) {
     mcs_i ok = mcsi_exponent_ok(e);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "power: e in [0, 1e9]");
     e = mcsi_sel(ok, e, mcs_set(0.0f));
     u = mcsi_sane_u(u, &ok);
     const mcs_sample1 s = mcsi_root(e, u);
@@ -4453,14 +4478,14 @@ MCSI_SAMPLE mcs_sample1 mcs_power_sample(mcs_f e, mcs_f u) {
 #ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_power_pdf(mcs_f e, mcs_f x) {
     mcs_i ok = mcsi_exponent_ok(e);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "power: e in [0, 1e9]");
     ok = ok & (x >= 0.0f) & (x <= 1.0f);
     e = mcsi_sane_parameter(ok, e, 0.0f, 1e9f);
     return mcsi_sane_result(ok, (e + 1.0f) * mcsi_power(e, 0.0, mcsi_sane_parameter(ok, x, 0.0f, 1.0f)));
 }
 MCSI_FN mcs_f mcs_power_invert(mcs_f e, mcs_f x) {
     mcs_i ok = mcsi_exponent_ok(e);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "power: e in [0, 1e9]");
     ok = ok & (x == x);
     e = mcsi_sane_parameter(ok, e, 0.0f, 1e9f);
     return mcsi_inverted(ok, mcsi_power(e, 1.0, mcsi_sane_parameter(ok, x, 0.0f, 1.0f)));
@@ -4470,7 +4495,7 @@ MCSI_FN mcs_f mcs_power_invert(mcs_f e, mcs_f x) {
 /* x is the signed root of 2 u - 1. */
 MCSI_SAMPLE mcs_sample1 mcs_evenpower_sample(mcs_f e, mcs_f u) {
     mcs_i ok = mcsi_exponent_ok(e);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "evenpower: e in [0, 1e9]");
     e = mcsi_sel(ok, e, mcs_set(0.0f));
     const mcs_f signed_u = 2.0f * mcsi_sane_u(u, &ok) - 1.0f;
     const mcs_sample1 s = mcsi_root(e, mcsi_abs(signed_u));
@@ -4480,7 +4505,7 @@ MCSI_SAMPLE mcs_sample1 mcs_evenpower_sample(mcs_f e, mcs_f u) {
 MCSI_FN mcs_f mcs_evenpower_pdf(mcs_f e, mcs_f x) { return 0.5f * mcs_power_pdf(e, mcsi_abs(x)); }
 MCSI_FN mcs_f mcs_evenpower_invert(mcs_f e, mcs_f x) {
     mcs_i ok = mcsi_exponent_ok(e);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "evenpower: e in [0, 1e9]");
     ok = ok & (x == x);
     e = mcsi_sane_parameter(ok, e, 0.0f, 1e9f);
     const mcs_f from_centre = 0.5f * mcsi_power(e, 1.0, mcsi_sane_parameter(ok, mcsi_abs(x), 0.0f, 1.0f));
@@ -4502,7 +4527,7 @@ MCSI_CORE mcs_f mcsi_smoothstep_guess(mcs_f u) {
  * multiple of 2^-24 is 2^-25 of t further at least, so that rounding cannot bring x below the last one. */
 MCSI_SAMPLE mcs_sample1 mcs_smoothstep_sample(mcs_f a, mcs_f b, mcs_f u) {
     mcs_i ok = mcsi_scale_ok(b - a);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "smoothstep: b - a in [1e-18, 1e18]");
     u = mcsi_sane_u(u, &ok);
     const mcs_f guess = mcsi_smoothstep_guess(u);
     const mcsi_d du = MCSI_WIDEN(u);
@@ -4522,7 +4547,7 @@ MCSI_SAMPLE mcs_sample1 mcs_smoothstep_sample(mcs_f a, mcs_f b, mcs_f u) {
 #ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_smoothstep_pdf(mcs_f a, mcs_f b, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(b - a);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "smoothstep: b - a in [1e-18, 1e18]");
     const mcs_f inside = mcsi_min(mcsi_max(x, a), b);
     const mcsi_d inverse = 1.0 / (MCSI_WIDEN(b) - MCSI_WIDEN(a));
     const mcsi_d t = (MCSI_WIDEN(inside) - MCSI_WIDEN(a)) * inverse;
@@ -4531,7 +4556,7 @@ MCSI_FN mcs_f mcs_smoothstep_pdf(mcs_f a, mcs_f b, mcs_f x) {
 }
 MCSI_FN mcs_f mcs_smoothstep_invert(mcs_f a, mcs_f b, mcs_f x) {
     const mcs_i ok = mcsi_scale_ok(b - a);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "smoothstep: b - a in [1e-18, 1e18]");
     const mcs_f inside = mcsi_min(mcsi_max(x, a), b);
     const mcsi_d t = (MCSI_WIDEN(inside) - MCSI_WIDEN(a)) / (MCSI_WIDEN(b) - MCSI_WIDEN(a));
     return mcsi_inverted(ok, MCSI_NARROW(t * t * t * (2.0 - t)));
@@ -4577,7 +4602,7 @@ typedef struct {
 MCSI_CORE mcsi_corners mcsi_corners_make(mcs_f w00, mcs_f w10, mcs_f w01, mcs_f w11) {
     const mcs_f largest = mcsi_max(mcsi_max(w00, w10), mcsi_max(w01, w11));
     const mcs_i good = (w00 >= 0.0f) & (w10 >= 0.0f) & (w01 >= 0.0f) & (w11 >= 0.0f) & (largest <= FLT_MAX);
-    MCSI_REQUIRE(good);
+    MCSI_REQUIRE(good, "bilinear: corners >= 0 and finite");
     const mcs_i some = good & (largest > 0.0f);
     const mcsi_power_of_2 scale = mcsi_power_to_60(largest);
     mcsi_corners c;
@@ -4650,7 +4675,7 @@ MCSI_LOOP void mcsi_bilinear_loop(float w00, float w10, float w01, float w11, co
 
 /* A point at the distance `r` times the radius, which may be negative, and at an angle in turns. */
 MCSI_CORE mcs_sample2 mcsi_polar(mcs_i ok, mcs_f radius, mcs_f r, mcs_f turns) {
-    MCSI_REQUIRE(mcsi_scale_ok(radius));
+    MCSI_REQUIRE(mcsi_scale_ok(radius), "radius in [1e-18, 1e18]");
     ok = ok & mcsi_scale_ok(radius);
     const mcs_f distance = mcsi_sel(ok, radius * r, mcs_set(0.0f));
     mcs_f sine, cosine;
@@ -4668,7 +4693,7 @@ MCSI_CORE mcs_f mcsi_in_radii(mcs_f radius, mcs_f x) {
 }
 /* A sampled point may be rounded to just outside of the rim. */
 MCSI_CORE mcs_f mcsi_disk_pdf(mcs_f radius, mcs_f x, mcs_f y) {
-    MCSI_REQUIRE(mcsi_scale_ok(radius));
+    MCSI_REQUIRE(mcsi_scale_ok(radius), "radius in [1e-18, 1e18]");
     const mcs_f p = mcsi_in_radii(radius, x);
     const mcs_f q = mcsi_in_radii(radius, y);
     return mcsi_sane_result(mcsi_scale_ok(radius) & (p * p + q * q <= 1.0000005f), MCSI_1_PI / radius / radius);
@@ -4684,7 +4709,7 @@ MCSI_SAMPLE mcs_sample2 mcs_disk_sample(mcs_f radius, mcs_f u1, mcs_f u2) {
 #ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_disk_pdf(mcs_f radius, mcs_f x, mcs_f y) { return mcsi_disk_pdf(radius, x, y); }
 MCSI_FN mcs_vec2 mcs_disk_invert(mcs_f radius, mcs_f x, mcs_f y) {
-    MCSI_REQUIRE(mcsi_scale_ok(radius));
+    MCSI_REQUIRE(mcsi_scale_ok(radius), "radius in [1e-18, 1e18]");
     const mcs_f p = mcsi_in_radii(radius, x);
     const mcs_f q = mcsi_in_radii(radius, y);
     return mcsi_uv(mcsi_scale_ok(radius) & (p * p + q * q < 4.0f), p * p + q * q, mcsi_atan2_turns(q, p));
@@ -4714,7 +4739,7 @@ MCSI_SAMPLE mcs_sample2 mcs_concentric_sample(mcs_f radius, mcs_f u1, mcs_f u2) 
 #ifdef MCSI_PUBLIC
 MCSI_FN mcs_f mcs_concentric_pdf(mcs_f radius, mcs_f x, mcs_f y) { return mcsi_disk_pdf(radius, x, y); }
 MCSI_FN mcs_vec2 mcs_concentric_invert(mcs_f radius, mcs_f x, mcs_f y) {
-    MCSI_REQUIRE(mcsi_scale_ok(radius));
+    MCSI_REQUIRE(mcsi_scale_ok(radius), "radius in [1e-18, 1e18]");
     const mcs_f p = mcsi_stored(mcsi_in_radii(radius, x));
     const mcs_f q = mcsi_stored(mcsi_in_radii(radius, y));
     const mcs_f r2 = p * p + q * q;
@@ -4881,7 +4906,7 @@ MCSI_CORE mcsi_ball mcsi_ball_make(mcs_vec3 p, mcs_vec3 centre, mcs_f radius) {
     const mcs_f one = mcs_set(1.0f);
     mcsi_ball b;
     b.ok = mcsi_scale_ok(radius) & mcsi_place_ok(p) & mcsi_place_ok(centre);
-    MCSI_REQUIRE(b.ok);
+    MCSI_REQUIRE(b.ok, "ball: radius in [1e-18, 1e18], places within 1e18");
     const mcs_i apart = b.ok & (mcsi_largest(p, centre) >= 1e-18f);
     p = mcsi_sel3(apart, p, mcsi_origin());
     b.axis = mcsi_axis_make(p, mcsi_sel3(apart, centre, mcsi_vec3(zero, zero, one)));
@@ -4985,7 +5010,7 @@ typedef struct {
 MCSI_CORE mcsi_disk_light mcsi_disk_light_make(mcs_vec3 p, mcs_vec3 centre, mcs_vec3 normal, mcs_f radius) {
     mcsi_disk_light d;
     d.ok = mcsi_scale_ok(radius) & mcsi_place_ok(p) & mcsi_place_ok(centre);
-    MCSI_REQUIRE(d.ok);
+    MCSI_REQUIRE(d.ok, "disk light: radius in [1e-18, 1e18], places within 1e18");
     p = mcsi_sel3(d.ok, p, mcsi_origin());
     centre = mcsi_sel3(d.ok, centre, mcsi_origin());
     const mcs_f largest = mcsi_largest(p, centre);
@@ -5437,7 +5462,8 @@ MCSI_SAMPLE mcs_light_point mcs_spherical_rectangle_sample(const mcs_spherical_r
 #ifdef MCSI_PUBLIC
 MCSI_SAMPLE mcs_spherical_rectangle mcs_spherical_rectangle_make(mcs_vec3 p, mcs_vec3 c, mcs_vec3 edge_x,
                                                                  mcs_vec3 edge_y) {
-    MCSI_REQUIRE(mcsi_corners_ok(mcsi_from_to(p, c), mcsi_widened_d(edge_x), mcsi_widened_d(edge_y)));
+    MCSI_REQUIRE(mcsi_corners_ok(mcsi_from_to(p, c), mcsi_widened_d(edge_x), mcsi_widened_d(edge_y)),
+                 "rectangle: finite, of an area above 0");
     mcs_spherical_rectangle l;
     for (int k = 0; k < MCSI_W; k++) {
         const mcsi_scalar_spherical_rectangle one = mcsi_spherical_rectangle_prepare(
@@ -5677,7 +5703,8 @@ MCSI_SAMPLE mcs_light_point mcs_spherical_triangle_sample(const mcs_spherical_tr
 }
 #ifdef MCSI_PUBLIC
 MCSI_SAMPLE mcs_spherical_triangle mcs_spherical_triangle_make(mcs_vec3 p, mcs_vec3 a, mcs_vec3 b, mcs_vec3 c) {
-    MCSI_REQUIRE(mcsi_corners_ok(mcsi_from_to(p, a), mcsi_from_to(a, b), mcsi_from_to(a, c)));
+    MCSI_REQUIRE(mcsi_corners_ok(mcsi_from_to(p, a), mcsi_from_to(a, b), mcsi_from_to(a, c)),
+                 "triangle: finite, of an area above 0");
     mcs_spherical_triangle l;
     for (int k = 0; k < MCSI_W; k++) {
         const mcsi_scalar_spherical_triangle one =
@@ -5733,8 +5760,9 @@ MCS_FN float mcsi_converted(float pdf, float distance, float cosine, int to_area
 #endif
 #ifdef MCSI_PUBLIC
 MCSI_CORE mcs_f mcsi_each_converted(mcs_f pdf, mcs_f distance, mcs_f cosine, int to_area) {
-    MCSI_REQUIRE(pdf >= 0.0f && pdf <= FLT_MAX && distance >= 0.0f && distance <= FLT_MAX);
-    MCSI_REQUIRE(mcsi_abs(cosine) <= FLT_MAX);
+    MCSI_REQUIRE(pdf >= 0.0f && pdf <= FLT_MAX && distance >= 0.0f && distance <= FLT_MAX,
+                 "pdf, distance, cosine: finite, pdf and distance >= 0");
+    MCSI_REQUIRE(mcsi_abs(cosine) <= FLT_MAX, "pdf, distance, cosine: finite, pdf and distance >= 0");
     mcs_f result = pdf;
     for (int k = 0; k < MCSI_W; k++)
         MCSI_LANE(result, k) = mcsi_converted(MCSI_LANE(pdf, k), MCSI_LANE(distance, k), MCSI_LANE(cosine, k), to_area);
@@ -5863,7 +5891,7 @@ MCSI_CORE mcs_i mcsi_cone_ok(mcs_f k) { return (k >= 1e-30f) & (k <= 2.0f); }
  * product. Near t = 2 the second one keeps its digits as (2 - k) + k (1 - u1). */
 MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
     mcs_i ok = mcsi_cone_ok(k);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "cone: k in [1e-30, 2]");
     k = mcsi_sel(ok, k, mcs_set(1e-30f));
     u1 = mcsi_sane_u(u1, &ok);
     u2 = mcsi_sane_u(u2, &ok);
@@ -5875,13 +5903,13 @@ MCSI_SAMPLE mcs_dir mcs_cone_sample(mcs_f k, mcs_f u1, mcs_f u2) {
 /* A sampled direction may be rounded to just outside of the rim. */
 MCSI_FN mcs_f mcs_cone_pdf(mcs_f k, mcs_vec3 w) {
     mcs_i ok = mcsi_cone_ok(k);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "cone: k in [1e-30, 2]");
     w = mcsi_sane_direction(w, &ok);
     return mcsi_sane_result(ok & (mcsi_one_minus_z(w) <= k * 1.0000005f), MCSI_1_2PI / k);
 }
 MCSI_FN mcs_vec2 mcs_cone_invert(mcs_f k, mcs_vec3 w) {
     mcs_i ok = mcsi_cone_ok(k);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "cone: k in [1e-30, 2]");
     w = mcsi_sane_direction(w, &ok);
     return mcsi_uv(ok, mcsi_one_minus_z(w) / k, mcsi_atan2_turns(w.y, w.x));
 }
@@ -5944,7 +5972,7 @@ typedef struct {
 MCSI_CORE mcsi_henyey_greenstein mcsi_henyey_greenstein_make(mcs_f g) {
     mcsi_henyey_greenstein d;
     d.ok = mcsi_abs(g) <= 1.0f;
-    MCSI_REQUIRE(d.ok);
+    MCSI_REQUIRE(d.ok, "henyey_greenstein: g in [-1, 1]");
     d.sharp = mcsi_abs(g) == 1.0f;
     d.g = mcsi_sel(mcsi_abs(g) < 1.0f, g, mcs_set(0.0f));
     d.pole = mcsi_with_sign(mcs_set(1.0f), g);
@@ -6056,7 +6084,7 @@ typedef struct {
 MCSI_CORE mcsi_von_mises_fisher mcsi_von_mises_fisher_make(mcs_f kappa) {
     mcsi_von_mises_fisher d;
     d.ok = (kappa >= 0.0f) & (kappa <= 1e8f);
-    MCSI_REQUIRE(d.ok);
+    MCSI_REQUIRE(d.ok, "von_mises_fisher: kappa in [0, 1e8]");
     d.flat = mcsi_sel(d.ok, kappa, mcs_set(0.0f)) < 1e-8f;
     d.kappa = mcsi_sel(d.flat, mcs_set(1.0f), kappa);
     d.minus_2_kappa = mcsi_max(-2.0f * d.kappa, mcs_set(-80.0f));
@@ -6353,7 +6381,7 @@ MCSI_CORE mcs_i mcsi_eta_ok(mcs_f eta) { return (eta >= 1e-3f) & (eta <= 1e3f); 
 
 MCSI_FN mcs_f mcs_fresnel_dielectric(mcs_f cos_i, mcs_f eta) {
     mcs_i ok = mcsi_eta_ok(eta);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "eta in [1e-3, 1e3]");
     ok = ok & (cos_i == cos_i);
     const mcs_f zero = mcs_set(0.0f);
     const mcs_f one = mcs_set(1.0f);
@@ -6384,7 +6412,7 @@ MCSI_FN mcs_f mcs_fresnel_dielectric(mcs_f cos_i, mcs_f eta) {
  *   |e c + q|^2   = |e|^2 c^2 + |w| + 2 c a (|w| + 1 - c^2) */
 MCSI_FN mcs_f mcs_fresnel_conductor(mcs_f cos_i, mcs_f eta, mcs_f k) {
     mcs_i ok = mcsi_eta_ok(eta) & (k >= 0.0f) & (k <= 1e3f);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "eta in [1e-3, 1e3], k in [0, 1e3]");
     ok = ok & (cos_i == cos_i);
     const mcs_f zero = mcs_set(0.0f);
     const mcs_f one = mcs_set(1.0f);
@@ -6423,7 +6451,7 @@ MCSI_FN mcs_f mcs_fresnel_conductor(mcs_f cos_i, mcs_f eta, mcs_f k) {
  * much. q and the length of w take one step of Newton's method. */
 MCSI_FN mcs_vec3 mcs_refract(mcs_vec3 w, mcs_vec3 h, mcs_f eta) {
     mcs_i ok = mcsi_eta_ok(eta);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "eta in [1e-3, 1e3]");
     w = mcsi_sane_direction(w, &ok);
     h = mcsi_sane_direction(h, &ok);
     const mcs_f zero = mcs_set(0.0f);
@@ -6472,7 +6500,7 @@ typedef struct {
 MCSI_FN mcs_phong mcs_phong_make(mcs_f n) {
     const mcs_i ok = n >= 0.0f;
     const mcs_f zero = mcs_set(0.0f);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "phong: n >= 0");
     mcs_phong m;
     m.n = mcsi_sane_parameter(ok, n, 0.0f, 1e9f);
     m.inv_n_plus_1 = 1.0f / (m.n + 1.0f);
@@ -6606,7 +6634,7 @@ typedef struct {
 #endif
 MCSI_CORE mcsi_slopes mcsi_slopes_make(mcs_f alpha_x, mcs_f alpha_y) {
     const mcs_i ok = (alpha_x > 0.0f) & (alpha_y > 0.0f);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "alpha_x, alpha_y > 0");
     mcsi_slopes m;
     m.alpha_x = mcsi_sane_parameter(ok, alpha_x, 1e-7f, 1e4f);
     m.alpha_y = mcsi_sane_parameter(ok, alpha_y, 1e-7f, 1e4f);
@@ -7508,7 +7536,7 @@ typedef struct {
 /* *wo is brought above the surface. */
 MCSI_CORE mcsi_glass_side mcsi_glass_side_of(mcs_f eta, mcs_vec3 *wo, mcs_i *ok) {
     const mcs_i good = mcsi_eta_ok(eta);
-    MCSI_REQUIRE(good);
+    MCSI_REQUIRE(good, "eta in [1e-3, 1e3]");
     *wo = mcsi_sane_direction(*wo, ok);
     *ok = *ok & good & (wo->z != 0.0f);
     const mcs_f one = mcs_set(1.0f);
@@ -7638,7 +7666,7 @@ typedef struct {
 #endif
 MCSI_FN mcs_ashikhmin mcs_ashikhmin_make(mcs_f nu, mcs_f nv) {
     const mcs_i ok = (nu >= 0.0f) & (nv >= 0.0f);
-    MCSI_REQUIRE(ok);
+    MCSI_REQUIRE(ok, "ashikhmin: nu, nv >= 0");
     mcs_ashikhmin m;
     m.nu = mcsi_sane_parameter(ok, nu, 0.0f, 1e9f);
     m.nv = mcsi_sane_parameter(ok, nv, 0.0f, 1e9f);
@@ -8098,6 +8126,7 @@ typedef struct {
     uint32_t i, mass;
 } mcsi_entry;
 MCS_FN mcsi_entry mcsi_entry_of_u(const mcs_pwc *t, float u) {
+    MCSI_REQUIRE(t && t->n > 0, "the table was built");
     const double U = (double)u * MCSI_ONE;
     const mcsi_cdf c = mcsi_pwc_cdf(t);
     mcsi_entry p;
@@ -8108,6 +8137,7 @@ MCS_FN mcsi_entry mcsi_entry_of_u(const mcs_pwc *t, float u) {
 }
 /* All 64 bits count: 31 find the entry. What they leave and the others are the position, exact until it is divided. */
 MCS_FN mcsi_entry mcsi_entry_of_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
+    MCSI_REQUIRE(t && t->n > 0, "the table was built");
     const uint64_t U = (uint64_t)b1 << 32 | b2; /* 2^33 times that of a float u */
     const mcsi_cdf c = mcsi_pwc_cdf(t);
     mcsi_entry p;
@@ -8119,6 +8149,7 @@ MCS_FN mcsi_entry mcsi_entry_of_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2)
 }
 /* The cell of x. Outside [0,1] it is the start of the first one, with no share. */
 MCS_FN mcsi_entry mcsi_entry_of_x(const mcs_pwc *t, float x) {
+    MCSI_REQUIRE(t && t->n > 0, "the table was built");
     const mcsi_cdf c = mcsi_pwc_cdf(t);
     const int ok = x >= 0.0f && x <= 1.0f;
     const double v = ok ? (double)x * t->n : 0.0;
@@ -8158,14 +8189,16 @@ MCS_FN void mcsi_pwc_fill(mcs_pwc *t, uint32_t n, uint32_t bad) {
 MCSI_CORE void mcsi_pwc_pad(mcs_pwc *t, size_t used, size_t bytes) {
     if (used < bytes) *MCSI_WRITE(uint32_t, t, used) = 0;
 }
-MCS_API mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n) {
-    const mcs_status status = mcsi_table_check(t, bytes, f, mcs_pwc_bytes(n));
-    if (status) return status;
+MCS_FN void mcsi_pwc_tabulate(mcs_pwc *t, const float *f, uint32_t n) {
     const mcsi_pwc_offsets o = mcsi_pwc_layout(n, mcsi_guide_shift(n, 1));
     const uint32_t bad = mcsi_weights_in(MCSI_WRITE(uint32_t, t, o.sums), f, n);
     mcsi_pwc_pad(t, o.vertices, o.pwc_bytes);
     mcsi_pwc_fill(t, n, bad);
-    return MCS_OK;
+}
+MCS_API mcs_status mcs_pwc_build(mcs_pwc *t, size_t bytes, const float *f, uint32_t n) {
+    const mcs_status status = mcsi_table_check(t, bytes, f, mcs_pwc_bytes(n));
+    if (status == MCS_OK) mcsi_pwc_tabulate(t, f, n);
+    return status;
 }
 /* The mean of f over cell i of n, by Gauss's rule with 4 points. */
 MCS_FN float mcsi_cell_mean(float (*f)(float x, void *context), void *context, uint32_t i, uint32_t n) {
@@ -8312,7 +8345,7 @@ MCS_API mcs_status mcs_pwc2_build(mcs_pwc2 *t, size_t bytes, const float *f, uin
     double top = 0.0;
     for (uint32_t row = 0; row < h; row++) {
         mcs_pwc *columns = MCSI_WRITE(mcs_pwc, t, mcsi_pwc2_offset(t, row));
-        mcs_pwc_build(columns, mcs_pwc_bytes(w), f + (size_t)row * w, w);
+        mcsi_pwc_tabulate(columns, f + (size_t)row * w, w);
         t->bad += columns->bad;
         t->total += columns->total;
         top = columns->total > top ? columns->total : top;
@@ -8547,6 +8580,7 @@ MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, u
 MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i) { return i < t->n ? mcsi_columns(t)[i].pmf : 0.0f; }
 /* U in [0, 2^31) is the position in column i. Which part of it is hit is no branch, as none could be predicted. */
 MCSI_CORE mcs_pick mcsi_alias_pick(const mcs_alias *t, uint32_t i, double U, int ok) {
+    MCSI_REQUIRE(t && t->n > 0, "the table was built");
     const mcsi_column *k = mcsi_columns(t) + i;
     const uint32_t rest = 0u - (uint32_t)(U >= k->cut); /* all bits where it is the rest */
     const uint32_t begin = k->cut & rest;
@@ -9207,6 +9241,7 @@ typedef struct {
     uint32_t row0, col0, cols, uniform;
 } mcsi_window;
 MCSI_CORE mcsi_window mcsi_env_whole(const mcs_env *e) {
+    MCSI_REQUIRE(e && e->h > 0, "the map was built");
     mcsi_window r;
     r.rows = mcsi_env_rows(e);
     r.row = MCSI_READ(mcsi_row, e, e->offset.row);
@@ -9255,11 +9290,8 @@ MCS_FN mcsi_row_part mcsi_row_part_make(const mcs_env *e, uint32_t row, uint32_t
     s.mass = end <= e->w ? sums[end] - sums[col] : MCSI_ONE - sums[col] + sums[end - e->w];
     return s;
 }
-MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
-                                        uint32_t col, uint32_t cols) {
-    if (!m || !e || ((uintptr_t)m & MCSI_ALIGN)) return MCS_ERR_ARG;
-    if (rows == 0 || cols == 0 || rows > e->h || row > e->h - rows || cols > e->w || col >= e->w) return MCS_ERR_SIZE;
-    if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
+MCS_FN void mcsi_window_tabulate(mcs_env_window *m, const mcs_env *e, uint32_t row, uint32_t rows, uint32_t col,
+                                 uint32_t cols) {
     const mcsi_cdf map_rows = mcsi_env_rows(e);
     const uint32_t shift = mcsi_guide_shift(rows, 1);
     const mcsi_window_offsets o = mcsi_window_layout(rows, shift);
@@ -9278,6 +9310,13 @@ MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const m
     }
     m->uniform = !(mcsi_sums_build(sums, rows) > 0.0);
     mcsi_guide_build(MCSI_WRITE(uint16_t, m, o.guide), sizeof(uint16_t), shift, sums, rows);
+}
+MCS_API mcs_status mcs_env_window_build(mcs_env_window *m, size_t bytes, const mcs_env *e, uint32_t row, uint32_t rows,
+                                        uint32_t col, uint32_t cols) {
+    if (!m || !e || ((uintptr_t)m & MCSI_ALIGN)) return MCS_ERR_ARG;
+    if (rows == 0 || cols == 0 || rows > e->h || row > e->h - rows || cols > e->w || col >= e->w) return MCS_ERR_SIZE;
+    if (bytes < mcs_env_window_bytes(rows)) return MCS_ERR_MEMORY;
+    mcsi_window_tabulate(m, e, row, rows, col, cols);
     return MCS_OK;
 }
 
@@ -9742,7 +9781,7 @@ MCS_API mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
     return mcsi_vec2(mcsi_below_one(u1), mcsi_below_one(u2));
 }
 MCS_API float mcs_env_weight(const mcs_env *e, float pdf) {
-    MCS_ASSERT(!e->incomplete);
+    MCSI_REQUIRE(!e->incomplete, "1/pdf is the weight of a map without a floor");
     return mcsi_sane_result(!e->incomplete & (pdf > 0.0f), mcsi_quotient(1.0f, pdf));
 }
 MCS_API mcs_texel mcs_env_window_sample(const mcs_env_window *m, const mcs_env *e, float u1, float u2) {
@@ -10096,7 +10135,7 @@ MCS_FN void mcsi_tile_build(const mcs_env *e, mcs_tiles *t, mcsi_tile tile) {
     MCSI_FILL(m, 0, t->window_bytes);
     MCSI_FILL(node, 0, 3 * MCSI_GRID * sizeof *node);
     if (!(sum.light > 0.0)) return;
-    mcs_env_window_build(m, t->window_bytes, e, sum.row0, sum.row1 - sum.row0, sum.col0, sum.col1 - sum.col0);
+    mcsi_window_tabulate(m, e, sum.row0, sum.row1 - sum.row0, sum.col0, sum.col1 - sum.col0);
     mcsi_tile_nodes(e, m, node);
 }
 MCS_FN void mcsi_tiles_corners(const mcs_env *e, mcs_tiles *t) {
@@ -10907,13 +10946,13 @@ MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles
     return MCS_OK;
 }
 MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger) {
-    MCS_ASSERT(g->rows == larger->rows);
+    MCSI_REQUIRE(g->rows == larger->rows, "both have as many rows of tiles");
     if (g->rows != larger->rows) return;
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     mcsi_see_n(g->rows, MCSI_READ(float, larger, sizeof *larger) + l.n, NULL, l.prior);
 }
 MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r) {
-    MCS_ASSERT(g->rows == t->rows);
+    MCSI_REQUIRE(g->rows == t->rows, "both have as many rows of tiles");
     if (g->rows != t->rows) return;
     mcsi_surface s = mcsi_surface_make(e, r);
     if (!s.reflects) return;
@@ -10936,7 +10975,7 @@ MCS_API void mcs_region_add_ray(mcs_region *g, uint32_t k, int through) {
     mcsi_region_count(&l.rays[k], &l.through[k], through);
 }
 MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other) {
-    MCS_ASSERT(g->rows == other->rows);
+    MCSI_REQUIRE(g->rows == other->rows, "both have as many rows of tiles");
     if (g->rows != other->rows) return;
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     const float *add = MCSI_READ(float, other, sizeof *other);
@@ -11194,7 +11233,7 @@ MCSI_CORE mcs_texel mcsi_product_draw(const mcs_product *p, const mcs_tiles *t, 
     return x;
 }
 MCS_API mcs_texel mcs_product_sample(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, float u1, float u2) {
-    MCS_ASSERT(p->rows == t->rows);
+    MCSI_REQUIRE(p->rows == t->rows && p->rows > 0, "product and tiles were built, of as many rows");
     if (p->dark) return mcsi_no_texel(e);
     const float share = p->brdf_share;
     int32_t ok = 1;
@@ -11207,7 +11246,7 @@ MCS_API mcs_texel mcs_product_sample(const mcs_product *p, const mcs_tiles *t, c
     return x;
 }
 MCS_API mcs_texel mcs_product_texel(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
-    MCS_ASSERT(p->rows == t->rows);
+    MCSI_REQUIRE(p->rows == t->rows && p->rows > 0, "product and tiles were built, of as many rows");
     return mcsi_product_look_up(p, t, e, w);
 }
 MCS_API float mcs_product_pdf(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
@@ -11236,7 +11275,7 @@ typedef struct {
 /* For n draws or directions in all. Whole vectors are computed: what they leave of a block must be numbers. */
 MCSI_CORE void mcsi_product_block_start(mcsi_product_block *b, const mcs_product *p, const mcs_tiles *t,
                                         const mcs_env *e, size_t n) {
-    MCS_ASSERT(p->rows == t->rows);
+    MCSI_REQUIRE(p->rows == t->rows && p->rows > 0, "product and tiles were built, of as many rows");
     b->p = p;
     b->t = t;
     b->e = e;
@@ -11485,7 +11524,7 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
 
 /* Adds n candidates of weight w in all, of which i is to be kept. The first weight is never left, whatever u is. */
 MCS_FN int mcsi_reservoir_take(mcs_reservoir *r, double n, double w, uint32_t i, double u) {
-    MCSI_REQUIRE(u >= 0.0 && u < 1.0);
+    MCSI_REQUIRE(u >= 0.0 && u < 1.0, "u in [0, 1)");
     const double total = (r->total > 0.0 ? r->total : 0.0) + w;
     const int taken = w > 0.0 && (total <= w || !(u * total >= w));
     r->total = total <= DBL_MAX ? total : DBL_MAX;
@@ -11529,7 +11568,7 @@ MCS_FN int mcsi_reservoir_k_put(mcs_reservoir_k *r, mcs_kept c) {
     return at < r->k;
 }
 MCS_FN int mcs_reservoir_k_add(mcs_reservoir_k *r, uint32_t i, float w, double u) {
-    MCSI_REQUIRE(u >= 0.0 && u < 1.0);
+    MCSI_REQUIRE(u >= 0.0 && u < 1.0, "u in [0, 1)");
     const float weight = mcsi_sane_result(1, w);
     if (!(weight > 0.0f)) return 0;
     const float sane_u = mcsi_min(mcsi_max((float)u, 0.0f), 0.99999994f);

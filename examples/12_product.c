@@ -41,7 +41,7 @@ int main(void) {
         return 1;
     }
     if (mcs_product_build(point, point_bytes, tiles, env, &matte, NULL) != MCS_OK) { /* once per point */
-        puts("no light here");
+        puts("the product could not be built");
         return 1;
     }
     for (int i = 0; i < SAMPLES; i++) {

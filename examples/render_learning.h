@@ -104,9 +104,9 @@ static int region_make(learning *regions, int object, int with_table) {
     g->known = malloc(bytes);
     g->fresh = malloc(bytes);
     if (with_table) g->table = malloc(mcs_product_table_bytes(TILES));
-    if (!g->known || !g->fresh || (with_table && !g->table)) return complain("regions", "not enough memory");
-    mcs_region_start(g->known, bytes, regions->light->tiles);
-    mcs_region_start(g->fresh, bytes, regions->light->tiles);
+    if ((with_table && !g->table) || mcs_region_start(g->known, bytes, regions->light->tiles) != MCS_OK ||
+        mcs_region_start(g->fresh, bytes, regions->light->tiles) != MCS_OK)
+        return complain("regions", "not enough memory");
     return 1;
 }
 
@@ -117,9 +117,9 @@ static void region_tabulate(const learning *regions, region *g) {
     g->tabulated = g->known->rays;
     g->learns = g->tabulated < ENOUGH;
     if (!g->table) return;
-    mcs_product_build_region(g->table, mcs_product_table_bytes(TILES), regions->light->tiles, regions->light->table,
-                             g->known);
-    g->share = mcs_region_share(g->table, &g->kind);
+    const mcs_status status = mcs_product_build_region(g->table, mcs_product_table_bytes(TILES), regions->light->tiles,
+                                                       regions->light->table, g->known);
+    g->share = status == MCS_OK ? mcs_region_share(g->table, &g->kind) : 0;
     if (!(g->share > 0)) g->share = 1; /* where MIS may do better */
 }
 

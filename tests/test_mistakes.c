@@ -217,6 +217,37 @@ static void check_indices(void) {
     CHECK(asserted > 0, "negative extinction");
 }
 
+/* What was not built is all zeros here, or NULL. A condition is told before anything is read of it. */
+#define TELLS_UNBUILT(call)               \
+    do {                                  \
+        jmp_buf here;                     \
+        asserted = 0;                     \
+        asserted_way_out = &here;         \
+        if (!setjmp(here)) (void)(call);  \
+        asserted_way_out = NULL;          \
+        CHECK(asserted > 0, "%s", #call); \
+    } while (0)
+static void check_unbuilt(void) {
+    static double room[128];
+    const mcs_pwc *pwc = (const mcs_pwc *)(const void *)room;
+    const mcs_pwl *pwl = (const mcs_pwl *)(const void *)room;
+    const mcs_pwc2 *pwc2 = (const mcs_pwc2 *)(const void *)room;
+    const mcs_alias *alias = (const mcs_alias *)(const void *)room;
+    const mcs_env *e = (const mcs_env *)(const void *)room;
+    const mcs_tiles *t = (const mcs_tiles *)(const void *)room;
+    const mcs_product *p = (const mcs_product *)(const void *)room;
+    TELLS_UNBUILT(mcs_pwc_sample(pwc, 0.5f));
+    TELLS_UNBUILT(mcs_pwc_sample(NULL, 0.5f));
+    TELLS_UNBUILT(mcs_pwc_sample_bits(pwc, 1, 2));
+    TELLS_UNBUILT(mcs_pwc_pdf(pwc, 0.5f));
+    TELLS_UNBUILT(mcs_pwl_sample(pwl, 0.5f));
+    TELLS_UNBUILT(mcs_discrete_sample(pwc, 0.5f));
+    TELLS_UNBUILT(mcs_pwc2_sample(pwc2, 0.5f, 0.5f));
+    TELLS_UNBUILT(mcs_alias_sample(alias, 0.5f));
+    TELLS_UNBUILT(mcs_env_sample(e, 0.5f, 0.5f));
+    TELLS_UNBUILT(mcs_env_sample(NULL, 0.5f, 0.5f));
+    TELLS_UNBUILT(mcs_product_sample(p, t, e, 0.5f, 0.5f));
+}
 static void check_tables(void) {
     const mcs_vec3 unit = {0.48f, 0.6f, 0.64f};
     const float weights[] = {1, 2, 3, 4, 5, 6, 7, 8};
@@ -357,6 +388,7 @@ int main(int argc, char **argv) {
     if (mcst_case("functions of directions")) check_vectors();
     if (mcst_case("indices of refraction")) check_indices();
     if (mcst_case("tables and maps")) check_tables();
+    if (mcst_case("tables and maps not built")) check_unbuilt();
     if (mcst_case("reservoirs")) check_reservoirs();
     if (mcst_case("products")) check_products();
     if (mcst_case("turned by 100 frames")) check_turns();

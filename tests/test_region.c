@@ -574,7 +574,7 @@ static void check_unbiased(picture kind, int of_point, uint64_t stream) {
     add_point(&l, &m, &s);
     teach(LIGHT_HIDDEN, &m, &l, NULL);
     sampler d = of_point ? sampler_make(&m, &s) : table_of(&m, &s, &l, NULL);
-    if (of_point) mcs_product_build(d.p, d.mem.bytes, tiles_of(&m), env_of(&m), &s.r, l.g);
+    if (of_point) CHECK(mcs_product_build(d.p, d.mem.bytes, tiles_of(&m), env_of(&m), &s.r, l.g) == MCS_OK, "no table");
     uint32_t first = 0;
     CHECK(unsupported(&d, 4, &first) == 0, "texel %u cannot be drawn", first);
     const double truth = true_light(&m, &s);

@@ -210,7 +210,7 @@ static void check_arrays(const mcst_row *row, const float *p, uint64_t *state) {
 
 /* N of them, some with bad parameters, a bad wo, or both: hit i is in p[0..5][i], u[0..1][i] and x[0..2][i]. */
 typedef struct {
-    int own_parameters; /* or all have those of the first */
+    int own_parameters; /* 0: all have those of the first; 2: one for both axes */
     int values;         /* densities and values of x are wanted, not samples */
     float p[MCST_P][N], u[2][N], x[3][N];
 } hit_arrays;
@@ -224,6 +224,7 @@ static void make_hits(const mcst_row *row, uint64_t *state, hit_arrays *h) {
         float drawn[5] = {0};
         any_p(row, state, p);
         if (!h->own_parameters) memcpy(p, first, 3 * sizeof *p);
+        if (h->own_parameters == 2 && row->params > 1) p[1] = p[0];
         row->fn[0].sample(p, &v[0], &v[1], drawn);
         for (int k = 0; k < MCST_P; k++) h->p[k][i] = p[k];
         for (int k = 0; k < 2; k++) h->u[k][i] = any_u(state);
@@ -251,7 +252,7 @@ static void call_hits(const mcst_row *row, hit_arrays *h, size_t first, size_t n
     const float p[MCST_P] = {h->p[0][0], h->p[1][0], h->p[2][0], 0, 0, 0};
     const mcs_hits hits = {h->p[3] + first, h->p[4] + first, h->p[5] + first,
                            h->own_parameters ? h->p[0] + first : NULL,
-                           h->own_parameters && row->params > 1 ? h->p[1] + first : NULL};
+                           h->own_parameters == 1 && row->params > 1 ? h->p[1] + first : NULL};
     float(*const in)[N] = h->values ? h->x : h->u;
     const float *const from[3] = {in[0] + first, in[1] + first, h->values ? in[2] + first : NULL};
     (h->values ? row->pdf_hits_n : row->sample_hits_n)(p, &hits, n, from, out);
@@ -295,12 +296,12 @@ static void check_hits_in_place(const mcst_row *row, const hit_arrays *h, int of
 }
 static void check_hits(const mcst_row *row, uint64_t *state) {
     static hit_arrays h;
-    for (int round = 0; round < 16; round++) {
-        h.own_parameters = round & 1;
-        h.values = round >> 1 & 1;
+    for (int round = 0; round < 24; round++) {
+        h.own_parameters = round % 3;
+        h.values = round & 1;
         make_hits(row, state, &h);
         check_every_n(row, &h, state);
-        check_hits_in_place(row, &h, round >> 2 & 1);
+        check_hits_in_place(row, &h, round >> 1 & 1);
     }
 }
 

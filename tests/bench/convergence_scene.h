@@ -244,7 +244,8 @@ static mcs_product *prepared; /* at the shading point whose turn it is */
 static void by_product(const scene *s, block *b, size_t n, uint32_t run) {
     for (size_t i = 0; i < n; i++) {
         if (i % run == 0)
-            mcs_product_build(prepared, mcs_product_bytes(TILES), s->e->tiles, s->e->table, &s->like, NULL);
+            bench_built(
+                mcs_product_build(prepared, mcs_product_bytes(TILES), s->e->tiles, s->e->table, &s->like, NULL));
         const mcs_texel t = mcs_product_sample(prepared, s->e->tiles, s->e->table, b->u1[i], b->u2[i]);
         const mcs_vec3 w = mcs_to_local(&s->frame, t.w);
         b->x[i] = w.x;

@@ -24,6 +24,13 @@ typedef struct {
 
 enum { TILES = 16 }; /* rows of tiles */
 
+/* Of a builder that is given what it needs. */
+static void bench_built(mcs_status status) {
+    if (status == MCS_OK) return;
+    fprintf(stderr, "a builder returned %d\n", (int)status);
+    exit(2);
+}
+
 static void unit_from(double elevation, double azimuth, double w[3]) { /* degrees */
     const double e = elevation * PI / 180;
     const double a = azimuth * PI / 180;

@@ -80,7 +80,7 @@ static void teach(bench_case *c, int i, const point *p, int t) {
  * are measured, and no others. A region that is the only one of its object has nothing to inherit. */
 static void build_table(bench_case *c, int i, int stage) {
     int parts = 0;
-    mcs_region_start(&c->whole.g, sizeof c->whole, c->map->tiles);
+    bench_built(mcs_region_start(&c->whole.g, sizeof c->whole, c->map->tiles));
     for (int k = 0; k < c->view->regions; k++) {
         if (c->view->region[k].object != c->view->region[i].object) continue;
         mcs_region_merge(&c->whole.g, &c->region[k].g);
@@ -90,7 +90,7 @@ static void build_table(bench_case *c, int i, int stage) {
     mcs_product *p = &c->product[i][TABLE + stage].p;
     c->pays[i][stage] = mcs_region_pays(&c->region[i].g, &r);
     if (parts > 1) mcs_region_inherit(&c->region[i].g, &c->whole.g);
-    mcs_product_build_region(p, sizeof(product), c->map->tiles, c->map->table, &c->region[i].g);
+    bench_built(mcs_product_build_region(p, sizeof(product), c->map->tiles, c->map->table, &c->region[i].g));
     const float share = c->pays[i][stage] ? mcs_region_share(p, &r) : 0;
     c->answer[i][stage] = MIS_POWER;
     if (share > 0) c->answer[i][stage] = (share < 1 ? FEW : PAIR) + stage;
@@ -101,7 +101,7 @@ static void build_table(bench_case *c, int i, int stage) {
 static void train(bench_case *c) {
     const int regions = c->view->regions;
     for (int i = 0; i < regions; i++) {
-        mcs_region_start(&c->region[i].g, sizeof c->region[i], c->map->tiles);
+        bench_built(mcs_region_start(&c->region[i].g, sizeof c->region[i], c->map->tiles));
         for (int k = 0; k < TABLE_POINTS; k++) {
             const setting s = setting_of(c, i, any_point(c, i));
             const mcs_reflection f = setting_reflection(&s);
@@ -130,7 +130,7 @@ static void run_through(bench_case *c, result *out) {
     const mcs_reflection r = coat_seen_from_above(&c->coat);
     const double part = 1.0 / c->view->regions;
     for (int i = 0; i < c->view->regions; i++) {
-        mcs_region_start(&c->spare.g, sizeof c->spare, c->map->tiles);
+        bench_built(mcs_region_start(&c->spare.g, sizeof c->spare, c->map->tiles));
         int learns = mcs_region_pays(&c->spare.g, &r);
         for (int stage = 0; stage < STAGE_2048; stage++) {
             const int pays = c->pays[i][stage];
@@ -148,7 +148,7 @@ static void run_through(bench_case *c, result *out) {
 
 static void build_product(const bench_case *c, const setting *s, int t, const mcs_region *g) {
     const mcs_reflection r = setting_reflection(s);
-    mcs_product_build(&s->by[t].p, sizeof(product), c->map->tiles, c->map->table, &r, g);
+    bench_built(mcs_product_build(&s->by[t].p, sizeof(product), c->map->tiles, c->map->table, &r, g));
 }
 
 /* Techniques that the reference is drawn from, each as often. None leaves out what another one finds. */
@@ -229,8 +229,8 @@ static void do_work(bench_case *c, int i, work what) {
     case BUILD_LEARNED: build_product(c, &s, LEARNED, &c->region[i].g); break;
     case BUILD_TABLE:
         mcs_region_inherit(&c->spare.g, &c->whole.g);
-        mcs_product_build_region(&c->product[i][TABLE + STAGE_LAST].p, sizeof(product), t, c->map->table,
-                                 &c->region[i].g);
+        bench_built(mcs_product_build_region(&c->product[i][TABLE + STAGE_LAST].p, sizeof(product), t, c->map->table,
+                                             &c->region[i].g));
         break;
     case MERGE: /* what a pass has learned, with the region and with its object */
         for (int k = 0; k < 2; k++) mcs_region_merge(&c->spare.g, &c->early[i].g);
@@ -260,7 +260,7 @@ static void time_region(bench_case *c, int i, const setting *s) {
         if (k >= 0) c->draw[k][i] = (thread_seconds() - start) / DRAWS;
         bench_consume(1, &sum);
     }
-    mcs_region_start(&c->spare.g, sizeof c->spare, c->map->tiles);
+    bench_built(mcs_region_start(&c->spare.g, sizeof c->spare, c->map->tiles));
     for (int k = 0; k < WORKS; k++) {
         const double start = thread_seconds();
         for (int n = 0; n < REPEATS; n++) do_work(c, i, (work)k);
