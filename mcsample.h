@@ -1645,10 +1645,10 @@ MCS_API void mcs_ggx_pdf_hits_n(const mcs_ggx *m, const mcs_hits *hits, size_t n
  *   (u1, u2)   draw h as mcs_ggx_vndf_h_sample does; u3 < F reflects
  *
  * side        wi is refracted where wi.z and wo.z have different signs, reflected where they have the same.
- * light       f and weights are those of power: over all wi, f |wi.z| integrates to 1 less what masking takes, and
- *             f / n_i^2 is symmetric in wo and wi. Refraction changes radiance by the square of the index: on paths
- *             from the eye, multiply f and weights of refracted directions by (n_o / n_i)^2, which is 1/eta^2 for a wo
- *             above and eta^2 for one below. Paths from lights take them as they are.
+ * light       f and weights are those of power: over all wi, f |wi.z| integrates to 1 less what masking takes, for
+ *             which there is no compensation; f / n_i^2 is symmetric in wo and wi. Refraction changes radiance by the
+ *             square of the index: on paths from the eye, multiply f and weights of refracted directions by (n_o /
+ *             n_i)^2, which is 1/eta^2 for a wo above and eta^2 for one below. Paths from lights take them as they are.
  * parameters  m, of mcs_ggx_make. eta, the index below over that above, in [1e-3, 1e3]; others are bad. eta = 1 neither
  *             reflects nor bends: a sample is wi = -wo with the pdf FLT_MAX, and pdf, eval and weight of a given wi are
  *             0, as of a mirror.
