@@ -10478,6 +10478,7 @@ typedef struct {
     uint32_t *tile_sums;
     float *bound; /* [cols + 1][rows]: what tiles may weigh, and the largest in a row; it lies where tile_sums will */
     float excess; /* how much a value loses of what it is above the mean of the tile's warp */
+    float even;   /* what is added to each value by mcsi_product_finish */
 } mcsi_product_lists;
 MCSI_CORE mcsi_product_lists mcsi_product_lists_of(mcs_product *p, const mcs_tiles *t) {
     const mcsi_tiles_offsets from = mcsi_tiles_offsets_of(t);
@@ -10523,24 +10524,21 @@ MCSI_CORE double mcsi_share_position(double u, uint32_t begin, uint32_t end) {
 #endif
 #ifdef MCSI_LOOPS
 /* Cumulative shares of tiles within their rows; a tile weighs its light times its value. */
-MCSI_CORE void mcsi_tile_shares(size_t rows, size_t cols, const float *light, const float *value, uint32_t *tile_sums,
-                                float *row_weight) {
-    for (size_t i = 0; i < rows; i += MCSI_W) {
+MCSI_LOOP void mcsi_tile_shares_loop(mcsi_product_lists l) {
+    const size_t n = l.rows * l.cols;
+    for (size_t i = 0; i < l.rows; i += MCSI_W) {
         mcs_f sum = mcs_set(0.0f);
         mcs_i so_far = mcsi_trunc(sum);
-        for (size_t k = i; k < rows * cols; k += rows) sum = sum + mcs_load(light + k) * mcs_load(value + k);
-        const mcs_f scale = (16777216.0f - (float)cols) / mcsi_max(sum, mcs_set(MCSI_SUM_LEAST));
-        for (size_t k = i; k < rows * cols; k += rows) {
-            const mcs_f w = mcs_load(light + k) * mcs_load(value + k);
-            mcsi_store_int(tile_sums + k, so_far);
+        for (size_t k = i; k < n; k += l.rows) sum = sum + mcs_load(l.light + k) * (mcs_load(l.value + k) + l.even);
+        const mcs_f scale = (16777216.0f - (float)l.cols) / mcsi_max(sum, mcs_set(MCSI_SUM_LEAST));
+        for (size_t k = i; k < n; k += l.rows) {
+            const mcs_f w = mcs_load(l.light + k) * (mcs_load(l.value + k) + l.even);
+            mcsi_store_int(l.tile_sums + k, so_far);
             so_far = so_far + mcsi_trunc(mcsi_sel(w > 0.0f, w * scale + 1.0f, mcs_set(0.0f)));
         }
-        mcsi_store_int(tile_sums + rows * cols + i, so_far);
-        mcs_store(row_weight + i, sum);
+        mcsi_store_int(l.tile_sums + n + i, so_far);
+        mcs_store(l.row_weight + i, sum);
     }
-}
-MCSI_LOOP void mcsi_tile_shares_loop(const mcsi_product_lists *l) {
-    mcsi_tile_shares(l->rows, l->cols, l->light, l->value, l->tile_sums, l->row_weight);
 }
 #endif
 #if MCSI_W == 1
@@ -10557,9 +10555,10 @@ MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, size_t least,
     p->at = mcsi_product_layout(t->rows);
     return MCS_OK;
 }
-/* From values to shares. */
-MCS_FN void mcsi_product_finish(mcs_product *p, const mcs_tiles *t) {
-    const mcsi_product_lists l = mcsi_product_lists_of(p, t);
+/* From values to shares; to each value `even` is added. */
+MCS_FN void mcsi_product_finish(mcs_product *p, const mcs_tiles *t, float even) {
+    mcsi_product_lists l = mcsi_product_lists_of(p, t);
+    l.even = even;
     mcsi_tile_shares_n(&l);
     uint32_t *row_sums = MCSI_WRITE(uint32_t, p, p->at.row_sums);
     const uint32_t *row_totals = l.tile_sums + mcsi_tiles_count(t);
@@ -10883,12 +10882,13 @@ MCSI_CORE mcsi_region_lists mcsi_region_lists_of(mcs_region *g) {
 /* What a ray to the next tile counts. */
 #define MCSI_NEXT_COUNTS 0.75f
 #endif
-/* Rays, [cols][rows], of tile k and 3/4 of those of the tiles above and below it. Columns end at the poles. */
+/* Rays, [cols][rows], of tile k and 3/4 of those of the tiles above and below it. Columns end at the poles. `rows` is a
+ * power of two: a division would take as long as all the rest. */
 MCSI_CORE mcs_f mcsi_column_about(const float *list, size_t rows, size_t k) {
     mcs_f above = mcs_load(list + k - 1);
     mcs_f below = mcs_load(list + k + 1);
-    if (k % rows == 0) MCSI_LANE(above, 0) = 0.0f;
-    if ((k + MCSI_W) % rows == 0) MCSI_LANE(below, MCSI_W - 1) = 0.0f;
+    if ((k & (rows - 1)) == 0) MCSI_LANE(above, 0) = 0.0f;
+    if (((k + MCSI_W) & (rows - 1)) == 0) MCSI_LANE(below, MCSI_W - 1) = 0.0f;
     return mcs_load(list + k) + MCSI_NEXT_COUNTS * (above + below);
 }
 /* The same, and 3/4 of the same for the tiles left and right of it. Rows go round the map. */
@@ -10926,11 +10926,17 @@ MCSI_LOOP void mcsi_region_values_loop(float points, size_t n, const float *squa
     const mcs_f scale = mcs_set(1.0f / points);
     for (size_t i = 0; i < n; i += MCSI_W) mcs_store(value + i, mcsi_sqrt(mcs_load(square + i) * scale));
 }
+/* n counts become `keep` of themselves and what is added. `added` may be NULL, and the list itself. */
+MCSI_LOOP void mcsi_region_counts_loop(size_t n, float keep, const float *added, float *list) {
+    for (size_t i = 0; i < n; i += MCSI_W)
+        mcs_store(list + i, keep * mcs_load(list + i) + (added ? mcs_load(added + i) : mcs_set(0.0f)));
+}
 #endif
 #if MCSI_W == 1
 MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square);
 MCS_FN void mcsi_see_n(size_t rows, const float *rays, const float *light, float *seen);
 MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value);
+MCS_FN void mcsi_region_counts_n(size_t n, float keep, const float *added, float *list);
 
 MCS_API size_t mcs_region_bytes(uint32_t rows) {
     return mcsi_tiles_ok(rows) ? sizeof(mcs_region) + 4 * sizeof(float) * 2 * rows * rows : 0;
@@ -10978,11 +10984,10 @@ MCS_API void mcs_region_merge(mcs_region *g, const mcs_region *other) {
     MCSI_REQUIRE(g->rows == other->rows, "both have as many rows of tiles");
     if (g->rows != other->rows) return;
     const mcsi_region_lists l = mcsi_region_lists_of(g);
-    const float *add = MCSI_READ(float, other, sizeof *other);
     g->points += other->points;
     g->rays += other->rays;
     g->through += other->through;
-    for (size_t k = 0; k < 3 * l.n; k++) l.square[k] += add[k];
+    mcsi_region_counts_n(3 * l.n, 1.0f, MCSI_READ(float, other, sizeof *other), l.square);
 }
 MCS_API void mcs_region_decay(mcs_region *g, float keep) {
     const mcsi_region_lists l = mcsi_region_lists_of(g);
@@ -10990,7 +10995,7 @@ MCS_API void mcs_region_decay(mcs_region *g, float keep) {
     g->points *= factor;
     g->rays *= factor;
     g->through *= factor;
-    for (size_t k = 0; k < 3 * l.n; k++) l.square[k] *= factor;
+    mcsi_region_counts_n(3 * l.n, factor, NULL, l.square);
 }
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k) {
     const size_t n = mcsi_region_tiles(g);
@@ -11028,8 +11033,8 @@ MCS_FN void mcsi_product_see(mcs_product *p, const mcs_tiles *t, const mcs_regio
 /* Fewer points, which have decayed, count as none: sums of their squares have lost digits. */
 #define MCSI_REGION_POINTS_LEAST 1e-20f
 /* Values of the tiles: the reflections of the region. And its reach: of the light reflected V comes through, L V f over
- * L f; of what is drawn in proportion to L V f it is L V^2 f over L V f. */
-MCS_FN void mcsi_product_reflect(mcs_product *p, const mcs_tiles *t, const mcs_region *g) {
+ * L f; of what is drawn in proportion to L V f it is L V^2 f over L V f. Returns what even light adds to the values. */
+MCS_FN float mcsi_product_reflect(mcs_product *p, const mcs_tiles *t, const mcs_region *g) {
     const size_t n = mcsi_region_tiles(g);
     const float *light = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light);
     const float *seen = MCSI_READ(float, p, p->at.light);
@@ -11050,9 +11055,7 @@ MCS_FN void mcsi_product_reflect(mcs_product *p, const mcs_tiles *t, const mcs_r
     }
     const float some = mcsi_max(through, FLT_MIN);
     p->reach = twice / some * (all / some);
-    if (!known) return;
-    const float even = mcsi_max(0.2f * (through / mcsi_max(all_seen, FLT_MIN)), MCSI_VALUE_LEAST);
-    for (size_t k = 0; k < n; k++) value[k] += even;
+    return known ? mcsi_max(0.2f * (through / mcsi_max(all_seen, FLT_MIN)), MCSI_VALUE_LEAST) : 0.0f;
 }
 MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r, const mcs_region *g) {
@@ -11070,7 +11073,7 @@ MCS_API mcs_status mcs_product_build(mcs_product *p, size_t bytes, const mcs_til
     p->warped = 1;
     mcsi_corner_values_n(&s, n + t->cols, MCSI_READ(float, t, from.corner), MCSI_WRITE(float, p, p->at.corner));
     mcsi_product_refine(p, t, &s);
-    mcsi_product_finish(p, t);
+    mcsi_product_finish(p, t, 0.0f);
     if (p->dark) return MCS_OK;
     p->brdf_share = mcsi_product_lobe_share(p, t, e, r, &s);
     if (g && s.matte < 1.0f) p->brdf_share = mcsi_max(p->brdf_share, 0.1f);
@@ -11091,7 +11094,7 @@ MCS_API mcs_status mcs_product_build_weights(mcs_product *p, size_t bytes, const
     for (size_t k = 0; k < n; k++) /* of the size of reflections, and none lost to underflow */
         value[k] = value[k] > 0.0f ? mcsi_max((float)((double)value[k] / (double)top), 1e-18f) : 0.0f;
     mcsi_product_see(p, t, NULL);
-    mcsi_product_finish(p, t);
+    mcsi_product_finish(p, t, 0.0f);
     return MCS_OK;
 }
 MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const mcs_tiles *t, const mcs_env *e,
@@ -11100,8 +11103,7 @@ MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const 
     const mcs_status status = mcsi_product_start(p, bytes, t ? mcs_product_table_bytes(t->rows) : 0, t, e, g);
     if (status) return status;
     mcsi_product_see(p, t, g);
-    mcsi_product_reflect(p, t, g);
-    mcsi_product_finish(p, t);
+    mcsi_product_finish(p, t, mcsi_product_reflect(p, t, g));
     return MCS_OK;
 }
 
@@ -12125,6 +12127,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_quotient MCSI_(quotient)
 #define mcsi_rarely MCSI_(rarely)
 #define mcsi_rayleigh_loop MCSI_(rayleigh_loop)
+#define mcsi_region_counts_loop MCSI_(region_counts_loop)
 #define mcsi_region_points_loop MCSI_(region_points_loop)
 #define mcsi_region_values_loop MCSI_(region_values_loop)
 #define mcsi_reverse_bits MCSI_(reverse_bits)
@@ -12188,7 +12191,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_tile_bounds_loop MCSI_(tile_bounds_loop)
 #define mcsi_tile_light MCSI_(tile_light)
 #define mcsi_tile_light_load MCSI_(tile_light_load)
-#define mcsi_tile_shares MCSI_(tile_shares)
 #define mcsi_tile_shares_loop MCSI_(tile_shares_loop)
 #define mcsi_tile_value MCSI_(tile_value)
 #define mcsi_tile_values_loop MCSI_(tile_values_loop)
@@ -12791,6 +12793,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_quotient
 #undef mcsi_rarely
 #undef mcsi_rayleigh_loop
+#undef mcsi_region_counts_loop
 #undef mcsi_region_points_loop
 #undef mcsi_region_values_loop
 #undef mcsi_reverse_bits
@@ -12854,7 +12857,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_tile_bounds_loop
 #undef mcsi_tile_light
 #undef mcsi_tile_light_load
-#undef mcsi_tile_shares
 #undef mcsi_tile_shares_loop
 #undef mcsi_tile_value
 #undef mcsi_tile_values_loop
@@ -12958,13 +12960,16 @@ MCS_FN void mcsi_corner_values_n(const mcsi_surface *s, size_t n, const float *c
 }
 MCS_FN void mcsi_warps_n(size_t n, mcsi_warp_block *b) { MCSI_WIDE(n, warps_loop, (n, b)); }
 MCS_FN void mcsi_warp_densities_n(size_t n, mcsi_warp_block *b) { MCSI_WIDE(n, warp_densities_loop, (n, b)); }
-MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l) { MCSI_WIDE(l->rows * l->cols, tile_shares_loop, (l)); }
+MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l) { MCSI_WIDE(l->rows * l->cols, tile_shares_loop, (*l)); }
 MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l) { MCSI_WIDE(l->rows * l->cols, tile_bounds_loop, (l)); }
 MCS_FN void mcsi_region_points_n(const mcsi_surface *s, size_t n, const float *tile, float *square) {
     MCSI_WIDE(n, region_points_loop, (s, n, tile, square));
 }
 MCS_FN void mcsi_see_n(size_t rows, const float *rays, const float *light, float *seen) {
     MCSI_WIDE(2 * rows * rows, see_loop, (rows, rays, light, seen));
+}
+MCS_FN void mcsi_region_counts_n(size_t n, float keep, const float *added, float *list) {
+    MCSI_WIDE(n, region_counts_loop, (n, keep, added, list));
 }
 MCS_FN void mcsi_region_values_n(float points, size_t n, const float *square, float *value) {
     MCSI_WIDE(n, region_values_loop, (points, n, square, value));
