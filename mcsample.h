@@ -10510,16 +10510,23 @@ MCSI_CORE uint32_t mcsi_shares_build(uint32_t *sums, const float *weight, uint32
     sums[n] = so_far;
     return so_far;
 }
-/* The last of n (a power of two) cumulative shares, `stride` apart, that is not above u: its place in the list. */
+/* The last of n (a power of two, 16 or more) cumulative shares, `stride` apart, that is not above u: its place in the
+ * list. Two steps to a quarter each ask for all that they compare with at once; then it is halved. */
 MCSI_CORE uint32_t mcsi_shares_find(const uint32_t *sums, uint32_t n, uint32_t stride, uint32_t u) {
     uint32_t i = 0;
-    for (uint32_t step = n / 2 * stride; step >= stride; step /= 2) i += sums[i + step] <= u ? step : 0;
+    uint32_t step = n / 4 * stride;
+    MCSI_UNROLL
+    for (int k = 0; k < 2; k++, step /= 4) {
+        const uint32_t *at = sums + i;
+        i += step * ((uint32_t)(at[step] <= u) + (at[2 * step] <= u) + (at[3 * step] <= u));
+    }
+    for (step = n / 32 * stride; step >= stride; step /= 2) i += step * (uint32_t)(sums[i + step] <= u);
     return i;
 }
-/* The position of u within the share that goes from `begin` to `end`, in [0, 2^31). */
+/* The position of u within the share that goes from `begin` to `end`, in [0, 2^31). It does not round up to 2^31: u is
+ * short of `end` by 2^-24 or more, and the share is at most 2^24. */
 MCSI_CORE double mcsi_share_position(double u, uint32_t begin, uint32_t end) {
-    const double position = (u - (int32_t)begin) * ((double)MCSI_ONE / (int32_t)(end - begin));
-    return position < 2147483647.5 ? position : 2147483647.5;
+    return (u - (int32_t)begin) * ((double)MCSI_ONE / (int32_t)(end - begin));
 }
 #endif
 #ifdef MCSI_LOOPS
