@@ -9482,24 +9482,17 @@ typedef struct {
     uint32_t row, col;
     double down, across;
 } mcsi_spot;
-/* Where a direction lies that is not bad. */
-MCSI_CORE mcsi_spot mcsi_env_spot(const mcs_env *e, mcsi_angles a) {
+/* Where a direction lies that is not bad, in its texel. */
+MCSI_CORE mcsi_spot mcsi_env_spot(const mcs_env *e, mcsi_angles a, uint32_t row, uint32_t col) {
     mcsi_spot s;
-    s.row = mcsi_env_row_at(e, a.off_pole, a.polar);
-    s.col = mcsi_env_col_at(e, a.azimuth);
+    s.row = row;
+    s.col = col;
     const double *edge = mcsi_env_edge(e) + mcsi_env_from_pole(s.row, e->h);
     const double t = ((double)mcsi_abs(a.off_pole) - edge[0]) / (edge[1] - edge[0]);
     const double from_pole = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
     s.down = mcsi_bits(a.off_pole) < 0 ? 1.0 - from_pole : from_pole;
     s.across = (double)a.azimuth * e->w - s.col;
     return s;
-}
-/* Returns 0 for a bad direction. */
-MCSI_CORE int mcsi_env_find(const mcs_env *e, mcs_vec3 w, mcsi_spot *s) {
-    const mcsi_angles a = mcsi_env_angles(&e->frame, w);
-    if (!(a.off_pole < 4.0f)) return 0;
-    *s = mcsi_env_spot(e, a);
-    return 1;
 }
 MCSI_CORE int mcsi_window_holds(const mcs_env *e, const mcsi_window *r, uint32_t row, uint32_t col) {
     const uint32_t from_col0 = col >= r->col0 ? col - r->col0 : col + e->w - r->col0;
@@ -9767,8 +9760,9 @@ MCS_API mcs_texel mcs_env_texel(const mcs_env *e, mcs_vec3 w) {
 MCS_API float mcs_env_pdf(const mcs_env *e, mcs_vec3 w) { return mcs_env_texel(e, w).pdf; }
 MCS_API mcs_vec2 mcs_env_invert(const mcs_env *e, mcs_vec3 w) {
     const mcsi_window all = mcsi_env_whole(e);
-    mcsi_spot s;
-    if (!mcsi_env_find(e, w, &s)) return mcsi_vec2(0.0f, 0.0f);
+    const mcsi_angles a = mcsi_env_angles(&e->frame, w);
+    if (!(a.off_pole < 4.0f)) return mcsi_vec2(0.0f, 0.0f);
+    const mcsi_spot s = mcsi_env_spot(e, a, mcsi_env_row_at(e, a.off_pole, a.polar), mcsi_env_col_at(e, a.azimuth));
     if (all.uniform) {
         const double top = mcsi_env_top(e, s.row);
         const double t = top + s.down * (mcsi_env_top(e, s.row + 1) - top);
@@ -9815,11 +9809,12 @@ MCSI_CORE mcs_vec3 mcsi_window_direction(const mcs_env *e, const mcsi_window *r,
 MCSI_CORE int mcsi_window_row_is_lit(const mcsi_window *r, uint32_t row) {
     return r->uniform || mcsi_cdf_mass(&r->rows, row - r->row0) != 0;
 }
-/* Density per solid angle at a spot of the window, in a lit row, when the window itself is drawn with `density`. */
-MCSI_CORE float mcsi_window_density_at(const mcs_env *e, const mcsi_window *r, const mcsi_spot *spot, double density) {
+/* Density per solid angle in a texel of the window, in a lit row, when the window itself is drawn with `density`. */
+MCSI_CORE float mcsi_window_density_at(const mcs_env *e, const mcsi_window *r, uint32_t row, uint32_t col,
+                                       double density) {
     if (r->uniform) return (float)(density * (double)mcsi_window_uniform_pdf(e, r));
-    const uint32_t *sums = mcsi_env_sums(e, spot->row) + spot->col;
-    return (float)((sums[1] - sums[0]) * (density * mcsi_window_row_density(r, spot->row - r->row0)));
+    const uint32_t *sums = mcsi_env_sums(e, row) + col;
+    return (float)((sums[1] - sums[0]) * (density * mcsi_window_row_density(r, row - r->row0)));
 }
 /* A position among the light of a window: t1 of the row's light lies before it, t2 of all light in rows above it. */
 typedef struct {
@@ -9950,10 +9945,10 @@ MCSI_CORE uint32_t mcsi_tile_begin(uint32_t tile, uint32_t tiles, uint32_t texel
 MCSI_CORE uint32_t mcsi_tile_of(uint32_t texel, uint32_t tiles, uint32_t texels) {
     return ((texel + 1) * tiles - 1) / texels; /* below 2^23 */
 }
-MCSI_CORE mcsi_tile mcsi_tile_of_spot(const mcs_tiles *t, const mcs_env *e, const mcsi_spot *spot) {
+MCSI_CORE mcsi_tile mcsi_tile_of_texel(const mcs_tiles *t, const mcs_env *e, uint32_t row, uint32_t col) {
     mcsi_tile tile;
-    tile.row = mcsi_tile_of(spot->row, t->rows, e->h);
-    tile.col = mcsi_tile_of(spot->col, t->cols, e->w);
+    tile.row = mcsi_tile_of(row, t->rows, e->h);
+    tile.col = mcsi_tile_of(col, t->cols, e->w);
     return tile;
 }
 MCS_API uint32_t mcs_tiles_of_texel(const mcs_tiles *t, const mcs_env *e, uint32_t col, uint32_t row) {
@@ -10790,13 +10785,14 @@ MCS_FN float mcsi_tile_solid_angle(const mcs_tiles *t, const mcs_env *e, mcsi_ti
  * that tile is dark and the next one is not. */
 MCS_FN float mcsi_product_mirrored(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, const mcs_reflection *r,
                                    const mcsi_surface *s) {
-    mcsi_spot spot;
-    if (!mcsi_env_find(e, mcs_to_world(&r->frame, mcsi_vec3(-s->wo.x, -s->wo.y, s->wo.z)), &spot)) return 1.0f;
-    const mcsi_tile tile = mcsi_tile_of_spot(t, e, &spot);
-    const float light = MCSI_READ(float, p, p->at.light)[mcsi_tile_number(t->rows, tile)];
+    const mcs_vec3 mirrored = mcsi_vec3(-s->wo.x, -s->wo.y, s->wo.z);
+    const uint32_t k = mcs_tiles_of_direction(t, e, mcs_to_world(&r->frame, mirrored));
+    if (k >= mcsi_tiles_count(t)) return 1.0f;
+    const float light = MCSI_READ(float, p, p->at.light)[k];
     const float *row_weight = MCSI_READ(float, p, p->at.row_weight);
     float total = 0.0f;
     for (uint32_t i = 0; i < t->rows; i++) total += row_weight[i];
+    const mcsi_tile tile = {k % t->rows, k / t->rows};
     total *= mcsi_tile_solid_angle(t, e, tile);
     return light < total ? mcsi_max(light / total, 1.0f / 4096.0f) : 1.0f;
 }
@@ -11200,16 +11196,19 @@ MCSI_CORE double mcsi_product_point_density(const mcs_product *p, const mcs_tile
 
 /* -- the whole -- */
 
-/* Density of the tiles at a spot, without the lobe's share. */
-MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcs_tiles *t, const mcs_env *e,
-                                     const mcsi_spot *spot) {
-    const mcsi_tile tile = mcsi_tile_of_spot(t, e, spot);
+/* Density of the tiles in a direction and its texel, without the lobe's share. */
+MCSI_CORE float mcsi_product_density(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcsi_angles a,
+                                     uint32_t row, uint32_t col) {
+    const mcsi_tile tile = mcsi_tile_of_texel(t, e, row, col);
     double density = mcsi_product_tile_probability(p, tile);
     if (!(density > 0.0)) return 0.0f;
     const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, tile));
-    if (!mcsi_window_row_is_lit(&window, spot->row)) return 0.0f;
-    if (p->warped) density *= mcsi_product_point_density(p, t, tile, mcsi_window_position(e, &window, spot));
-    return mcsi_window_density_at(e, &window, spot, density);
+    if (!mcsi_window_row_is_lit(&window, row)) return 0.0f;
+    if (p->warped) {
+        const mcsi_spot spot = mcsi_env_spot(e, a, row, col);
+        density *= mcsi_product_point_density(p, t, tile, mcsi_window_position(e, &window, &spot));
+    }
+    return mcsi_window_density_at(e, &window, row, col, density);
 }
 /* What is returned where nothing can be drawn, and for bad directions. */
 MCSI_CORE mcs_texel mcsi_no_texel(const mcs_env *e) {
@@ -11221,13 +11220,13 @@ MCSI_CORE mcs_texel mcsi_no_texel(const mcs_env *e) {
 }
 /* Texel and density of world direction w, the lobe's share included. */
 MCS_FN mcs_texel mcsi_product_look_up(const mcs_product *p, const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
-    mcsi_spot spot;
-    if (!mcsi_env_find(e, w, &spot)) return mcsi_no_texel(e);
-    const float of_tiles = p->dark ? 0.0f : mcsi_product_density(p, t, e, &spot);
+    const mcsi_angles a = mcsi_env_angles(&e->frame, w);
+    if (!(a.off_pole < 4.0f)) return mcsi_no_texel(e);
     mcs_texel x;
     x.w = w;
-    x.row = spot.row;
-    x.col = spot.col;
+    x.row = mcsi_env_row_at(e, a.off_pole, a.polar);
+    x.col = mcsi_env_col_at(e, a.azimuth);
+    const float of_tiles = p->dark ? 0.0f : mcsi_product_density(p, t, e, a, x.row, x.col);
     x.pdf = mcsi_lobe_mix(&p->lobe, p->brdf_share, w, of_tiles);
     return x;
 }
@@ -11236,7 +11235,7 @@ MCSI_CORE mcs_texel mcsi_product_draw(const mcs_product *p, const mcs_tiles *t, 
     const mcsi_tile tile = mcsi_product_draw_tile(p, row, &d);
     const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, tile));
     mcsi_window_prefetch(&window, d.rest2);
-    mcsi_product_draw_point(p, t, tile, &d);
+    if (p->warped) mcsi_product_draw_point(p, t, tile, &d);
     mcs_texel x = mcsi_window_draw(e, &window, d);
     x.pdf = mcsi_lobe_mix(&p->lobe, p->brdf_share, x.w, x.pdf);
     return x;
@@ -11348,11 +11347,14 @@ MCS_FN void mcsi_product_block_draw(mcsi_product_block *b, size_t n, const mcsi_
 /* Where n directions lie, and the probability of each one's tile, which is 0 where nothing can be drawn. */
 MCSI_CORE void mcsi_product_block_find(mcsi_product_block *b, size_t n, const mcsi_angles_block *angles) {
     for (size_t k = 0; k < n; k++) {
-        const mcsi_angles a = {angles->off_pole[k], angles->polar[k], angles->azimuth[k]};
+        const mcsi_angles found = {angles->off_pole[k], angles->polar[k], angles->azimuth[k]};
         const mcsi_angles up = {0.0f, 0.0f, 0.0f};
-        b->found[k] = a.off_pole < 4.0f;
-        b->spot[k] = mcsi_env_spot(b->e, b->found[k] ? a : up);
-        const mcsi_tile tile = mcsi_tile_of_spot(b->t, b->e, &b->spot[k]);
+        b->found[k] = found.off_pole < 4.0f;
+        const mcsi_angles a = b->found[k] ? found : up;
+        const uint32_t row = mcsi_env_row_at(b->e, a.off_pole, a.polar);
+        const uint32_t col = mcsi_env_col_at(b->e, a.azimuth);
+        b->spot[k] = mcsi_env_spot(b->e, a, row, col);
+        const mcsi_tile tile = mcsi_tile_of_texel(b->t, b->e, row, col);
         b->draw[k].density = b->found[k] ? mcsi_product_tile_probability(b->p, tile) : 0.0;
         mcsi_product_block_tile(b, k, tile);
         MCSI_PREFETCH(mcsi_env_sums(b->e, b->spot[k].row) + b->spot[k].col);
@@ -11383,7 +11385,7 @@ MCS_FN void mcsi_product_block_pdf(mcsi_product_block *b, size_t n, const float 
         double density = b->draw[k].density;
         if (b->grid[k]) density *= (double)mcsi_grid_density(b->grid[k], b->warps.t1[k], b->warps.t2[k]);
         else if (b->p->warped) density *= (double)b->warps.density[k];
-        pdf[k] = mcsi_window_density_at(b->e, &window, &b->spot[k], density);
+        pdf[k] = mcsi_window_density_at(b->e, &window, b->spot[k].row, b->spot[k].col, density);
     }
 }
 
