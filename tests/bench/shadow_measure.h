@@ -238,8 +238,8 @@ static void do_work(bench_case *c, int i, work what) {
     case ADD_POINT: mcs_region_add_point(&c->spare.g, t, c->map->table, &f); break;
     default:
         for (uint32_t k = 0; k < ADDED_RAYS; k++) {
-            const uint32_t col = k * 2654435761u % c->map->w;
-            const uint32_t row = k * 40503u % c->map->h;
+            const uint32_t col = (uint32_t)((uint64_t)(k * 2654435761u) * c->map->w >> 32);
+            const uint32_t row = (uint32_t)((uint64_t)(k * 40503u << 16) * c->map->h >> 32);
             mcs_region_add_ray(&c->spare.g, mcs_tiles_of_texel(t, c->map->table, col, row), (int)(k & 1));
         }
     }
