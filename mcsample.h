@@ -2212,7 +2212,9 @@ typedef struct {
     mcs_ashikhmin ashikhmin;
 } mcsi_lobe;
 /* The nodes of a grid on the light of a tile, along a side and in all, and the most grids of a product. Private. */
-enum { MCSI_NODES = 8, MCSI_GRID = MCSI_NODES * MCSI_NODES, MCSI_GRIDS = 32 };
+#define MCSI_NODES 8
+#define MCSI_GRID (MCSI_NODES * MCSI_NODES)
+#define MCSI_GRIDS 32
 /* What follows an mcs_product, for R rows of tiles: LIST(type, name, length). Private. */
 #define MCSI_PRODUCT_LISTS(LIST, R)                                                                               \
     LIST(double, per_share, (R))                   /* of each row: probability of one of its shares */            \
@@ -2688,9 +2690,14 @@ typedef double mcsi_d;
 
 /* ---- batches: the arrays of one call ----------------------------------------------------------------------------- */
 
+/* Private constants are macros, here and below. For an operator on an enumerator clang weighs all pairs of arithmetic
+ * types in C++: a hundred of them were a twentieth of what an include costs. */
 #if MCSI_BASE_W > 0
-enum { MCSI_IN_MAX = 8, MCSI_OUT_MAX = 7 };
-enum { MCSI_IN_WO = 3, MCSI_IN_X = 6, MCSI_IN_Y = 7 }; /* where the arrays of mcs_hits are among those of `in` */
+#define MCSI_IN_MAX 8
+#define MCSI_OUT_MAX 7
+#define MCSI_IN_WO 3 /* where the arrays of mcs_hits are among those of `in` */
+#define MCSI_IN_X 6
+#define MCSI_IN_Y 7
 typedef struct {
     const float *in[MCSI_IN_MAX]; /* NULL where the caller has none */
     float *out[MCSI_OUT_MAX];     /* NULL where the caller does not want them */
@@ -6813,6 +6820,9 @@ MCSI_CORE mcs_f mcsi_gauss_over(const mcsi_slopes *m, mcs_f g, mcs_f divisor) {
 
 /* ---- the three BRDFs of Ward ---- */
 
+#if MCSI_W == 1
+MCSI_CORE int mcsi_is_ward(mcs_ward_model model, mcs_ward_model other) { return model == other; }
+#endif
 MCSI_SAMPLE mcs_dir mcs_ward_h_sample(const mcs_ward *m, mcs_f u1, mcs_f u2) {
     return mcsi_gauss_h_sample(&m->s, u1, u2);
 }
@@ -6823,8 +6833,8 @@ MCSI_FN mcs_vec2 mcs_ward_h_invert(const mcs_ward *m, mcs_vec3 h) { return mcsi_
 
 /* f wi.z / density of a sample. norm exp(-e) is a factor of both and cancels. */
 MCSI_CORE mcs_f mcsi_ward_sample_weight(mcs_ward_model model, mcs_vec3 wo, mcs_vec3 wi, const mcsi_slope_half *h) {
-    if (model == MCS_WARD_GMD) return 2.0f * wi.z / (wo.z + mcsi_abs(wi.z));
-    if (model == MCS_WARD_DUER) return h->wo_p / (h->p2 * h->p2 * wo.z);
+    if (mcsi_is_ward(model, MCS_WARD_GMD)) return 2.0f * wi.z / (wo.z + mcsi_abs(wi.z));
+    if (mcsi_is_ward(model, MCS_WARD_DUER)) return h->wo_p / (h->p2 * h->p2 * wo.z);
     return h->wo_p / (h->p2 * h->p2) * mcsi_sqrt(mcsi_abs(wi.z) / wo.z);
 }
 MCSI_SAMPLE mcs_brdf mcs_ward_sample(const mcs_ward *m, mcs_vec3 wo, mcs_f u1, mcs_f u2) {
@@ -6843,8 +6853,8 @@ MCSI_FN mcs_f mcs_ward_pdf(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) { return
 MCSI_CORE mcs_f mcsi_ward_value(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
     const mcs_vec3 h = mcsi_sum(wo, wi);
     const mcs_f gauss = mcsi_gauss(&m->s, h);
-    if (m->model == MCS_WARD_GMD) return mcsi_gauss_over(&m->s, gauss * mcsi_secant2(h), h.z * h.z);
-    if (m->model == MCS_WARD_DUER) return mcsi_gauss_over(&m->s, gauss, 4.0f * wo.z * wi.z);
+    if (mcsi_is_ward(m->model, MCS_WARD_GMD)) return mcsi_gauss_over(&m->s, gauss * mcsi_secant2(h), h.z * h.z);
+    if (mcsi_is_ward(m->model, MCS_WARD_DUER)) return mcsi_gauss_over(&m->s, gauss, 4.0f * wo.z * wi.z);
     return mcsi_gauss_over(&m->s, gauss, 4.0f * mcsi_sqrt(wo.z * wi.z));
 }
 MCSI_FN mcs_f mcs_ward_eval(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
@@ -6857,9 +6867,9 @@ MCSI_FN mcs_f mcs_ward_eval(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
 /* f wi.z / density of given directions. With H = wo + wi, H.z is wo.z + wi.z, and wo.p / |p|^4 is H.z^3 / (2 |H|^2). */
 MCSI_CORE mcs_f mcsi_ward_weight(mcs_ward_model model, mcs_vec3 wo, mcs_vec3 wi) {
     const mcs_vec3 h = mcsi_sum(wo, wi);
-    if (model == MCS_WARD_GMD) return 2.0f * wi.z / h.z;
+    if (mcsi_is_ward(model, MCS_WARD_GMD)) return 2.0f * wi.z / h.z;
     const mcs_f wo_p_over_p4 = h.z * (h.z * h.z / (2.0f * mcsi_dot(h, h)));
-    if (model == MCS_WARD_DUER) return wo_p_over_p4 / wo.z;
+    if (mcsi_is_ward(model, MCS_WARD_DUER)) return wo_p_over_p4 / wo.z;
     return wo_p_over_p4 * mcsi_sqrt(wi.z / wo.z);
 }
 MCSI_FN mcs_f mcs_ward_weight(const mcs_ward *m, mcs_vec3 wo, mcs_vec3 wi) {
@@ -7178,7 +7188,9 @@ MCSI_FN mcs_f mcs_ggx_weight(const mcs_ggx *m, mcs_vec3 wo, mcs_vec3 wi) {
  *   D     = (|p|^2 / |h_std|^2)^2 / (pi alpha_x alpha_y) */
 
 #if MCSI_W == 1
-enum { MCSI_GGX_VISIBLE = 0, MCSI_GGX_BOUNDED = 1 }; /* the argument `bounded`, a constant in every call */
+#define MCSI_GGX_VISIBLE 0 /* the argument `bounded`, a constant in every call */
+#define MCSI_GGX_BOUNDED 1
+#define MCSI_GGX_AHEAD 4 /* vectors: see mcsi_ggx_cap_sample_hits */
 #endif
 
 /* What is constant for one wo. */
@@ -7497,13 +7509,12 @@ MCSI_LOOP_PDF_HITS(ggx_bounded, ggx, ggx)
  * either step divisions and roots wait for one another, and processors overlap two vectors only where such a chain is
  * short. AVX-512 gains 8 %, AVX2 15 %, SSE2 18 %. */
 MCSI_CORE void mcsi_ggx_cap_sample_hits(const mcsi_scalar_ggx *m, const mcsi_batch *call, int bounded) {
-    enum { AHEAD = 4 };
-    mcs_ggx material[AHEAD];
-    mcsi_ggx_view view[AHEAD];
+    mcs_ggx material[MCSI_GGX_AHEAD];
+    mcsi_ggx_view view[MCSI_GGX_AHEAD];
     for (mcsi_batch b = *call; b.i < b.n;) {
         const size_t first = b.i;
         int count = 0;
-        for (; count < AHEAD && b.i < b.n; b.i += MCSI_W) {
+        for (; count < MCSI_GGX_AHEAD && b.i < b.n; b.i += MCSI_W) {
             material[count] = mcsi_ggx_of_hits(m, &b);
             view[count] = mcsi_ggx_view_make(&material[count], mcsi_in3(&b, MCSI_IN_WO), bounded);
             count++;
@@ -8101,7 +8112,9 @@ MCSI_LOUD
 
 /* ---- entries of a pwc table: of a random number, of random bits, of x ---- */
 
-enum { MCSI_CELLS_MAX = 1 << 28, MCSI_FETCH_CELLS = 1 << 17, MCSI_FETCH_BLOCK = 8 };
+#define MCSI_CELLS_MAX (1 << 28)
+#define MCSI_FETCH_CELLS (1 << 17)
+#define MCSI_FETCH_BLOCK 8
 /* Offsets in a table of n cells, in bytes. The guide is that of mcsi_guide_shift(n, 1). Only pwl has vertices. */
 typedef struct {
     size_t sums, guide, vertices, pwc_bytes, pwl_bytes;
@@ -8317,7 +8330,8 @@ MCS_API void mcs_discrete_sample_n(const mcs_discrete *t, size_t n, const float 
 
 /* ---- [tables] pwc2: the rows are a pwc table behind the header, and the columns of each are one behind that ---- */
 
-enum { MCSI_PWC2_MAX = 65536, MCSI_PWC2_BLOCK = 32 };
+#define MCSI_PWC2_MAX 65536
+#define MCSI_PWC2_BLOCK 32
 MCSI_CORE const mcs_pwc *mcsi_pwc2_rows(const mcs_pwc2 *t) { return MCSI_READ(mcs_pwc, t, sizeof *t); }
 /* Offset of the columns of a row. */
 MCSI_CORE size_t mcsi_pwc2_offset(const mcs_pwc2 *t, uint32_t row) {
@@ -8669,7 +8683,8 @@ MCSI_CORE mcsi_angles mcsi_env_angles(const mcs_frame *f, mcs_vec3 w) {
 #if MCSI_W == 1
 /* Draws of a block, for array forms: what is left of each, also as integers (U1, U2), the row's lists, which are NULL
  * where there is nothing to search, the first of eight columns, the texel, and the members of mcsi_env_point. */
-enum { MCSI_ENV_BLOCK = 32, MCSI_ENV_FEW = 7 }; /* fewer are drawn one by one, which costs less */
+#define MCSI_ENV_BLOCK 32
+#define MCSI_ENV_FEW 7 /* fewer are drawn one by one, which costs less */
 typedef struct {
     double rest1, rest2, density;
 } mcsi_draw; /* see "draws, in steps" */
@@ -8746,7 +8761,8 @@ MCS_FN void mcsi_env_angles_n(const mcs_env *e, size_t n, const float *x, const 
 /* ---- image: the weights of its texels ---- */
 
 /* Weights are read in chunks. The largest map has 2^16 columns and rows: guides of rows have 16 bits. */
-enum { MCSI_ENV_CHUNK = 128, MCSI_ENV_MAX = 1 << 16 };
+#define MCSI_ENV_CHUNK 128
+#define MCSI_ENV_MAX (1 << 16)
 
 MCS_API mcs_image mcs_image_make(const float *pixels, uint32_t w, uint32_t h, uint32_t channels) {
     mcs_image im;
@@ -8854,7 +8870,8 @@ typedef struct {
     uint32_t bad, col0, col1;
 } mcsi_row_light;
 
-enum { MCSI_ENV_VERSION = 4, MCSI_ENV_PER_GUIDE = 8 };
+#define MCSI_ENV_VERSION 4
+#define MCSI_ENV_PER_GUIDE 8
 #define MCSI_ENV_MAGIC 0x4553434du /* "MCSE" in a little-endian file */
 
 /* edge: double[(h + 1)/2 + 1], 1 - cos(theta) of the borders of rows from a pole to the equator. row: mcsi_row[h].
@@ -9892,11 +9909,9 @@ MCSI_CORE void mcsi_tile_light_store(const mcsi_tile_light *l, float *first, siz
     first[8 * n] = l->evenness;
 }
 
-enum {
-    MCSI_TILE_ROWS_MAX = 64,
-    MCSI_TILE_BLOCK = 64, /* rows and columns of texels that are added up together */
-    MCSI_TILE_MEMBERS = 9 /* floats of a mcsi_tile_light */
-};
+#define MCSI_TILE_ROWS_MAX 64
+#define MCSI_TILE_BLOCK 64  /* rows and columns of texels that are added up together */
+#define MCSI_TILE_MEMBERS 9 /* floats of a mcsi_tile_light */
 typedef struct {
     uint32_t row, col;
 } mcsi_tile;
@@ -10188,6 +10203,7 @@ typedef struct {
     mcs_profile profile;
     int32_t reflects; /* 0: wo is below the surface or bad */
 } mcsi_surface;
+MCSI_CORE int mcsi_has_profile(const mcsi_surface *s, mcs_profile profile) { return s->profile == profile; }
 MCS_FN mcsi_surface mcsi_surface_make(const mcs_env *e, const mcs_reflection *r) {
     const float ax = mcsi_min(mcsi_max(r->alpha_x, 1e-4f), 1e4f);
     const float ay = mcsi_min(mcsi_max(r->alpha_y, 1e-4f), 1e4f);
@@ -10267,9 +10283,9 @@ MCSI_CORE mcs_f mcsi_blurred_ggx(const mcsi_blurred_lobe *l, mcs_vec3 w, mcsi_sc
 /* The lobe times the cosine towards light that spreads about w, which is in the frame of the surface. */
 MCSI_CORE mcs_f mcsi_blurred_value(const mcsi_surface *s, mcs_vec3 w, mcs_f spread) {
     const mcsi_blurred_lobe l = mcsi_blurred_lobe_make(s, w, spread);
-    if (s->profile == MCS_PROFILE_GAUSS) return mcsi_blurred_gauss(&l, w.z);
-    if (s->profile == MCS_PROFILE_PHONG) return mcsi_blurred_phong(&l, w.z, s->wo.z);
-    if (s->profile == MCS_PROFILE_ASHIKHMIN) return mcsi_blurred_ashikhmin(&l, w.z, s->wo.z);
+    if (mcsi_has_profile(s, MCS_PROFILE_GAUSS)) return mcsi_blurred_gauss(&l, w.z);
+    if (mcsi_has_profile(s, MCS_PROFILE_PHONG)) return mcsi_blurred_phong(&l, w.z, s->wo.z);
+    if (mcsi_has_profile(s, MCS_PROFILE_ASHIKHMIN)) return mcsi_blurred_ashikhmin(&l, w.z, s->wo.z);
     return mcsi_blurred_ggx(&l, w, s->wo);
 }
 /* ---- [product] values: the reflection towards tiles and their corners ---- */
@@ -10646,7 +10662,9 @@ MCS_FN void mcsi_tile_bounds_n(const mcsi_product_lists *l); /* by the widest lo
 /* How much of a tile's value without a grid the nodes of its grid have at least. */
 #define MCSI_GRID_OF_VALUE (1.0f / 128.0f)
 /* A lobe of half-vectors narrows with the cosine of wo; Phong's, about the mirror direction, does not. */
-MCSI_CORE float mcsi_lobe_cosine(const mcsi_surface *s) { return s->profile == MCS_PROFILE_PHONG ? 1.0f : s->wo.z; }
+MCSI_CORE float mcsi_lobe_cosine(const mcsi_surface *s) {
+    return mcsi_has_profile(s, MCS_PROFILE_PHONG) ? 1.0f : s->wo.z;
+}
 /* Solid angle in mean tiles, n of them, of a lobe that is as wide along both axes as s is along its narrower one. */
 MCSI_CORE float mcsi_lobe_in_tiles(const mcsi_surface *s, size_t n) {
     return (float)n * mcsi_min(s->ax2, s->ay2) * mcsi_lobe_cosine(s);
@@ -10802,7 +10820,7 @@ MCS_FN float mcsi_product_lobe_share(const mcs_product *p, const mcs_tiles *t, c
                                      const mcs_reflection *r, const mcsi_surface *s) {
     const float cells = 14.0f * (float)mcsi_tiles_count(t);
     const float lobe = cells * mcsi_sqrt(s->ax2 * s->ay2) * mcsi_lobe_cosine(s);
-    const float m = mcsi_min((s->profile == MCS_PROFILE_GGX ? 1.0f : 3.0f) / lobe, 100.0f) - 0.007f;
+    const float m = mcsi_min((mcsi_has_profile(s, MCS_PROFILE_GGX) ? 1.0f : 3.0f) / lobe, 100.0f) - 0.007f;
     if (!(m > 0.0f && s->matte < 1.0f)) return 0.0f;
     const float x = m + m * m;
     return (1.0f - s->matte) * mcsi_min(x / (1.0f + x), 0.95f) * mcsi_sqrt(mcsi_product_mirrored(p, t, e, r, s));
