@@ -291,14 +291,12 @@
 #define MCSI_PRIVATE static inline
 #endif
 #if defined(MCSI_GNU) && !defined(MCSI_DEVICE)
-#define MCSI_INLINE __attribute__((always_inline, unused)) MCSI_PRIVATE
+#define MCSI_INLINE __attribute__((always_inline)) MCSI_PRIVATE
 #endif
 #if defined(MCS_FN)
 #define MCSI_FN_GIVEN
 #elif defined(MCSI_DEVICE)
 #define MCS_FN __host__ __device__ static inline
-#elif defined(MCSI_GNU)
-#define MCS_FN __attribute__((unused)) static inline
 #else
 #define MCS_FN static inline
 #endif
@@ -315,7 +313,7 @@
 #define MCSI_INLINE MCS_FN
 #define MCSI_APART MCS_FN
 #else
-#define MCSI_APART __attribute__((noinline, unused)) MCSI_PRIVATE
+#define MCSI_APART __attribute__((noinline)) MCSI_PRIVATE
 #endif
 #if defined(MCSI_GNU) && !defined(__clang__)
 #define MCSI_QUIET _Pragma("GCC diagnostic push") _Pragma("GCC diagnostic ignored \"-Wattributes\"")
@@ -2505,10 +2503,16 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
  * note comes at the end of the file, so it stays off for the rest of the including file, too. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
-#if defined(MCSI_GNU) && !defined(__cplusplus)
-/* The header declares variables at their first use, as C99 and C++ allow. Some projects have compilers warn of that. */
+#if defined(MCSI_GNU)
 #pragma GCC diagnostic push
+#ifndef __cplusplus
+/* The header declares variables at their first use, as C99 and C++ allow. Some projects have compilers warn of that. */
 #pragma GCC diagnostic ignored "-Wdeclaration-after-statement"
+#endif
+#if defined(__clang__) && __INCLUDE_LEVEL__ == 0
+/* Where this text was pasted, clang would warn of inline functions that nothing calls. */
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
 #endif
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
@@ -2812,7 +2816,7 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
 #define MCSI_LOOP MCS_FN
 #define MCSI_REQUIRE(ok, what) MCS_ASSERT((ok) && what)
 #else
-#define MCSI_LOOP MCSI_TARGET __attribute__((unused)) MCSI_PRIVATE
+#define MCSI_LOOP MCSI_TARGET MCSI_PRIVATE
 #define MCSI_REQUIRE(ok, what) ((void)0)
 #endif
 
@@ -13214,7 +13218,7 @@ MCSI_ARRAY_HITS(ashikhmin, ashikhmin)
 #endif
 #endif /* MCSI_BATCH */
 #endif /* MCSI_DECLARED */
-#if defined(MCSI_GNU) && !defined(__cplusplus)
+#if defined(MCSI_GNU)
 #pragma GCC diagnostic pop
 #endif
 #endif /* MCSI_PASSES */
