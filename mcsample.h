@@ -2498,9 +2498,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z);
 /* PART II: MACHINERY                                                                                                 */
 /* ================================================================================================================== */
 
-#if defined(MCSI_GNU)
+#if defined(MCSI_GNU) && (!defined(__clang__) || MCSI_PACKETS >= 8)
 /* gcc notes that functions which pass wide vectors depend on the instruction set. Here all of them are inlined. The
- * note comes at the end of the file, so it stays off for the rest of the including file, too. */
+ * note comes at the end of the file, so it stays off for the rest of the including file, too. clang warns of calls of
+ * packets only, and a pragma has it look for what is in force at each expression: a twentieth of what an include
+ * costs. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 #if defined(MCSI_GNU)
