@@ -11676,11 +11676,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef MCSI_SAMPLE
 #undef MCSI_CORE
 #undef MCSI_PUBLIC
-#undef MCSI_F
-#undef MCSI_I
-#undef MCSI_U
-#undef MCSI_D
-#undef MCSI_Q
+#undef mcs_f
+#undef mcs_i
+#undef mcs_u
+#undef mcsi_d
+#undef mcsi_q
 #undef MCSI_LANE
 #undef MCSI_PUT_LANE
 #undef MCSI_WIDEN
@@ -11771,7 +11771,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_exponential_invert MCS_(exponential_invert)
 #define mcs_exponential_pdf MCS_(exponential_pdf)
 #define mcs_exponential_sample MCS_(exponential_sample)
-#define mcs_f MCSI_F
 #define mcs_frame MCS_(frame)
 #define mcs_frame_from_tangent MCS_(frame_from_tangent)
 #define mcs_frame_make MCS_(frame_make)
@@ -11816,7 +11815,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_henyey_greenstein_invert MCS_(henyey_greenstein_invert)
 #define mcs_henyey_greenstein_pdf MCS_(henyey_greenstein_pdf)
 #define mcs_henyey_greenstein_sample MCS_(henyey_greenstein_sample)
-#define mcs_i MCSI_I
 #define mcs_is_mirror MCS_(is_mirror)
 #define mcs_light MCS_(light)
 #define mcs_light_point MCS_(light_point)
@@ -11894,7 +11892,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcs_truncnormal_invert MCS_(truncnormal_invert)
 #define mcs_truncnormal_pdf MCS_(truncnormal_pdf)
 #define mcs_truncnormal_sample MCS_(truncnormal_sample)
-#define mcs_u MCSI_U
 #define mcs_u01 MCS_(u01)
 #define mcs_u01_open MCS_(u01_open)
 #define mcs_vec2 MCS_(vec2)
@@ -11986,7 +11983,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_cut_pdf MCSI_(cut_pdf)
 #define mcsi_cut_place MCSI_(cut_place)
 #define mcsi_cut_sample MCSI_(cut_sample)
-#define mcsi_d MCSI_D
 #define mcsi_deviation MCSI_(deviation)
 #define mcsi_disk_hit MCSI_(disk_hit)
 #define mcsi_disk_light MCSI_(disk_light)
@@ -12156,7 +12152,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_power_of_2 MCSI_(power_of_2)
 #define mcsi_power_to_60 MCSI_(power_to_60)
 #define mcsi_put_lane MCSI_(put_lane)
-#define mcsi_q MCSI_Q
 #define mcsi_quotient MCSI_(quotient)
 #define mcsi_rarely MCSI_(rarely)
 #define mcsi_rayleigh_loop MCSI_(rayleigh_loop)
@@ -12277,24 +12272,25 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_wide_sqrt MCSI_(wide_sqrt)
 #define mcsi_with_sign MCSI_(with_sign)
 
-/* MCSI_W is the number of lanes of a pass, MCS_(x) the public name x of that width, MCSI_(x) a private one. */
+/* MCSI_W is the number of lanes of a pass, MCS_(x) the public name x of that width, MCSI_(x) a private one. Types of
+ * lanes, which are named most often, get their names here. */
 #if MCSI_PACKETS >= 4 || MCSI_BASE_W == 4
 #define MCSI_W 4
 #if MCSI_PACKETS >= 4
 #define MCSI_PUBLIC
 #define MCS_(name) mcs4_##name
-#define MCSI_F mcs4_f
-#define MCSI_I mcs4_i
-#define MCSI_U mcs4_u
+#define mcs_f mcs4_f
+#define mcs_i mcs4_i
+#define mcs_u mcs4_u
 #else
 #define MCS_(name) mcsi_4p_##name
-#define MCSI_F mcsi4_f
-#define MCSI_I mcsi4_i
-#define MCSI_U mcsi4_u
+#define mcs_f mcsi4_f
+#define mcs_i mcsi4_i
+#define mcs_u mcsi4_u
 #endif
 #define MCSI_(name) mcsi4_##name
-#define MCSI_D mcsi4_d
-#define MCSI_Q mcsi4_q
+#define mcsi_d mcsi4_d
+#define mcsi_q mcsi4_q
 #include MCS_SELF
 #endif
 
@@ -12303,18 +12299,18 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #if MCSI_PACKETS >= 8
 #define MCSI_PUBLIC
 #define MCS_(name) mcs8_##name
-#define MCSI_F mcs8_f
-#define MCSI_I mcs8_i
-#define MCSI_U mcs8_u
+#define mcs_f mcs8_f
+#define mcs_i mcs8_i
+#define mcs_u mcs8_u
 #else
 #define MCS_(name) mcsi_8p_##name
-#define MCSI_F mcsi8_f
-#define MCSI_I mcsi8_i
-#define MCSI_U mcsi8_u
+#define mcs_f mcsi8_f
+#define mcs_i mcsi8_i
+#define mcs_u mcsi8_u
 #endif
 #define MCSI_(name) mcsi8_##name
-#define MCSI_D mcsi8_d
-#define MCSI_Q mcsi8_q
+#define mcsi_d mcsi8_d
+#define mcsi_q mcsi8_q
 #if defined(MCSI_X86) && defined(__AVX__)
 #define MCSI_AVX
 #endif
@@ -12326,18 +12322,18 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #if MCSI_PACKETS >= 16
 #define MCSI_PUBLIC
 #define MCS_(name) mcs16_##name
-#define MCSI_F mcs16_f
-#define MCSI_I mcs16_i
-#define MCSI_U mcs16_u
+#define mcs_f mcs16_f
+#define mcs_i mcs16_i
+#define mcs_u mcs16_u
 #else
 #define MCS_(name) mcsi_16p_##name
-#define MCSI_F mcsi16_f
-#define MCSI_I mcsi16_i
-#define MCSI_U mcsi16_u
+#define mcs_f mcsi16_f
+#define mcs_i mcsi16_i
+#define mcs_u mcsi16_u
 #endif
 #define MCSI_(name) mcsi16_##name
-#define MCSI_D mcsi16_d
-#define MCSI_Q mcsi16_q
+#define mcsi_d mcsi16_d
+#define mcsi_q mcsi16_q
 #if defined(MCSI_X86) && defined(__AVX512F__)
 #define MCSI_AVX512
 #endif
@@ -12354,11 +12350,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define MCSI_LOOPS
 #define MCS_(name) mcsi_avx2p_##name
 #define MCSI_(name) mcsi_avx2_##name
-#define MCSI_F mcsi8_f
-#define MCSI_I mcsi8_i
-#define MCSI_U mcsi8_u
-#define MCSI_D mcsi8_d
-#define MCSI_Q mcsi8_q
+#define mcs_f mcsi8_f
+#define mcs_i mcsi8_i
+#define mcs_u mcsi8_u
+#define mcsi_d mcsi8_d
+#define mcsi_q mcsi8_q
 #define MCSI_AVX
 #include MCS_SELF
 #if defined(__clang__)
@@ -12376,11 +12372,11 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define MCSI_LOOPS
 #define MCS_(name) mcsi_avx512p_##name
 #define MCSI_(name) mcsi_avx512_##name
-#define MCSI_F mcsi16_f
-#define MCSI_I mcsi16_i
-#define MCSI_U mcsi16_u
-#define MCSI_D mcsi16_d
-#define MCSI_Q mcsi16_q
+#define mcs_f mcsi16_f
+#define mcs_i mcsi16_i
+#define mcs_u mcsi16_u
+#define mcsi_d mcsi16_d
+#define mcsi_q mcsi16_q
 #define MCSI_AVX512
 #include MCS_SELF
 #if defined(__clang__)
@@ -12437,7 +12433,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_exponential_invert
 #undef mcs_exponential_pdf
 #undef mcs_exponential_sample
-#undef mcs_f
 #undef mcs_frame
 #undef mcs_frame_from_tangent
 #undef mcs_frame_make
@@ -12482,7 +12477,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_henyey_greenstein_invert
 #undef mcs_henyey_greenstein_pdf
 #undef mcs_henyey_greenstein_sample
-#undef mcs_i
 #undef mcs_is_mirror
 #undef mcs_light
 #undef mcs_light_point
@@ -12560,7 +12554,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcs_truncnormal_invert
 #undef mcs_truncnormal_pdf
 #undef mcs_truncnormal_sample
-#undef mcs_u
 #undef mcs_u01
 #undef mcs_u01_open
 #undef mcs_vec2
@@ -12652,7 +12645,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_cut_pdf
 #undef mcsi_cut_place
 #undef mcsi_cut_sample
-#undef mcsi_d
 #undef mcsi_deviation
 #undef mcsi_disk_hit
 #undef mcsi_disk_light
@@ -12822,7 +12814,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_power_of_2
 #undef mcsi_power_to_60
 #undef mcsi_put_lane
-#undef mcsi_q
 #undef mcsi_quotient
 #undef mcsi_rarely
 #undef mcsi_rayleigh_loop
