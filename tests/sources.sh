@@ -113,13 +113,12 @@ done
 #   bad-function-cast                        pointers are made free of const through uintptr_t
 #   conditional-uninitialized                lanes of a vector are set one by one
 #   nrvo                                     returns of two results: the functions are inline
-#   used-but-marked-unused                   a file does not call all functions, and some compilers would warn of it
 #   old-style-cast, zero-as-null-pointer-constant    the text is C, too
 #   unsafe-buffer-usage, unsafe-buffer-usage-in-libc-call    there are no arrays with bounds in C
 #   c++98-compat and the like, long-long     the header is C99 and C++11
 #   pre-c2x-compat, pre-c++*-compat          and clang says what is new there
 allowed='padded|switch-enum|float-equal|bad-function-cast|conditional-uninitialized|nrvo|old-style-cast|zero-as-null-pointer-constant'
-allowed="$allowed|used-but-marked-unused|unsafe-buffer-usage|unsafe-buffer-usage-in-libc-call|c\\+\\+98-compat.*|long-long|pre-c.*-compat"
+allowed="$allowed|unsafe-buffer-usage|unsafe-buffer-usage-in-libc-call|c\\+\\+98-compat.*|long-long|pre-c.*-compat"
 for c in $compilers; do
     case $c in clang*) ;; *) continue ;; esac
     for way in HYGIENE $ways; do # the first one defines nothing that the header knows
