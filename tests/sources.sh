@@ -124,7 +124,7 @@ for c in $compilers; do
     for way in HYGIENE $ways; do # the first one defines nothing that the header knows
         for std in c99 c++11; do
             case $std in c++*) language=c++ ;; *) language=c ;; esac
-            $c -x $language -std=$std -Weverything -fno-caret-diagnostics -D"$way" -I. -fsyntax-only "$dir/include_none.c" 2>&1
+            $c -x $language -std=$std -Weverything -fno-caret-diagnostics -DMCS_WARNINGS -D"$way" -I. -fsyntax-only "$dir/include_none.c" 2>&1
         done
     done >"$dir/everything"
     kinds=$(sed -n 's/.*\[-W\([^]]*\)\]$/\1/p' "$dir/everything" | sort -u)
@@ -142,9 +142,11 @@ int after(void) {
 }
 EOF
 for c in $compilers; do
-    $c -std=c99 -Wdeclaration-after-statement -I. -fsyntax-only "$dir/after.c" 2>"$dir/after.log"
-    [ "$(grep -c 'warning:' "$dir/after.log")" = 1 ] && grep -q 'after.c' "$dir/after.log"
-    check $? "$c -Wdeclaration-after-statement: silent in the header, not behind it" "$(grep -m 1 mcsample.h "$dir/after.log")"
+    for way in HYGIENE MCS_WARNINGS; do # the first one is nothing that the header knows
+        $c -std=c99 -Wdeclaration-after-statement -D$way -I. -fsyntax-only "$dir/after.c" 2>"$dir/after.log"
+        [ "$(grep -c 'warning:' "$dir/after.log")" = 1 ] && grep -q 'after.c' "$dir/after.log"
+        check $? "$c -Wdeclaration-after-statement, $way: silent in the header, not behind it" "$(grep -m 1 mcsample.h "$dir/after.log")"
+    done
 done
 
 # --- the look of sources
