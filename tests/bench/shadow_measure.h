@@ -124,21 +124,25 @@ static void train(bench_case *c) {
 }
 
 /* What the regions do that learn while they draw. They begin by MIS and count their rays, but where these can be of no
- * use: then mcs_region_pays says 0 before the first. After 32 they have points and a table. One that does not pay any
- * more, or has no use for its table after 256 rays, gives up. None learns from more than 1024. */
+ * use: then mcs_region_pays says 0 before the first. After 32 they have points and a table, or after 128 where a lobe
+ * may pay only if little comes through. One that does not pay any more, or has no use for its table after 256 rays,
+ * gives up. None learns from more than 1024. */
 static void run_through(bench_case *c, result *out) {
     const mcs_reflection r = coat_seen_from_above(&c->coat);
     const double part = 1.0 / c->view->regions;
     for (int i = 0; i < c->view->regions; i++) {
         bench_built(mcs_region_start(&c->spare.g, sizeof c->spare, c->map->tiles));
         int learns = mcs_region_pays(&c->spare.g, &r);
+        c->spare.g.rays = 1;
+        c->spare.g.through = 1;
+        const int first = mcs_region_pays(&c->spare.g, &r) ? STAGE_32 : STAGE_128;
         for (int stage = 0; stage < STAGE_2048; stage++) {
             const int pays = c->pays[i][stage];
-            const int builds = stage > 0 && learns && pays;
+            const int builds = stage >= first && learns && pays;
             c->running[i][stage] = builds ? c->answer[i][stage] : MIS_POWER;
             learns = learns && pays && (c->running[i][stage] != MIS_POWER || stage < STAGE_256);
             if (builds) out->builds[stage] += part;
-            if (builds && stage == 1) out->starts += part;
+            if (builds && stage == first) out->starts += part;
             if (learns && stage < STAGE_1024) out->learns[stage] += part;
         }
     }

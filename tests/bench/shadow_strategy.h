@@ -7,7 +7,15 @@
 
 /* Tables of a region are built at once, and whenever its rays have doubled: stage 0 knows of none, stage 1 of 32, stage 9
  * of 8192. */
-enum { STAGES = 10, STAGE_256 = 4, STAGE_1024 = 6, STAGE_2048 = 7, STAGE_LAST = STAGES - 1 };
+enum {
+    STAGE_32 = 1,
+    STAGE_128 = 3,
+    STAGE_256 = 4,
+    STAGE_1024 = 6,
+    STAGE_2048 = 7,
+    STAGES = 10,
+    STAGE_LAST = STAGES - 1
+};
 static int stage_rays(int k) { return k > 0 ? 16 << k : 0; }
 
 /* What samples are drawn from. Products of a point are built at each one, tables once per region and stage. */
