@@ -2377,8 +2377,8 @@ MCS_API void mcs_region_inherit(mcs_region *g, const mcs_region *larger);
 MCS_API float mcs_region_visibility(const mcs_region *g, uint32_t k);
 /* Whether r may gain by a table of the region, 1 or 0; to be asked before it is built. It may if it has any matte part,
  * or a lobe of 8 tiles or more: of 2 rows^2 alpha_x alpha_y, whatever wo is (alpha 0.125 with 16 rows). A lobe of 1 to
- * 8 tiles may where at most half the rays came through, of which 128 say enough; a smaller one nowhere. Where the answer
- * is 0 before any ray, nothing need be learned. */
+ * 8 tiles may where at most half the rays came through, of which 128 say enough; a smaller one nowhere. Where it is 0
+ * before any ray, nothing need be learned. */
 MCS_API int mcs_region_pays(const mcs_region *g, const mcs_reflection *r);
 /* How many samples of the BRDF are best paired with each of the region's table p. 1/8 where r is all matte, or where
  * 2 rows^2 alpha^2 is 64 tiles or more for both of its alphas (0.354 with 16 rows): such a reflection the table knows
