@@ -2336,11 +2336,11 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  * So all light can be drawn, whatever was learned. Nothing is biased, as no table knows the ray of a sample that was
  * drawn from it: the rays of a pass wait in `fresh` until it is over.
  *
- * Pair each sample with as many of the BRDF as mcs_region_share says, share: where it is below 1, take one with that
- * probability. By the balance heuristic, what either of them finds is divided by the table's density of its direction
- * plus share times that of the BRDF. Add the rays of both (mcs_tiles_of_direction). Narrow lobes gain by a table only
- * where much is hidden, in a pattern that all points of the region share. As learning costs, too, a region that shall
- * never lose draws from the map by mcs_mis_power until it knows better:
+ * Pair each sample with s of the BRDF, s from mcs_region_share: where s is below 1, take one with that probability. By
+ * the balance heuristic, what either of them finds is divided by the table's density of its direction plus s times that
+ * of the BRDF. Add the rays of both (mcs_tiles_of_direction). Narrow lobes gain by a table only where much is hidden,
+ * in a pattern that all points of the region share. As learning costs, too, a region that shall never lose draws from
+ * the map by mcs_mis_power until it knows better:
  *
  *   no rays      mcs_region_pays: where that is 0, no table can pay. Else count rays.
  *   32 rays      The same question, of lobes of 1 to 8 tiles after 128. Where the answer is 1, add the points, build
