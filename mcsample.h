@@ -10517,6 +10517,7 @@ MCSI_CORE mcsi_product_lists mcsi_product_lists_of(mcs_product *p, const mcs_til
     l.tile_sums = MCSI_WRITE(uint32_t, p, p->at.tile_sums);
     l.bound = MCSI_WRITE(float, p, p->at.tile_sums);
     l.excess = 0.0f;
+    l.even = 0.0f;
     return l;
 }
 

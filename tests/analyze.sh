@@ -30,6 +30,10 @@ Condition '\(unsigned long\)bytes==bytes' is always true	not where size_t has 32
 redundantPointerOp	MCSI_EACH takes the name of a batch, and a loop that is handed one has a pointer to it
 'l\.(rays|through)\[k\]' is assigned a value that is never used	l holds pointers into the caller's region
 argument angles that points at uninitialized variable	the loop fills it: what it takes of it before are addresses of its arrays
+Same expression on both sides of '-'	MCSI_W - 1, where MCSI_W is 1
+Condition 'i<rows' is always false	wrong: there are 16 rows and more, and the tests run these loops
+Uninitialized variables: d\.tail	what mcsi_cut_make leaves open each bell sets before it reads it
+Using argument l that points at uninitialized variable l	prepared lights are filled a member at a time, each before it is read
 clarifyCondition	!flag & (a > b): both are 0 or 1, and & saves a jump
 END
 }
