@@ -11,6 +11,7 @@ PREFIX ?= /usr/local
 PYTHON ?= python3
 # -Wno-psabi: gcc's note that 8 and 16 wide vectors cross functions differently with AVX; in the header every such function is inlined.
 # -Wno-enum-float-conversion: clang 22's note that constants of tests, which are enumerators as C has no others, meet floats.
+# MCS_WARNINGS: clang looks for warnings in the header, too.
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-psabi -Wno-enum-float-conversion -DMCS_WARNINGS
 FLAGS = $(CFLAGS) -std=c99 $(WARNINGS) -I. -Itests
 # The tests demand the same bits from every width; the header promises them where a*b+c is not contracted.

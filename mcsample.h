@@ -73,7 +73,7 @@
  * Mistakes      Define MCS_ASSERT, as assert for example, to be told of them in words. Scalar functions tell parameters
  *               out of range, u outside [0,1), directions whose squared length is not within 0.001 of 1, and tables
  *               and maps that were not built. Array functions of one wo tell such a wo; a call of one point tells what
- *               X tells. Nothing tells a wo or wi below the surface, which is no mistake, and bad numbers in arrays
+ *               X tells. Nothing tells a wo or wi below the surface, which is no mistake, nor bad numbers in arrays
  *               and lanes: look for mistakes with scalar functions.
  *
  * Arrays        X_n does for n points what X does for one. It takes plain arrays, one per component, of any alignment,
@@ -108,6 +108,8 @@
  *
  * Rounding      It must be to nearest. In another mode results are finite at best. Flush to zero and denormals-are-zero
  *               may be on. Subnormal numbers then count as 0; cosines have to be 0, or 1e-7 and more.
+ *
+ * Lecture       The choice of samplers began with "Monte Carlo Integration" (A. Ghosh, Imperial College, 2024).
  *
  * State         There is none: no globals, no allocation, no input and output. Threads may call everything at once that
  *               does not share an object of the caller.
@@ -254,7 +256,7 @@
 #if !defined(MCS_NO_WIDE) && defined(__has_include)
 #if !__has_include(MCS_SELF)
 #ifdef MCS_PACKETS
-#error "MCS_PACKETS needs MCS_SELF, the name of this file, as it is no mcsample.h"
+#error "packets: the header does not find itself. Define MCS_SELF as its name"
 #endif
 #define MCS_NO_WIDE
 #endif
@@ -777,8 +779,8 @@ MCS_API void mcs_triangle_sample_n(size_t n, const float *u1, const float *u2, f
  *             the light less p.
  *   w         a direction from p to the light. Where its density is above 0 it meets the light, or misses a ball by an
  *             angle below 2^-20, a disk by one below 2^-23/|w.normal|, a rectangle or triangle by one below 2^-22: take
- *             it as met, without a test of your own. A sampled w may be rounded so far over the rim, and its density is
- *             that of the sample all the same, in each of its functions.
+ *             it as met, without a test of your own. Rounding may move a sampled w so far over the rim. X_pdf gives
+ *             the density of the sample there, too.
  *   distance  of the light along w: a shadow ray goes from p to p + distance w. It is 0 where the density is 0.
  *
  * accuracy  every coordinate within 1.25 x 2^-23 of the exact map, unit length within 4 x 2^-24 */
@@ -1297,8 +1299,8 @@ MCS_API void mcs_phong_pdf_hits_n(const mcs_phong *m, const mcs_hits *hits, size
  *
  *   pdf of h   = exp(-e) / (pi alpha_x alpha_y cos^3(theta_h))
  *   pdf of wi  = pdf of h / (4 wo.h)
- *   (u1, u2)     slopes (alpha_x r cos, alpha_y r sin)(2 pi u2) of h, r = sqrt(-ln(1 - u1)). The map is
- *                continuous but for the seam at u2 = 0.
+ *   (u1, u2)     slopes (alpha_x r cos, alpha_y r sin)(2 pi u2) of h, r = sqrt(-ln(1 - u1)). The map is continuous but
+ *                for the seam at u2 = 0.
  *
  *   model           f pi alpha_x alpha_y exp(e)         weight
  *   MCS_WARD_GMD    |H|^2 / H.z^4                       2 wi.z / (wo.z + wi.z), at most 2
@@ -1647,8 +1649,9 @@ MCS_API void mcs_ggx_pdf_hits_n(const mcs_ggx *m, const mcs_hits *hits, size_t n
  * side        wi is refracted where wi.z and wo.z have different signs, reflected where they have the same.
  * light       f and weights are those of power: over all wi, f |wi.z| integrates to 1 less what masking takes, for
  *             which there is no compensation; f / n_i^2 is symmetric in wo and wi. Refraction changes radiance by the
- *             square of the index: on paths from the eye, multiply f and weights of refracted directions by (n_o /
- *             n_i)^2, which is 1/eta^2 for a wo above and eta^2 for one below. Paths from lights take them as they are.
+ *             square of the index: on paths from the eye, multiply f and weights of refracted directions by
+ *             (n_o / n_i)^2, which is 1/eta^2 for a wo above and eta^2 for one below. Paths from lights take them as
+ *             they are.
  * parameters  m, of mcs_ggx_make. eta, the index below over that above, in [1e-3, 1e3]; others are bad. eta = 1 neither
  *             reflects nor bends: a sample is wi = -wo with the pdf FLT_MAX, and pdf, eval and weight of a given wi are
  *             0, as of a mirror.
@@ -5492,10 +5495,10 @@ MCSI_SAMPLE mcs_spherical_rectangle mcs_spherical_rectangle_make(mcs_vec3 p, mcs
     }
     return l;
 }
-/* Whether the point at x past the side at x0, for z = 1, is outside by more than rounding makes of a sampled direction,
- * whose error has the length sqrt(3) 1.1 x 2^-24 at most. The normal of the plane of p and the side has the length
- * sqrt(1 + x0^2). */
-MCSI_CORE mcs_i mcsi_not_outside(mcs_f past, mcs_f x0) { return past >= -MCSI_RIM * (1.0f + mcsi_abs(x0)); }
+/* Whether a direction is past the side at x0, or short of it by no more than rounding makes of a sampled one, whose
+ * error has the length sqrt(3) 1.1 x 2^-24 at most. `past` is its product with the normal of the plane of p and the
+ * side, which has the length sqrt(1 + x0^2). */
+MCSI_CORE mcs_i mcsi_past_rim(mcs_f past, mcs_f x0) { return past >= -MCSI_RIM * (1.0f + mcsi_abs(x0)); }
 MCSI_FN mcs_f mcs_spherical_rectangle_pdf(const mcs_spherical_rectangle *l, mcs_vec3 w) {
     mcs_i ok = mcsi_always();
     w = mcsi_sane_direction(w, &ok);
@@ -5504,10 +5507,10 @@ MCSI_FN mcs_f mcs_spherical_rectangle_pdf(const mcs_spherical_rectangle *l, mcs_
     const mcsi_d y = MCSI_DOT_D(d, l->axis_y);
     const mcsi_d z = MCSI_DOT_D(d, l->normal);
     ok = ok & (MCSI_NARROW(z) > 0.0f);
-    ok = ok & mcsi_not_outside(MCSI_NARROW(x - l->x0 * z), MCSI_NARROW(l->x0));
-    ok = ok & mcsi_not_outside(MCSI_NARROW(l->x1 * z - x), MCSI_NARROW(l->x1));
-    ok = ok & mcsi_not_outside(MCSI_NARROW(y - l->y0 * z), MCSI_NARROW(l->y0));
-    ok = ok & mcsi_not_outside(MCSI_NARROW(l->y1 * z - y), MCSI_NARROW(l->y1));
+    ok = ok & mcsi_past_rim(MCSI_NARROW(x - l->x0 * z), MCSI_NARROW(l->x0));
+    ok = ok & mcsi_past_rim(MCSI_NARROW(l->x1 * z - x), MCSI_NARROW(l->x1));
+    ok = ok & mcsi_past_rim(MCSI_NARROW(y - l->y0 * z), MCSI_NARROW(l->y0));
+    ok = ok & mcsi_past_rim(MCSI_NARROW(l->y1 * z - y), MCSI_NARROW(l->y1));
     return mcsi_sane_result(ok, MCSI_NARROW(l->pdf));
 }
 MCSI_FN mcs_vec2 mcs_spherical_rectangle_invert(const mcs_spherical_rectangle *l, mcs_vec3 w) {
@@ -6834,6 +6837,7 @@ MCSI_CORE mcs_f mcsi_gauss_over(const mcsi_slopes *m, mcs_f g, mcs_f divisor) {
 /* ---- the three BRDFs of Ward ---- */
 
 #if MCSI_W == 1
+/* One comparison for all: those of enumerators are dear in C++ (see "batches"). */
 MCSI_CORE int mcsi_is_ward(mcs_ward_model model, mcs_ward_model other) { return model == other; }
 #endif
 MCSI_SAMPLE mcs_dir mcs_ward_h_sample(const mcs_ward *m, mcs_f u1, mcs_f u2) {
@@ -8607,7 +8611,7 @@ MCS_API mcs_status mcs_alias_build(mcs_alias *t, size_t bytes, const float *w, u
 MCS_API float mcs_alias_pmf(const mcs_alias *t, uint32_t i) { return i < t->n ? mcsi_columns(t)[i].pmf : 0.0f; }
 /* U in [0, 2^31) is the position in column i. Which part of it is hit is no branch, as none could be predicted. */
 MCSI_CORE mcs_pick mcsi_alias_pick(const mcs_alias *t, uint32_t i, double U, int ok) {
-    MCSI_REQUIRE(t && t->n > 0, "the table was built");
+    MCSI_REQUIRE(t->n > 0, "the table was built");
     const mcsi_column *k = mcsi_columns(t) + i;
     const uint32_t rest = 0u - (uint32_t)(U >= k->cut); /* all bits where it is the rest */
     const uint32_t begin = k->cut & rest;
@@ -12125,7 +12129,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_normal_quantile MCSI_(normal_quantile)
 #define mcsi_normal_start MCSI_(normal_start)
 #define mcsi_normal_tail MCSI_(normal_tail)
-#define mcsi_not_outside MCSI_(not_outside)
 #define mcsi_off_zero MCSI_(off_zero)
 #define mcsi_one_minus_cos_power MCSI_(one_minus_cos_power)
 #define mcsi_one_minus_z MCSI_(one_minus_z)
@@ -12138,6 +12141,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_out_sample1 MCSI_(out_sample1)
 #define mcsi_out_sample2 MCSI_(out_sample2)
 #define mcsi_out_towards MCSI_(out_towards)
+#define mcsi_past_rim MCSI_(past_rim)
 #define mcsi_pcg32_fill_loop MCSI_(pcg32_fill_loop)
 #define mcsi_pcg32_words MCSI_(pcg32_words)
 #define mcsi_philox_blocks MCSI_(philox_blocks)
@@ -12787,7 +12791,6 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_normal_quantile
 #undef mcsi_normal_start
 #undef mcsi_normal_tail
-#undef mcsi_not_outside
 #undef mcsi_off_zero
 #undef mcsi_one_minus_cos_power
 #undef mcsi_one_minus_z
@@ -12800,6 +12803,7 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_out_sample1
 #undef mcsi_out_sample2
 #undef mcsi_out_towards
+#undef mcsi_past_rim
 #undef mcsi_pcg32_fill_loop
 #undef mcsi_pcg32_words
 #undef mcsi_philox_blocks

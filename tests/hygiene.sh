@@ -488,6 +488,27 @@ for c in $compilers; do
     done
 done
 
+# --- a renamed copy has packets by MCS_SELF, and an error that says so without
+mkdir -p "$dir/renamed"
+cp mcsample.h "$dir/renamed/sampling.h"
+printf '#include "sampling.h"\nint main(void) { return mcs8_set(1.0f)[7] != 1.0f; }\n' >"$dir/renamed/renamed.c"
+for c in $compilers; do
+    $c -std=c99 -w -DMCS_PACKETS=8 -fsyntax-only "$dir/renamed/renamed.c" 2>"$dir/renamed/log"
+    grep -q 'error.*MCS_SELF' "$dir/renamed/log" &&
+        $c -std=c99 -w -DMCS_PACKETS=8 '-DMCS_SELF="sampling.h"' -fsyntax-only "$dir/renamed/renamed.c" 2>"$dir/renamed/log"
+    check $? "$c: a renamed copy asks for MCS_SELF and has packets with it" "$(grep -m 1 error "$dir/renamed/log")"
+done
+
+# --- a status that is ignored is warned of in the caller's file
+printf '#include "mcsample.h"\nvoid build(mcs_pwc *t);\nvoid build(mcs_pwc *t) { mcs_pwc_build(t, 0, 0, 1); }\n' >"$dir/status.c"
+for c in $compilers; do
+    for language in c c++; do
+        "$c" -x $language -I. -c "$dir/status.c" -o "$dir/status.o" 2>"$dir/status.log"
+        [ "$(grep -c 'warning:' "$dir/status.log")" = 1 ] && grep -q 'status\.c.*unused-result' "$dir/status.log"
+        check $? "$c -x $language: a status that is ignored is warned of" "$(grep -m 1 -E 'error|warning' "$dir/status.log")"
+    done
+done
+
 # --- HIP: functions for kernels call none of the host
 if [ -n "$newest" ] && $newest --print-targets | grep -q amdgcn; then
     {

@@ -201,14 +201,13 @@ static void check_width(const grid_point *g) {
     CHECK(within(WIDTH, sqrt(dx * dx + dy * dy), 16 * EPS * (1 + g->magnified) * scale + 0x1p-73),
           "u %a %a: off by (%g %g) of the lobe's width", (double)u[0], (double)u[1], dx, dy);
 }
-/* Rounded over the rim: 0 or what is inside, and of a light the density of the sample, which is within 1e-5 of that of u
- * even on a disk, where it depends on w. */
+/* Rounded over the rim: 0 or what is inside; of a light that is prepared for p, the density of the sample. */
 static void check_rim(const grid_point *g, float pdf) {
     const mcst_row *row = g->row;
     const float *u = g->u;
     if (row->domain.bad == mcst_bad_light) {
-        CHECK(fabsf(pdf / g->out[3] - 1) <= 1e-5f, "u %a %a: pdf(x) %.9g on the rim, of the sample %.9g", (double)u[0],
-              (double)u[1], (double)pdf, (double)g->out[3]);
+        CHECK(pdf == g->out[3], "u %a %a: pdf(x) %.9g on the rim, of the sample %.9g", (double)u[0], (double)u[1],
+              (double)pdf, (double)g->out[3]);
         return;
     }
     const float *p = g->p;
@@ -327,7 +326,6 @@ static void check_point(const mcst_row *row, const float *p, const float *u, ld 
         check_rim(&g, pdf);
         return;
     }
-    /* the side of a light that a direction is on exactly is a difference of 0, but for the rounding of one product */
     tol = mcst_claim_of(row, CLAIM_PDF_W, p) * direction_tol(row, p, x, pdf_x, peak);
     CHECK(near(PDF_X, pdf, pdf_x, tol, peak), "u %a %a: pdf(x) %.9g, exact %.9Lg (%.3g, tolerance %.3g)", (double)u[0],
           (double)u[1], (double)pdf, pdf_x, (double)((ld)pdf / pdf_x - 1), tol);
