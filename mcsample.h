@@ -2328,7 +2328,7 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *
  *   L       its light
  *   f       root mean square of the reflections towards it, times cosine, over the points that were added. Lobes count
- *           as if alpha^2 were larger by 0.01.
+ *           as if alpha^2 were larger by 0.005.
  *   m       mean of f over the light that comes through: sum of L V f over sum of L V. A sixth of the samples so
  *           follows the light alone.
  *   V       the share of the tile's rays that came through. 16 more are added, of which the share Va did.
@@ -8091,9 +8091,27 @@ MCSI_CORE uint32_t mcsi_cdf_search(const uint32_t *sums, uint32_t lo, uint32_t h
         lo += (left / 2) * (uint32_t)(sums[lo + left / 2] <= U);
     return lo;
 }
+/* The last of 2^log_n sums (16 or more), 2^log_stride apart, that is not above U: its place in the list. Two steps to a
+ * quarter each ask for all that they compare with at once; then it is halved. Requires sums[0] <= U. */
+MCSI_CORE uint32_t mcsi_cdf_quarter(const uint32_t *sums, uint32_t log_n, uint32_t log_stride, uint32_t U) {
+    const uint32_t *at = sums;
+    uint32_t shift = log_stride + log_n;
+    MCSI_UNROLL
+    for (int k = 0; k < 2; k++) {
+        shift -= 2;
+        const size_t step = (size_t)1 << shift;
+        const uint32_t passed = (uint32_t)(at[step] <= U) + (at[2 * step] <= U) + (at[3 * step] <= U);
+        at += (size_t)passed << shift; /* a product would take three times as long, in what all else waits for */
+    }
+    while (shift > log_stride) {
+        shift--;
+        at += (size_t)(at[(size_t)1 << shift] <= U) << shift;
+    }
+    return (uint32_t)(at - sums);
+}
 /* The entry that holds U, U < 2^31: of a table, or the row of a map or window (mcsi_window_draw_row). It mostly is one
  * of four from the guide's on, among which it is found without branches, as no predictor could learn them. (size_t: see
- * mcsi_cdf_mass.) Columns are found by mcsi_find_column, tiles by mcsi_shares_find. A search that returns the same
+ * mcsi_cdf_mass.) Columns are found by mcsi_find_column, tiles by mcsi_cdf_quarter. A search that returns the same
  * entry leaves all bits as they are. */
 MCSI_CORE uint32_t mcsi_cdf_find(const mcsi_cdf *c, uint32_t U) {
     const uint32_t *sums = c->sums;
@@ -9413,7 +9431,7 @@ MCSI_CORE void mcsi_window_narrow(const mcsi_window *r, uint32_t i, mcsi_draw *d
     const mcsi_row_part part = r->part[i];
     /* Rounding must not carry it to the end of the part, nor the wrapped value to 2^31 (x87 registers hold values
      * between the largest double below 2^31, 2^-22 below it, and 2^31). */
-    const double in_part = d->rest1 * (part.mass * (1.0 / MCSI_ONE));
+    const double in_part = d->rest1 * (1.0 / MCSI_ONE) * part.mass; /* the mass is known last */
     const double end = part.mass - 4.76837158203125e-07;
     const double unwrapped = part.begin + (in_part < end ? in_part : end);
     const double wrapped = unwrapped - (unwrapped > MCSI_ONE - 2.384185791015625e-07 ? (double)MCSI_ONE : 0.0);
@@ -9443,13 +9461,27 @@ MCSI_CORE size_t mcsi_find_column(const uint32_t *sums, const uint16_t *guide, u
     col += (size_t)(sums[col + 2] <= U) << 1;
     return col + (sums[col + 1] <= U);
 }
-/* Chooses a column of a row of the map by u1, of which the rest goes to p. */
-MCSI_CORE uint32_t mcsi_draw_column(const mcs_env *e, uint32_t row, mcsi_draw *d, mcsi_env_point *p) {
-    const uint32_t U = (uint32_t)(int32_t)d->rest1;
+/* The column of U in a window of at most 64 columns that does not go across the seam, as tiles mostly are. It is one of
+ * 2^log_n from `first` on. A guide would help little where other columns of the row are brighter. */
+MCSI_CORE size_t mcsi_find_near_column(const uint32_t *sums, const mcsi_window *r, uint32_t w, uint32_t U) {
+    const uint32_t log_n = r->cols > 32 ? 6 : r->cols > 16 ? 5 : 4;
+    const uint32_t last = w - (1u << log_n);
+    const uint32_t first = r->col0 < last ? r->col0 : last;
+    return first + mcsi_cdf_quarter(sums + first, log_n, 0, U);
+}
+/* The column of U in a row, if need be by the row's guide. */
+MCSI_CORE size_t mcsi_window_column(const mcs_env *e, const mcsi_window *r, uint32_t row, uint32_t U) {
     const uint32_t *sums = mcsi_env_sums(e, row);
+    if (r->cols <= 64 && e->w >= 64 && r->col0 + r->cols <= e->w) return mcsi_find_near_column(sums, r, e->w, U);
     const uint16_t *guide = mcsi_column_guide(e, row, U);
     const uint32_t first = mcsi_first_column(guide, e->w, e->offset.col_shift, U);
-    const size_t col = mcsi_find_column(sums, guide, e->w, first, U);
+    return mcsi_find_column(sums, guide, e->w, first, U);
+}
+/* Chooses a column of a row of the map by u1, of which the rest goes to p. */
+MCSI_CORE uint32_t mcsi_draw_column(const mcs_env *e, const mcsi_window *r, uint32_t row, mcsi_draw *d,
+                                    mcsi_env_point *p) {
+    const uint32_t *sums = mcsi_env_sums(e, row);
+    const size_t col = mcsi_window_column(e, r, row, (uint32_t)(int32_t)d->rest1);
     const uint32_t mass = sums[col + 1] - sums[col];
     p->col = (float)(int32_t)col;
     p->col_rest = (float)(d->rest1 - (int32_t)sums[col]);
@@ -9560,7 +9592,7 @@ MCSI_CORE mcsi_env_point mcsi_window_draw_point(const mcs_env *e, const mcsi_win
     mcsi_window_draw_row(r, i, d, &p);
     mcsi_window_narrow(r, i, d);
     x->row = r->row0 + i;
-    x->col = mcsi_draw_column(e, x->row, d, &p);
+    x->col = mcsi_draw_column(e, r, x->row, d, &p);
     return p;
 }
 /* A constant map has no texels to choose from: they lie where the rounded directions do. */
@@ -10539,19 +10571,6 @@ MCSI_CORE uint32_t mcsi_shares_build(uint32_t *sums, const float *weight, uint32
     sums[n] = so_far;
     return so_far;
 }
-/* The last of n (a power of two, 16 or more) cumulative shares, `stride` apart, that is not above u: its place in the
- * list. Two steps to a quarter each ask for all that they compare with at once; then it is halved. */
-MCSI_CORE uint32_t mcsi_shares_find(const uint32_t *sums, uint32_t n, uint32_t stride, uint32_t u) {
-    uint32_t i = 0;
-    uint32_t step = n / 4 * stride;
-    MCSI_UNROLL
-    for (int k = 0; k < 2; k++, step /= 4) {
-        const uint32_t *at = sums + i;
-        i += step * ((uint32_t)(at[step] <= u) + (at[2 * step] <= u) + (at[3 * step] <= u));
-    }
-    for (step = n / 32 * stride; step >= stride; step /= 2) i += step * (uint32_t)(sums[i + step] <= u);
-    return i;
-}
 /* The position of u within the share that goes from `begin` to `end`, in [0, 2^31). It does not round up to 2^31: u is
  * short of `end` by 2^-24 or more, and the share is at most 2^24. */
 MCSI_CORE double mcsi_share_position(double u, uint32_t begin, uint32_t end) {
@@ -11001,8 +11020,8 @@ MCS_API void mcs_region_add_point(mcs_region *g, const mcs_tiles *t, const mcs_e
     if (g->rows != t->rows) return;
     mcsi_surface s = mcsi_surface_make(e, r);
     if (!s.reflects) return;
-    s.ax2 += 0.01f;
-    s.ay2 += 0.01f;
+    s.ax2 += 0.005f;
+    s.ay2 += 0.005f;
     const mcsi_region_lists l = mcsi_region_lists_of(g);
     mcsi_region_points_n(&s, l.n, MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light), l.square);
     g->points += 1.0f;
@@ -11150,11 +11169,13 @@ MCS_API mcs_status mcs_product_build_region(mcs_product *p, size_t bytes, const 
 
 /* -- tile: chosen by row and column -- */
 
+/* The logarithm of 16, 32 or 64. */
+MCSI_CORE uint32_t mcsi_log_rows(uint32_t rows) { return 4 + rows / 32; }
 /* Chooses a row of tiles. */
 MCSI_CORE uint32_t mcsi_product_draw_row(const mcs_product *p, mcsi_draw *d) {
     const uint32_t *sums = MCSI_READ(uint32_t, p, p->at.row_sums);
     const double at = d->rest2 * p->row_total;
-    const uint32_t row = mcsi_shares_find(sums, p->rows, 1, (uint32_t)(int32_t)at);
+    const uint32_t row = mcsi_cdf_quarter(sums, mcsi_log_rows(p->rows), 0, (uint32_t)(int32_t)at);
     d->rest2 = mcsi_share_position(at, sums[row], sums[row + 1]);
     return row;
 }
@@ -11173,11 +11194,12 @@ MCSI_CORE double mcsi_product_tile_probability(const mcs_product *p, mcsi_tile t
 /* Chooses a tile of the row. */
 MCSI_CORE mcsi_tile mcsi_product_draw_tile(const mcs_product *p, uint32_t row, mcsi_draw *d) {
     const uint32_t *sums = mcsi_product_tile_sums(p, row);
-    const double at = d->rest1 * ((int32_t)sums[p->cols * p->rows] * (1.0 / MCSI_ONE));
+    const uint32_t log_rows = mcsi_log_rows(p->rows);
+    const double at = d->rest1 * (1.0 / MCSI_ONE) * (int32_t)sums[p->cols * p->rows]; /* the sum is known last */
     mcsi_tile tile;
     tile.row = row;
-    const uint32_t place = mcsi_shares_find(sums, p->cols, p->rows, (uint32_t)(int32_t)at);
-    tile.col = place >> (4 + p->rows / 32); /* over 16, 32 or 64 rows */
+    const uint32_t place = mcsi_cdf_quarter(sums, log_rows + 1, log_rows, (uint32_t)(int32_t)at);
+    tile.col = place >> log_rows;
     const uint32_t begin = sums[place];
     const uint32_t end = sums[place + p->rows];
     d->rest1 = mcsi_share_position(at, begin, end);

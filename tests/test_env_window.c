@@ -161,9 +161,12 @@ static void check_window(const picture *p, const mcs_env *e, rectangle t, int dr
     arena_free(&a);
 }
 
-/* Number i of a picture's windows: all of it; all of it, from elsewhere on; across the seam; single
- * texels; in the first and the last row; and any. */
+enum { WINDOWS = 17 };
+
+/* Number i of a picture's windows: all of it; all of it, from elsewhere on; across the seam; single texels; in the first
+ * and the last row; any; and as wide as columns are looked for by another number of steps. */
 static rectangle window_of(const picture *p, int i, mcs_pcg32 *rng) {
+    static const uint32_t steps[] = {16, 17, 32, 33, 64, 65};
     rectangle t = {0, p->h, 0, p->w};
     if (i > 1) {
         t.row = mcs_pcg32_next(rng) % p->h;
@@ -188,13 +191,17 @@ static rectangle window_of(const picture *p, int i, mcs_pcg32 *rng) {
         t.rows = 1;
         t.cols = 1;
     }
+    if (i > 10 && p->w > steps[i - 11]) {
+        t.cols = steps[i - 11];
+        t.col = mcs_pcg32_next(rng) % (p->w - t.cols);
+    }
     return t;
 }
 static void check_windows(picture p, brightness want) {
     arena a = build(&p, want);
     mcs_pcg32 rng = mcs_pcg32_make(mcst.seed, 157);
     const int draws = scaled(20000);
-    for (int i = 0; i < 14; i++) check_window(&p, env_in(&a), window_of(&p, i, &rng), draws);
+    for (int i = 0; i < WINDOWS; i++) check_window(&p, env_in(&a), window_of(&p, i, &rng), draws);
     arena_free(&a);
     discard(&p);
 }

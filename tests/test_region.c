@@ -360,7 +360,7 @@ static void test_weights(void) {
         scene_free(&m);
     }
 }
-/* The table of one point goes with the reflection of that point, lobes wider by 0.01. */
+/* The table of one point goes with the reflection of that point, lobes wider by 0.005. */
 static void check_one_point(const lobe *of, int hidden) {
     scene m = scene_make(ROOM, 96, 64, 16);
     const surface s = surface_make(normals[4], local_wo(0.7, 0.1), *of);
@@ -373,8 +373,8 @@ static void check_one_point(const lobe *of, int hidden) {
     double *part = tile_masses(&d);
     float *value = (float *)memory(n * sizeof *value);
     mcsi_surface wide = mcsi_surface_make(env_of(&m), &s.r);
-    wide.ax2 += 0.01f;
-    wide.ay2 += 0.01f;
+    wide.ax2 += 0.005f;
+    wide.ay2 += 0.005f;
     mcsi_tile_values_n(&wide, n, MCSI_READ(float, tiles_of(&m), mcsi_tiles_offsets_of(tiles_of(&m)).light), value);
     double seen = 0;
     double reflected = 0;
