@@ -14,7 +14,7 @@
 #include "render_scene.h"
 
 enum {
-    CELLS = 16,     /* of an object along either axis, at most */
+    CELLS = 20,     /* of an object along either axis, at most */
     AXES = 6,       /* x, y, z, each in both directions */
     POINTS = 12,    /* whose reflections are added to a region */
     PROBES = 65536, /* points of the picture among which these are found, at most */
@@ -66,14 +66,20 @@ static unsigned cell_of(float place) {
     return place < CELLS - 1 ? (unsigned)place : CELLS - 1;
 }
 
-/* Where the number of the region of a point is kept. Cells are squares as seen along the main axis of the normal: a
- * sixth wide on spheres, where a lobe looks another way in each; 1.5 on objects that are larger. The center of a unit
- * sphere lies its normal away. */
+/* A sixth is the side of a cell of a sphere, where a lobe looks another way in each; a ninth, if it is narrow; 1.5 of an
+ * object that is larger. */
+static float cells_per_length(const surface *hit) {
+    if (hit->object >= SPHERES) return 1 / 1.5f;
+    const material *m = hit->m;
+    return m->p_lobe == 1 && m->alpha_x * m->alpha_y < 0.01f ? 9 : 6;
+}
+
+/* Where the number of the region of a point is kept. Cells are squares as seen along the main axis of the normal. The
+ * center of a unit sphere lies its normal away. */
 static uint16_t *region_place(learning *regions, const scene *s, const surface *hit) {
-    const int of_sphere = hit->object < SPHERES;
-    const float per_length = of_sphere ? 6 : 1 / 1.5f;
+    const float per_length = cells_per_length(hit);
     const vec3 n = in_scene_axes(s, hit->frame.n);
-    const vec3 p = of_sphere ? n : in_scene_axes(s, hit->p);
+    const vec3 p = hit->object < SPHERES ? n : in_scene_axes(s, hit->p);
     const unsigned axis = main_axis(n);
     const unsigned i = cell_of((axis < 2 ? p.y : p.x) * per_length + CELLS / 2);
     const unsigned j = cell_of((axis < 4 ? p.z : p.y) * per_length + CELLS / 2);

@@ -7,15 +7,14 @@
 /* Whether the region of the point wants to know of its rays. */
 static int point_learns(const lit_point *x) { return x->region && x->region->learns; }
 
-static void point_tell(const lit_point *x, mcs_texel t, int through) {
-    const uint32_t tile = mcs_tiles_of_texel(x->e->tiles, x->e->table, t.col, t.row);
+static void point_tell(const lit_point *x, uint32_t tile, int through) {
     shadow_rays_add(x->regions, x->rays, x->region, tile, through);
 }
 
-/* Whether the light of this texel reaches the point. Its region is told. */
+/* Whether the light of this texel reaches the point. */
 static int texel_reaches(const lit_point *x, mcs_texel t) {
     const int through = point_sees(x, t.w);
-    if (point_learns(x)) point_tell(x, t, through);
+    if (point_learns(x)) point_tell(x, mcs_tiles_of_texel(x->e->tiles, x->e->table, t.col, t.row), through);
     return through;
 }
 
@@ -73,17 +72,15 @@ static vec3 reflect_product(const lit_point *x, uint32_t samples) {
     return status == MCS_OK ? product_sum(x, &here.product, samples, 0) : black;
 }
 
-/* A BRDF sample, the other half of what is paired with the table of a region. Where nothing is learned, light that does
- * not reach the point is not looked up. */
+/* A BRDF sample, the other half of what is paired with the table of a region. */
 static vec3 region_bounce(const lit_point *x, const mcs_product *table) {
     const bounce b = point_bounce(x);
     if (!(b.pdf > 0)) return black;
     const vec3 w = mcs_to_world(&x->hit->frame, b.wi);
     const int through = point_sees(x, w);
-    if (!through && !point_learns(x)) return black;
-    const mcs_texel t = mcs_product_texel(table, x->e->tiles, x->e->table, w);
-    if (point_learns(x)) point_tell(x, t, through);
+    if (point_learns(x)) point_tell(x, mcs_tiles_of_direction(x->e->tiles, x->e->table, w), through);
     if (!through) return black;
+    const mcs_texel t = mcs_product_texel(table, x->e->tiles, x->e->table, w);
     const float share = x->region->share;
     return scale(mcs_mis_balance(share * b.pdf, t.pdf) / share, mul(b.weight, radiance_at(x->e, t.col, t.row)));
 }
