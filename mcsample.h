@@ -8101,7 +8101,7 @@ MCSI_CORE uint32_t mcsi_cdf_quarter(const uint32_t *sums, uint32_t log_n, uint32
         shift -= 2;
         const size_t step = (size_t)1 << shift;
         const uint32_t passed = (uint32_t)(at[step] <= U) + (at[2 * step] <= U) + (at[3 * step] <= U);
-        at += (size_t)passed << shift; /* a product would take three times as long, in what all else waits for */
+        at += (size_t)passed << shift; /* all that follows waits for it: a multiplication would take longer */
     }
     while (shift > log_stride) {
         shift--;

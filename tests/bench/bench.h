@@ -40,6 +40,13 @@ typedef struct {
     double median, min, max;
 } bench_spread;
 
+/* Of a builder of the header that is given what it needs: MCS_OK is 0. */
+static inline void bench_built(int status) {
+    if (status == 0) return;
+    fprintf(stderr, "a builder returned %d\n", status);
+    exit(2);
+}
+
 static inline double bench_seconds(void) {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);

@@ -2,6 +2,7 @@
 #ifndef MCST_MAPS_H
 #define MCST_MAPS_H
 #include "../../examples/hdr.h"
+#include "bench.h"
 #include "mcsample.h"
 #include <math.h>
 #include <stdint.h>
@@ -23,13 +24,6 @@ typedef struct {
 } map;
 
 enum { TILES = 16 }; /* rows of tiles */
-
-/* Of a builder that is given what it needs. */
-static void bench_built(mcs_status status) {
-    if (status == MCS_OK) return;
-    fprintf(stderr, "a builder returned %d\n", (int)status);
-    exit(2);
-}
 
 static void unit_from(double elevation, double azimuth, double w[3]) { /* degrees */
     const double e = elevation * PI / 180;

@@ -167,40 +167,42 @@ static void build_line_text(void) {
     memcpy(now.line.func, now.image, now.w * sizeof(float));
     text_cdf_build(&now.line);
 }
-static void build_pwc(void) { (void)mcs_pwc_build(now.pwc, mcs_pwc_bytes(now.w), now.image, now.w); }
-static void build_pwl(void) { (void)mcs_pwl_build(now.pwl, mcs_pwl_bytes(now.w), now.image, now.w); }
-static void build_alias(void) { (void)mcs_alias_build(now.alias, mcs_alias_bytes(now.w), now.image, now.w); }
+static void build_pwc(void) { bench_built(mcs_pwc_build(now.pwc, mcs_pwc_bytes(now.w), now.image, now.w)); }
+static void build_pwl(void) { bench_built(mcs_pwl_build(now.pwl, mcs_pwl_bytes(now.w), now.image, now.w)); }
+static void build_alias(void) { bench_built(mcs_alias_build(now.alias, mcs_alias_bytes(now.w), now.image, now.w)); }
 static void build_env_text(void) { text_env_build(now.image, now.w, now.h); }
 static void build_env(void) {
     const mcs_image image = mcs_image_make(now.image, now.w, now.h, 3);
-    (void)mcs_env_build(now.env, mcs_env_bytes(now.w, now.h), &image);
+    bench_built(mcs_env_build(now.env, mcs_env_bytes(now.w, now.h), &image));
 }
 static void build_env_rows(void) {
     const mcs_image image = mcs_image_make(now.image, now.w, now.h, 3);
     const size_t bytes = mcs_env_bytes(now.w, now.h);
     for (uint32_t k = 0; k < PARTS; k++)
-        (void)mcs_env_build_rows(now.env, bytes, &image, now.h * k / PARTS, now.h * (k + 1) / PARTS);
-    (void)mcs_env_finish(now.env, bytes, &image);
+        bench_built(mcs_env_build_rows(now.env, bytes, &image, now.h * k / PARTS, now.h * (k + 1) / PARTS));
+    bench_built(mcs_env_finish(now.env, bytes, &image));
 }
 static void build_env_bilinear(void) {
     mcs_image image = mcs_image_make(now.image, now.w, now.h, 3);
     image.bilinear = 1;
-    (void)mcs_env_build(now.env, mcs_env_bytes(now.w, now.h), &image);
+    bench_built(mcs_env_build(now.env, mcs_env_bytes(now.w, now.h), &image));
 }
 static void build_env_compensated(void) {
     mcs_image image = mcs_image_make(now.image, now.w, now.h, 3);
     image.floor = mcs_env_mean(&image);
-    (void)mcs_env_build(now.env, mcs_env_bytes(now.w, now.h), &image);
+    bench_built(mcs_env_build(now.env, mcs_env_bytes(now.w, now.h), &image));
 }
 static void build_window(void) {
-    (void)mcs_env_window_build(now.window, mcs_env_window_bytes(now.h / 2), now.env, now.h / 4, now.h / 2, now.w / 8,
-                               now.w / 2);
+    bench_built(mcs_env_window_build(now.window, mcs_env_window_bytes(now.h / 2), now.env, now.h / 4, now.h / 2,
+                                     now.w / 8, now.w / 2));
 }
-static void build_tiles(void) { (void)mcs_tiles_build(now.tiles, mcs_tiles_bytes(now.env, TILES), now.env, TILES); }
+static void build_tiles(void) {
+    bench_built(mcs_tiles_build(now.tiles, mcs_tiles_bytes(now.env, TILES), now.env, TILES));
+}
 static void build_product(int kind) {
     const unsigned k = now.turn++ % SURFACES;
-    (void)mcs_product_build(now.product[kind][k], mcs_product_bytes(TILES), now.tiles, now.env, &now.surface[kind][k],
-                            NULL);
+    bench_built(mcs_product_build(now.product[kind][k], mcs_product_bytes(TILES), now.tiles, now.env,
+                                  &now.surface[kind][k], NULL));
 }
 static void build_matte(void) { build_product(MATTE); }
 static void build_ggx(void) { build_product(GGX); }
