@@ -1100,6 +1100,16 @@ MCS_FN mcs_frame mcs_frame_from_tangent(mcs_vec3 n, mcs_vec3 tangent);
 MCS_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v);
 /* v in local coordinates, for v in world ones. Components of v beyond 1e37 and NaN count as 0. */
 MCS_FN mcs_vec3 mcs_to_local(const mcs_frame *f, mcs_vec3 v);
+#ifndef MCS_NO_BATCH
+/* n vectors, each in the frame that mcs_frame_make has for a normal of its own, in world coordinates and in local ones.
+ * The results may take the place of the vectors, and any of their arrays may be NULL. */
+MCS_API void mcs_to_world_n(size_t n, const float *normal_x, const float *normal_y, const float *normal_z,
+                            const float *x, const float *y, const float *z, float *world_x, float *world_y,
+                            float *world_z);
+MCS_API void mcs_to_local_n(size_t n, const float *normal_x, const float *normal_y, const float *normal_z,
+                            const float *x, const float *y, const float *z, float *local_x, float *local_y,
+                            float *local_z);
+#endif
 
 /* ==== [microfacet] half-vectors and reflection ====================================================================
  * What is common to lobes around a half-vector, for BRDFs of your own. The half-vector samplers of [ward], [beckmann],
@@ -1211,7 +1221,7 @@ MCS_FN mcs_vec3 mcs_refract(mcs_vec3 w, mcs_vec3 h, float eta);
 /* What each of n hits has of its own, for array functions named _hits_n. A renderer that takes all hits of a picture
  * through one stage after the other has it in arrays. They hold n floats each, of any alignment. */
 typedef struct {
-    const float *wo_x, *wo_y, *wo_z; /* the wo of each hit */
+    const float *wo_x, *wo_y, *wo_z; /* the wo of each hit, in its local frame (mcs_to_local_n) */
     const float *parameter_x;        /* NULL: all hits have the material m. Else what mcs_x_make is to be given along x
                                         for each: alpha_x, or nu, or n of [phong]. m may then be NULL, but the model of
                                         [ward] is that of m. */
@@ -2711,7 +2721,8 @@ typedef double mcsi_d;
 #if MCSI_BASE_W > 0
 #define MCSI_IN_MAX 8
 #define MCSI_OUT_MAX 7
-#define MCSI_IN_WO 3 /* where the arrays of mcs_hits are among those of `in` */
+#define MCSI_IN_NORMAL 3 /* where the arrays of normals are among those of `in` */
+#define MCSI_IN_WO 3     /* and those of mcs_hits */
 #define MCSI_IN_X 6
 #define MCSI_IN_Y 7
 typedef struct {
@@ -6246,7 +6257,6 @@ MCSI_CORE mcs_vec3 mcsi_to_world(const mcs_frame *f, mcs_vec3 v) {
 MCSI_CORE mcs_vec3 mcsi_to_local(const mcs_frame *f, mcs_vec3 v) {
     return mcsi_vec3(mcsi_dot(f->s, v), mcsi_dot(f->t, v), mcsi_dot(f->n, v));
 }
-#ifdef MCSI_PUBLIC
 /* A component as it is, but 0 where it is NaN or beyond 1e37: sums of three products stay finite. */
 MCSI_CORE mcs_f mcsi_finite(mcs_f x) { return mcsi_sel(mcsi_abs(x) <= 1e37f, x, mcs_set(0.0f)); }
 MCSI_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v) {
@@ -6255,6 +6265,20 @@ MCSI_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v) {
 MCSI_FN mcs_vec3 mcs_to_local(const mcs_frame *f, mcs_vec3 v) {
     return mcsi_to_local(f, mcsi_vec3(mcsi_finite(v.x), mcsi_finite(v.y), mcsi_finite(v.z)));
 }
+#ifdef MCSI_BATCHES
+#define MCSI_LOOP_TURN(TURN)                                                      \
+    MCSI_LOOP void mcsi_##TURN##_loop(const mcsi_batch *call) {                   \
+        MCSI_EACH(b, call) {                                                      \
+            const mcs_frame frame = mcs_frame_make(mcsi_in3(&b, MCSI_IN_NORMAL)); \
+            const mcs_vec3 turned = mcs_##TURN(&frame, mcsi_in3(&b, 0));          \
+            mcsi_out(&b, 0, turned.x);                                            \
+            mcsi_out(&b, 1, turned.y);                                            \
+            mcsi_out(&b, 2, turned.z);                                            \
+        }                                                                         \
+    }
+MCSI_LOOP_TURN(to_world)
+MCSI_LOOP_TURN(to_local)
+#undef MCSI_LOOP_TURN
 #endif
 
 #ifndef MCS_NO_LOBES
@@ -12261,8 +12285,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #define mcsi_to_float MCSI_(to_float)
 #define mcsi_to_grid MCSI_(to_grid)
 #define mcsi_to_local MCSI_(to_local)
+#define mcsi_to_local_loop MCSI_(to_local_loop)
 #define mcsi_to_unit MCSI_(to_unit)
 #define mcsi_to_world MCSI_(to_world)
+#define mcsi_to_world_loop MCSI_(to_world_loop)
 #define mcsi_triangle_loop MCSI_(triangle_loop)
 #define mcsi_trunc MCSI_(trunc)
 #define mcsi_truncexp MCSI_(truncexp)
@@ -12923,8 +12949,10 @@ MCS_FN double mcs_stat_ci(const mcs_stat *s, double z) { return z * mcs_stat_err
 #undef mcsi_to_float
 #undef mcsi_to_grid
 #undef mcsi_to_local
+#undef mcsi_to_local_loop
 #undef mcsi_to_unit
 #undef mcsi_to_world
+#undef mcsi_to_world_loop
 #undef mcsi_triangle_loop
 #undef mcsi_trunc
 #undef mcsi_truncexp
@@ -13051,6 +13079,21 @@ MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, 
     MCSI_BATCH_LOOP(sobol_loop, (first, dim, seed, &call));
 }
 /* MCSI_ARRAY_X makes the array functions of the loops that MCSI_LOOP_X makes. */
+#define MCSI_ARRAY_TURN(TURN)                                                                                      \
+    MCS_API void mcs_##TURN##_n(size_t n, const float *normal_x, const float *normal_y, const float *normal_z,     \
+                                const float *x, const float *y, const float *z, float *turned_x, float *turned_y,  \
+                                float *turned_z) {                                                                 \
+        mcsi_batch call;                                                                                           \
+        mcsi_batch_u(&call, n, x, y, turned_x, turned_y, turned_z, NULL);                                          \
+        call.in[2] = z;                                                                                            \
+        call.in[MCSI_IN_NORMAL] = normal_x;                                                                        \
+        call.in[MCSI_IN_NORMAL + 1] = normal_y;                                                                    \
+        call.in[MCSI_IN_NORMAL + 2] = normal_z;                                                                    \
+        MCSI_BATCH_LOOP(TURN##_loop, (&call));                                                                     \
+    }
+MCSI_ARRAY_TURN(to_world)
+MCSI_ARRAY_TURN(to_local)
+#undef MCSI_ARRAY_TURN
 #ifndef MCS_NO_1D
 #define MCSI_ARRAY_LINE(NAME)                                                                     \
     MCS_API void mcs_##NAME##_sample_n(float a, size_t n, const float *u, float *x, float *pdf) { \

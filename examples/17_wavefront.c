@@ -25,21 +25,9 @@ static void draw_numbers(mcs_pcg32 *rng) {
     mcs_pcg32_fill_n(rng, HITS, u1);
     mcs_pcg32_fill_n(rng, HITS, u2);
 }
-static void turn(mcs_vec3 (*to)(const mcs_frame *frame, mcs_vec3 w)) {
-    for (int i = 0; i < HITS; i++) {
-        const mcs_vec3 n = {normal_x[i], normal_y[i], normal_z[i]};
-        const mcs_vec3 wi = {x[i], y[i], z[i]};
-        const mcs_frame frame = mcs_frame_make(n);
-        const mcs_vec3 w = to(&frame, wi);
-        x[i] = w.x;
-        y[i] = w.y;
-        z[i] = w.z;
-    }
-}
-
 static void draw_from_lobe(const mcs_env *env) {
     mcs_ggx_bounded_sample_hits_n(NULL, &hits, HITS, u1, u2, x, y, z, lobe_pdf, weight);
-    turn(mcs_to_world);
+    mcs_to_world_n(HITS, normal_x, normal_y, normal_z, x, y, z, x, y, z);
     mcs_env_texel_n(env, HITS, x, y, z, map_pdf, col, row);
     for (int i = 0; i < HITS; i++) {
         lobe_alone[i] = weight[i] > 0 ? weight[i] * map[row[i]][col[i]] : 0;
@@ -48,7 +36,7 @@ static void draw_from_lobe(const mcs_env *env) {
 }
 static void draw_from_map(const mcs_env *env) {
     mcs_env_sample_n(env, HITS, u1, u2, x, y, z, map_pdf, col, row);
-    turn(mcs_to_local);
+    mcs_to_local_n(HITS, normal_x, normal_y, normal_z, x, y, z, x, y, z);
     mcs_ggx_bounded_pdf_hits_n(NULL, &hits, HITS, x, y, z, lobe_pdf, value);
     for (int i = 0; i < HITS; i++) {
         if (!(lobe_pdf[i] > 0)) continue;

@@ -24,7 +24,7 @@
     X(hash) X(sobol_bits) X(load) X(store)
 #define BITS_SCALAR(X) \
     X(pcg32_for) X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) \
-    X(philox_fill_n) X(sobol_n) X(sobol_pixel) X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) \
+    X(philox_fill_n) X(sobol_n) X(to_world_n) X(to_local_n) X(sobol_pixel) X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) \
     X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) X(discrete_bytes) X(discrete_build) \
     X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(discrete_sample_n) X(pwl_bytes) X(pwl_build) \
     X(pwl_sample) X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(pwc2_bytes) X(pwc2_build) \
@@ -319,6 +319,27 @@ FN(sobol_n) {
     const size_t n = WORD(13) % (BITS_LONG + 1);
     mcs_sobol_n(WORD(11), WORD(12) % 9, WORD(13), n, a);
     bits_put_array(out, 0, a, n);
+}
+/* Unit normals, or nearly, and one of any kind. */
+MCST_HD static size_t bits_turns(const float *in, float from[6][BITS_LONG]) {
+    mcs_pcg32 r = mcs_pcg32_make(1, WORD(13));
+    int k;
+    for (k = 0; k < 6; k++) mcs_pcg32_fill_n(&r, BITS_LONG, from[k]);
+    mcs_sphere_sample_n(BITS_LONG, from[0], from[1], from[0], from[1], from[2], NULL);
+    for (k = 0; k < 3; k++) from[k][0] = IN(3 + k), from[3 + k][0] = IN(8 + k);
+    return WORD(11) % (BITS_LONG + 1);
+}
+FN(to_world_n) {
+    float f[6][BITS_LONG];
+    const size_t n = bits_turns(in, f);
+    mcs_to_world_n(n, f[0], f[1], f[2], f[3], f[4], f[5], f[3], f[4], f[5]);
+    for (int k = 0; k < 3; k++) bits_put_array(out, 2 * k, f[3 + k], n);
+}
+FN(to_local_n) {
+    float f[6][BITS_LONG];
+    const size_t n = bits_turns(in, f);
+    mcs_to_local_n(n, f[0], f[1], f[2], f[3], f[4], f[5], f[3], f[4], f[5]);
+    for (int k = 0; k < 3; k++) bits_put_array(out, 2 * k, f[3 + k], n);
 }
 FN(sobol_pixel) { PUT_WORD(0, mcs_sobol_pixel(WORD(11), WORD(12), WORD(13) >> (WORD(12) & 31), WORD(13))); }
 FN(stratified) { B_(put2)(out, 0, mcs_stratified(WORD(11), WORD(12) % 50, WORD(13) % 70, WORD(13))); }

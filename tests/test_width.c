@@ -305,6 +305,52 @@ static void check_hits(const mcst_row *row, uint64_t *state) {
     }
 }
 
+/* --- vectors in frames of their own --- */
+
+typedef void turn_n(size_t n, const float *normal_x, const float *normal_y, const float *normal_z, const float *x,
+                    const float *y, const float *z, float *turned_x, float *turned_y, float *turned_z);
+
+static float any_component(uint64_t *state) {
+    static const float beyond[] = {INFINITY, -INFINITY, 2e37f, -2e37f};
+    const float x = 2 * any_u(state) - 1;
+    return mcst_mix(state) % 32 ? x : beyond[mcst_mix(state) % 4];
+}
+/* mcs_to_world_n and mcs_to_local_n for every n: now and then without some outputs, else in place of the vectors. */
+static void check_turned(turn_n *turned, mcs_vec3 (*turn)(const mcs_frame *, mcs_vec3), uint64_t *state) {
+    for (size_t n = 0; n <= N; n++) {
+        const unsigned missing = (unsigned)(mcst_mix(state) % 16);
+        float normal[3][ROOM], v[3][ROOM], buffer[3][ROOM], want[3][N];
+        float *out[3];
+        for (int k = 0; k < 3; k++) {
+            for (int i = 0; i < ROOM; i++) {
+                normal[k][i] = any_component(state);
+                v[k][i] = i < (int)n ? any_component(state) : guard;
+                buffer[k][i] = guard;
+            }
+            out[k] = missing > 7 ? v[k] : missing >> k & 1 ? NULL : buffer[k];
+        }
+        for (size_t i = 0; i < n; i++) {
+            const mcs_vec3 own = {normal[0][i], normal[1][i], normal[2][i]};
+            const mcs_vec3 from = {v[0][i], v[1][i], v[2][i]};
+            const mcs_frame frame = mcs_frame_make(own);
+            const mcs_vec3 w = turn(&frame, from);
+            want[0][i] = w.x;
+            want[1][i] = w.y;
+            want[2][i] = w.z;
+        }
+        turned(n, normal[0], normal[1], normal[2], v[0], v[1], v[2], out[0], out[1], out[2]);
+        for (int k = 0; k < 3; k++) check_written("turned", out[k] ? out[k] : buffer[k], 0, want[k], out[k] ? n : 0);
+    }
+}
+
+static void check_turns(void) {
+    uint64_t state = mcst_seed_for("frames", "width", 0);
+    for (int round = 0; round < 100; round++) {
+        check_turned(mcs_to_world_n, mcs_to_world, &state);
+        check_turned(mcs_to_local_n, mcs_to_local, &state);
+    }
+}
+
 /* --- arrays larger than caches, which are written past them --- */
 
 /* Draws of n = 2^21 + 13 points at once are those of calls of 1000, and nothing else is written: arrays begin at a
@@ -394,6 +440,8 @@ int main(int argc, char **argv) {
         }
         if (row->sample_hits_n && mcst_case("hits")) check_hits(row, &state);
     }
+    mcst_group("frames");
+    if (mcst_case("arrays of vectors")) check_turns();
     mcst_group("long arrays");
     for (i = 0; i < 3; i++)
         if (mcst_case("%s", i == 0 ? "aligned" : i == 1 ? "not aligned" : "in place")) check_long(i == 1, i == 2);
