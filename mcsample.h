@@ -1101,11 +1101,12 @@ MCS_FN mcs_vec3 mcs_to_world(const mcs_frame *f, mcs_vec3 v);
 /* v in local coordinates, for v in world ones. Components of v beyond 1e37 and NaN count as 0. */
 MCS_FN mcs_vec3 mcs_to_local(const mcs_frame *f, mcs_vec3 v);
 #ifndef MCS_NO_BATCH
-/* n vectors, each in the frame that mcs_frame_make has for a normal of its own, in world coordinates and in local ones.
+/* n vectors in world coordinates, each for a local one in the frame that mcs_frame_make has for a normal of its own.
  * The results may take the place of the vectors, and any of their arrays may be NULL. */
 MCS_API void mcs_to_world_n(size_t n, const float *normal_x, const float *normal_y, const float *normal_z,
                             const float *x, const float *y, const float *z, float *world_x, float *world_y,
                             float *world_z);
+/* n vectors in local coordinates, each for one in world coordinates. All else is as in mcs_to_world_n. */
 MCS_API void mcs_to_local_n(size_t n, const float *normal_x, const float *normal_y, const float *normal_z,
                             const float *x, const float *y, const float *z, float *local_x, float *local_y,
                             float *local_z);
@@ -13079,17 +13080,17 @@ MCS_API void mcs_sobol_n(uint32_t first, uint32_t dim, uint32_t seed, size_t n, 
     MCSI_BATCH_LOOP(sobol_loop, (first, dim, seed, &call));
 }
 /* MCSI_ARRAY_X makes the array functions of the loops that MCSI_LOOP_X makes. */
-#define MCSI_ARRAY_TURN(TURN)                                                                                      \
-    MCS_API void mcs_##TURN##_n(size_t n, const float *normal_x, const float *normal_y, const float *normal_z,     \
-                                const float *x, const float *y, const float *z, float *turned_x, float *turned_y,  \
-                                float *turned_z) {                                                                 \
-        mcsi_batch call;                                                                                           \
-        mcsi_batch_u(&call, n, x, y, turned_x, turned_y, turned_z, NULL);                                          \
-        call.in[2] = z;                                                                                            \
-        call.in[MCSI_IN_NORMAL] = normal_x;                                                                        \
-        call.in[MCSI_IN_NORMAL + 1] = normal_y;                                                                    \
-        call.in[MCSI_IN_NORMAL + 2] = normal_z;                                                                    \
-        MCSI_BATCH_LOOP(TURN##_loop, (&call));                                                                     \
+#define MCSI_ARRAY_TURN(TURN)                                                                                     \
+    MCS_API void mcs_##TURN##_n(size_t n, const float *normal_x, const float *normal_y, const float *normal_z,    \
+                                const float *x, const float *y, const float *z, float *turned_x, float *turned_y, \
+                                float *turned_z) {                                                                \
+        mcsi_batch call;                                                                                          \
+        mcsi_batch_u(&call, n, x, y, turned_x, turned_y, turned_z, NULL);                                         \
+        call.in[2] = z;                                                                                           \
+        call.in[MCSI_IN_NORMAL] = normal_x;                                                                       \
+        call.in[MCSI_IN_NORMAL + 1] = normal_y;                                                                   \
+        call.in[MCSI_IN_NORMAL + 2] = normal_z;                                                                   \
+        MCSI_BATCH_LOOP(TURN##_loop, (&call));                                                                    \
     }
 MCSI_ARRAY_TURN(to_world)
 MCSI_ARRAY_TURN(to_local)

@@ -24,9 +24,10 @@
     X(hash) X(sobol_bits) X(load) X(store)
 #define BITS_SCALAR(X) \
     X(pcg32_for) X(pcg32_make) X(pcg32_next) X(pcg32_float) X(pcg32_advance) X(pcg32_fill_n) X(philox) \
-    X(philox_fill_n) X(sobol_n) X(to_world_n) X(to_local_n) X(sobol_pixel) X(stratified) X(latin) X(pwc_bytes) X(pwc_build) X(pwc_build_fn) \
-    X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) X(pwc_invert) X(pwc_sample_n) X(discrete_bytes) X(discrete_build) \
-    X(discrete_sample) X(discrete_sample_bits) X(discrete_pmf) X(discrete_sample_n) X(pwl_bytes) X(pwl_build) \
+    X(philox_fill_n) X(sobol_n) X(to_world_n) X(to_local_n) X(sobol_pixel) X(stratified) X(latin) \
+    X(pwc_bytes) X(pwc_build) X(pwc_build_fn) X(pwc_sample) X(pwc_sample_bits) X(pwc_pdf) X(pwc_invert) \
+    X(pwc_sample_n) X(discrete_bytes) X(discrete_build) X(discrete_sample) X(discrete_sample_bits) \
+    X(discrete_pmf) X(discrete_sample_n) X(pwl_bytes) X(pwl_build) \
     X(pwl_sample) X(pwl_sample_bits) X(pwl_pdf) X(pwl_invert) X(pwl_sample_n) X(pwc2_bytes) X(pwc2_build) \
     X(pwc2_sample) X(pwc2_pdf) X(pwc2_invert) X(pwc2_sample_n) X(alias_bytes) X(alias_build) X(alias_sample) \
     X(alias_sample_bits) X(alias_pmf) X(alias_sample_n) X(reservoir_add) X(reservoir_merge) X(reservoir_weight) \

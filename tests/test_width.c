@@ -145,7 +145,7 @@ static void check_sample_n(const mcst_row *row, const float *p, uint64_t *state,
         }
         row->sample_n(p, n, v1, v2, out);
         for (k = 0; k < 5; k++) {
-            char what[16];
+            char what[32];
             snprintf(what, sizeof what, "output %d", k);
             check_written(what, buffer[k], (size_t)((shift + k) % 4), want[k], out[k] && writes(row, k) ? n : 0);
         }
@@ -273,7 +273,7 @@ static void check_every_n(const mcst_row *row, hit_arrays *h, uint64_t *state) {
         call_hits(row, h, first, n, out);
         for (int k = 0; k < 5; k++) {
             const int written = out[k] && (!h->values || k < 2);
-            char what[32];
+            char what[48];
             snprintf(what, sizeof what, "%s of hits, output %d", h->values ? "value" : "sample", k);
             check_written(what, buffer[k], (n + (size_t)k) % 4, want[k] + first, written ? n : 0);
         }
