@@ -25,6 +25,7 @@ use of uninitialized value 'l\.(ggx|gauss|phong)	mcsi_lobe_make: memset has set 
 use of uninitialized value '\*tile_	mcsi_product_heaviest: entries below count have been written
 shiftTooManyBitsSigned	masks from signs: >> of a negative int keeps its sign with every compiler the header is for
 Condition 'k<[mn]' is always false	wrong: n was set by ?: a line before, and the tests run these loops
+use of uninitialized value '(sum\[[47]\]|\*&both)	mcsi_nodes_draw, mcsi_draw_grid: loops set all of them, which the analyzer follows for a few turns
 mcsample.h:[0-9]+:[0-9]+: .*garbage value \[clang-analyzer-core.UndefinedBinaryOperatorResult	arrays and places that a function fills through a pointer in every case; valgrind and msan run them
 Condition '\(unsigned long\)bytes==bytes' is always true	not where size_t has 32 bits
 redundantPointerOp	MCSI_EACH takes the name of a batch, and a loop that is handed one has a pointer to it
