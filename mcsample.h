@@ -74,7 +74,8 @@
  *               out of range, u outside [0,1), directions whose squared length is not within 0.001 of 1, and tables
  *               and maps that were not built. Array functions of one wo tell such a wo; a call of one point tells what
  *               X tells. Nothing tells a wo or wi below the surface, which is no mistake, nor bad numbers in arrays
- *               and lanes: look for mistakes with scalar functions.
+ *               and lanes, but for u in array draws of [tables], [env] and [product]: look for mistakes with scalar
+ *               functions.
  *
  * Arrays        X_n does for n points what X does for one. It takes plain arrays, one per component, of any alignment,
  *               and reads and writes n numbers of each. A result may be NULL and is then left out. A result may be the
@@ -1810,18 +1811,19 @@ MCS_FN float mcs_mix_pdf(float c, float pf, float pg);
  * probabilities  Integers that add up to exactly 2^31 (alias: n 2^31): sample, pdf and pmf agree exactly. Every entry
  *                that is not zero has 1 beforehand (a u of 24 bits may miss it below 2^-24), and zero entries are never
  *                drawn. So a probability may be above its share of the list by 2^-30, and below it by n 2^-31 of it,
- *                which is 5e-4 for a million entries (alias: both about n times less).
+ *                which is 5e-4 for a million entries (alias: both about n times less). Cells of pwl and rows of pwc2
+ *                weigh a rounded float, which moves a probability by up to 2^-23 of itself.
  * bad entries    Negative ones and NaN count as 0, +infinity counts as FLT_MAX. The member bad counts them.
  * all zero       makes an even table, which is no error: uniform is 1 and total is 0.
  * errors         _build returns MCS_ERR_ARG where t or the list is NULL or t is misaligned, MCS_ERR_SIZE where n is 0
  *                or too large, MCS_ERR_MEMORY where bytes are too few, in this order, and otherwise MCS_OK. After an
  *                error nothing was written.
- * monotone       All but alias increase with u. mcs_x_invert is the inverse.
+ * monotone       All but alias increase with u. mcs_x_invert is the inverse (pwc, pwl, pwc2).
  * bits           The 24 bits of a float u find both the entry and the position in it (x, or the u to reuse). So the
  *                frequency of an entry is off by up to 2^-24, which is much of the 1/n that entries of a large table
  *                have on average, and in a table of a million entries 4 bits are left for the position. Beyond some
  *                thousand entries use mcs_x_sample_bits(t, b1, b2) with 64 random bits, b1 the upper 32: at least 33
- *                are left for the position (alias: 32 in a column).
+ *                are left for the position (alias: 32 in a column). pwc2 has no such form.
  * cost           Constant expected time by a guide table (Chen and Asau 1974, "On generating random variates from an
  *                empirical distribution"), at most log2(n) steps. Alias: Walker 1977, Vose 1991. */
 #ifndef MCS_NO_TABLES
@@ -1989,8 +1991,8 @@ MCS_API void mcs_alias_sample_n(const mcs_alias *t, size_t n, const float *u, ui
  *                the mean is left to the other strategy. Such a map is incomplete (e->incomplete): its density is 0
  *                where the image is not black.
  * skipped        A constant map is the uniform sphere and its rows are never read; an all-black one likewise. Rows
- *                without light are zeros. mcs_env_pdf and mcs_env_texel read no list outside of rows [row0, row1) and
- *                columns [col0, col1).
+ *                without light are zeros. mcs_env_pdf and mcs_env_texel read no shares of columns outside of rows
+ *                [row0, row1) and columns [col0, col1).
  * ownership      Objects hold no pointers. Pass what they were built from to every call.
  * cost           Two cache misses. The array forms fetch memory ahead: they are the fast ones for large maps.
  * source         Pharr, Jakob, Humphreys 2023, section 12.5. */
@@ -2151,8 +2153,8 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  * what it would weigh on a white matte surface that faces it, and at least a quarter of the mean of what it draws by.
  * So no tile is drawn so rarely that a sample in it is worth more than some ten thousand times the answer, and next to
  * never above a thousand. No bound holds where the horizon or a lobe leaves next to nothing of the light: a tile cannot
- * tell it from nothing. Directions below the horizon are drawn only in tiles that it crosses. A black map counts as
- * even light, as in [env].
+ * tell it from nothing. Directions below the horizon are drawn as well, in tiles that it crosses and in tiles that lie
+ * within their radius of it. A black map counts as even light, as in [env].
  *
  * Narrow lobes. A lobe is narrow when 4 pi alpha^2 cos(theta_o) is below 8 mean tiles, with the smaller alpha; Phong's
  * lobe has no cosine here and below. The reflection is then evaluated on a grid of 8 x 8 points in each heavy tile: at
@@ -2174,10 +2176,10 @@ MCS_API void mcs_env_window_sample_n(const mcs_env_window *m, const mcs_env *e, 
  *           it jumps between tiles, and varies within a texel. The density of a sample is that of mcs_product_pdf but
  *           for the rounding of the sample's position, 2^-21 of the map's texels.
  * Bad:      u outside [0,1) or a bad direction gives density 0 and a finite direction. So does every sample where wo
- *           or all light is below the surface. Parameters out of range are taken as the nearer end, NaN as the lower
- *           one.
- * Cost:     a sample takes that of the map and two short searches; a warp takes 2 square roots and 5 divisions.
- *           README.md has times.
+ *           is below the surface, or where all light is further below it than a tile reaches. Parameters out of range
+ *           are taken as the nearer end, NaN as the lower one.
+ * Cost:     a sample takes that of the map, and two short searches with a division each; a warp takes 2 square roots
+ *           and 3 divisions. README.md has times.
  * Source:   Clarberg and Akenine-Moeller 2008, "Practical product importance sampling for direct illumination"; Cline,
  *           Egbert, Talbot, Cardon 2006, "Two stage importance sampling for direct lighting"; bilinear warping: Pharr,
  *           Jakob, Humphreys 2023, A.5. */
@@ -2252,8 +2254,8 @@ typedef struct {
     float brdf_share; /* the share of samples that come from the lobe itself; it may be set to 0 after the build, to
                          combine the product with samplers of your own by MIS */
     uint32_t dark; /* 1: no light reaches wo by this surface, wo is bad, or all weights are 0: samples carry no light */
-    float reach;   /* of a region's table: its draws come through so many times as often as draws would that know no V;
-                      at least 1. Else 0. */
+    float reach;   /* of a region's table: how many times as often its draws come through as draws that know no V, 1 or
+                      more. 0 where no light is reflected, and in other products. */
     /* private: */
     uint32_t rows, cols; /* of tiles */
     uint32_t warped;     /* 0: built of weights; within tiles, the density is that of the light */
@@ -2368,9 +2370,11 @@ MCS_API void mcs_product_pdf_n(const mcs_product *p, const mcs_tiles *t, const m
  *   g          a region, in memory of yours like a product; it holds no pointers. Tiles and regions of another number
  *              of rows add nothing to it, and MCS_ASSERT tells them.
  *   points     Reflections above the surface; others are not added. Without any, f is 1.
- *   rays       Shadow rays, of samples of any kind. A tile counts up to 2^24, and so does g->rays. Merged counts go on.
- *   threads    Let each have regions of its own and merge them. Rays add up exactly, in any order; points in a fixed
- *              order only.
+ *   rays       Shadow rays, of samples of any kind. A tile counts up to 2^24, and so does g->rays. Merged counts go
+ *              on, but above 2^24 they round: small counts of rays are lost before those that came through, and V
+ *              grows. Let such a region decay by 1/2.
+ *   threads    Let each have regions of its own and merge them. Rays add up exactly, in any order, up to 2^24; points
+ *              in a fixed order only.
  *   cost       Bytes: 16 + 16 rows cols (8208 with 16 rows). README.md has times. */
 #if !defined(MCS_NO_TABLES) && !defined(MCS_NO_LOBES)
 /* Bytes of a region; 0 for rows other than 16, 32 and 64. */
@@ -8134,9 +8138,9 @@ MCSI_CORE uint32_t mcsi_cdf_quarter(const uint32_t *sums, uint32_t log_n, uint32
     }
     return (uint32_t)(at - sums);
 }
-/* The entry that holds U, U < 2^31: of a table, or the row of a map or window (mcsi_window_draw_row). It mostly is one
+/* The entry that holds U, U < 2^31: of a table, or the row of a map or window (mcsi_window_row). It mostly is one
  * of four from the guide's on, among which it is found without branches, as no predictor could learn them. (size_t: see
- * mcsi_cdf_mass.) Columns are found by mcsi_find_column, tiles by mcsi_cdf_quarter. A search that returns the same
+ * mcsi_cdf_mass.) Columns are found by mcsi_window_column, tiles by mcsi_cdf_quarter. A search that returns the same
  * entry leaves all bits as they are. */
 MCSI_CORE uint32_t mcsi_cdf_find(const mcsi_cdf *c, uint32_t U) {
     const uint32_t *sums = c->sums;
@@ -8208,7 +8212,7 @@ MCS_FN mcsi_entry mcsi_entry_of_u(const mcs_pwc *t, float u) {
     p.within = (U - c.sums[p.i]) / p.mass;
     return p;
 }
-/* All 64 bits count: 31 find the entry. What they leave and the others are the position, exact until it is divided. */
+/* All 64 bits count: 31 find the entry. What they leave and the others are the position, rounded to a double. */
 MCS_FN mcsi_entry mcsi_entry_of_bits(const mcs_pwc *t, uint32_t b1, uint32_t b2) {
     MCSI_REQUIRE(t && t->n > 0, "the table was built");
     const uint64_t U = (uint64_t)b1 << 32 | b2; /* 2^33 times that of a float u */
@@ -8525,8 +8529,9 @@ MCSI_CORE const float *mcsi_pwl_vertices(const mcs_pwl *t) {
 MCSI_CORE mcs_cell mcsi_pwl_cell(const mcs_pwl *t, mcsi_entry p, int ok) {
     const float *vertex = mcsi_pwl_vertices(t) + p.i;
     const double sum = (double)vertex[0] + (double)vertex[1];
-    const double a = (double)vertex[0] / sum;
-    const double b = (double)vertex[1] / sum;
+    /* Where subnormal numbers count as 0, but did not when the table was built, the sum may be 0. */
+    const double a = sum > 0.0 ? (double)vertex[0] / sum : 0.5;
+    const double b = sum > 0.0 ? (double)vertex[1] / sum : 0.5;
     const double r = mcsi_sqrt_d((1.0 - p.within) * a * a + p.within * b * b);
     mcs_cell c;
     c.i = p.i;
@@ -8679,7 +8684,8 @@ MCSI_CORE const mcsi_column *mcsi_alias_column(const mcs_alias *t, float u) {
     int32_t ok = 1;
     return mcsi_columns(t) + (uint32_t)((double)mcsi_sane_u(u, &ok) * t->n);
 }
-/* As mcsi_pwc_fetch: columns, and before that the entries that they give the rest to. */
+/* As mcsi_pwc_fetch: the columns of the block after the next one, and the entries to which those of the next one give
+ * the rest. */
 MCSI_CORE size_t mcsi_alias_fetch(const mcs_alias *t, size_t k, size_t n, const float *u) {
     const size_t block = MCSI_FETCH_BLOCK;
     const size_t end = t->n < MCSI_FETCH_CELLS ? 0 : n;
@@ -8703,9 +8709,10 @@ MCS_API void mcs_alias_sample_n(const mcs_alias *t, size_t n, const float *u, ui
 #ifdef MCSI_TABLES
 /* ---- directions of points, and where directions lie, for all widths ---- */
 
-/* A draw between table and direction. row_rest/row_mass: position within the row, 0 to 1. edge: 1 - cos(theta) of the
- * row's border nearer to a pole, margin included. height: extent of the row in 1 - cos(theta), negative for southern
- * rows (the sign goes to z). col, col_rest/col_mass: column, and position within it. */
+/* A draw between table and direction. row_rest/row_mass: position within the row, 0 to 1. edge: 1 - |cos(theta)| at the
+ * row's upper border, moved into the row by the margin. height: what is added to it on the way to the lower border,
+ * without both margins; it is negative in southern rows, and z takes its sign. col, col_rest/col_mass: column, and
+ * position within it. */
 typedef struct {
     mcs_f row_rest, row_mass, edge, height, col, col_rest, col_mass;
 } mcsi_env_point;
@@ -8723,8 +8730,8 @@ MCSI_CORE mcs_vec3 mcsi_env_direction(const mcs_frame *f, const mcsi_env_point *
     return mcsi_to_world(f, mcsi_vec3(sine * c, sine * s, mcsi_from_bits(mcsi_bits(1.0f - t) ^ south)));
 }
 /* off_pole: 1 - |cos(theta)|, with the sign of cos(theta); 4 for a bad direction. polar: angle to the nearer pole, in
- * turns, to 2e-7; only a guess for directions whose length is not 1. azimuth: in turns, 0 to 1. Those that decide on a
- * texel are stored, as array forms have them in memory. */
+ * turns, to 2.3e-7; only a guess for directions whose length is not 1. azimuth: in turns, 0 to 1. Those that decide on
+ * a texel are stored, as array forms have them in memory. */
 typedef struct {
     mcs_f off_pole, polar, azimuth;
 } mcsi_angles;
@@ -8741,8 +8748,9 @@ MCSI_CORE mcsi_angles mcsi_env_angles(const mcs_frame *f, mcs_vec3 w) {
     return a;
 }
 #if MCSI_W == 1
-/* Draws of a block, for array forms: what is left of each, also as integers (U1, U2), the row's lists, which are NULL
- * where there is nothing to search, the first of eight columns, the texel, and the members of mcsi_env_point. */
+/* Draws of a block, for array forms: what is left of each, also as integers (U1, U2), the row's lists, of which sums
+ * is NULL where there is nothing to search, the first of eight columns, the texel, and the members of mcsi_env_point.
+ */
 #define MCSI_ENV_BLOCK 32
 #define MCSI_ENV_FEW 7 /* fewer are drawn one by one, which costs less */
 typedef struct {
@@ -9427,9 +9435,10 @@ MCSI_CORE mcsi_draw mcsi_draw_start(float u1, float u2) {
 }
 
 /* -- row --
- * To choose rows in another way, change both functions and mcs_env_invert. Their shares are made by
- * mcsi_env_build_row_sums and mcs_env_window_build, read by tiles of products, too (mcsi_env_rows), and checked by
- * mcsi_env_lists_ok. Where the bytes of a map change, so does MCSI_ENV_VERSION. */
+ * To choose rows in another way, change mcsi_window_row, mcsi_window_draw_row, mcsi_window_row_density, and the
+ * inverses, mcs_env_invert and mcsi_window_position. Shares of rows are made by mcsi_env_build_row_sums and
+ * mcsi_window_tabulate. Tiles of products read them, too (mcsi_env_rows), and mcsi_env_lists_ok checks them. Where the
+ * bytes of a map change, so does MCSI_ENV_VERSION. */
 
 /* Density of a texel per share of row i, which has light. */
 MCSI_CORE double mcsi_window_row_density(const mcsi_window *r, uint32_t i) {
@@ -9515,7 +9524,7 @@ MCSI_CORE uint32_t mcsi_draw_column(const mcs_env *e, const mcsi_window *r, uint
     return (uint32_t)col;
 }
 
-/* -- constant maps: no tables are read -- */
+/* -- constant maps: no shares are read -- */
 
 /* 1 over the solid angle of the window. */
 MCSI_CORE float mcsi_window_uniform_pdf(const mcs_env *e, const mcsi_window *r) {
@@ -9948,7 +9957,7 @@ MCSI_CORE void mcsi_window_prefetch(const mcsi_window *r, double u2) {
 
 /* The light of a tile; in the lanes, of several tiles. */
 typedef struct {
-    mcs_f light;        /* radiance integrated over the tile */
+    mcs_f light;        /* the tile's part of all light of the map */
     mcs_vec3 mean;      /* mean direction of the light; its length d <= 1 is the shorter, the more the light spreads */
     mcs_f inv_length;   /* 1/d */
     mcs_f spread;       /* 1 - d^2, plus the spread within texels, at most 1 */
@@ -10042,7 +10051,7 @@ MCSI_CORE mcsi_tile mcsi_tile_of_texel(const mcs_tiles *t, const mcs_env *e, uin
 }
 MCS_API uint32_t mcs_tiles_of_texel(const mcs_tiles *t, const mcs_env *e, uint32_t col, uint32_t row) {
     if (col >= e->w || row >= e->h) return t->rows * t->cols;
-    return mcsi_tile_of(col, t->cols, e->w) * t->rows + mcsi_tile_of(row, t->rows, e->h);
+    return (uint32_t)mcsi_tile_number(t->rows, mcsi_tile_of_texel(t, e, row, col));
 }
 MCS_API uint32_t mcs_tiles_of_direction(const mcs_tiles *t, const mcs_env *e, mcs_vec3 w) {
     const mcsi_angles a = mcsi_env_angles(&e->frame, w);
@@ -10059,12 +10068,20 @@ typedef struct {
     double area, across, up; /* sums over rows of their height, and of it times sin(theta) and cos(theta) */
     uint32_t row0, row1, col0, col1;
 } mcsi_tile_texels;
-MCS_FN mcs_vec3 mcsi_texel_corner(const mcs_env *e, uint32_t row, uint32_t col) {
-    const double t = mcsi_env_top(e, row);
+/* The direction of cos(theta) = 1 - t. */
+MCS_FN mcs_vec3 mcsi_direction_at(double t, double turns) {
     const float sine = mcsi_sqrt((float)(t * (2.0 - t)));
     float s, c;
-    mcsi_sincos_turns((float)((double)col / e->w), &s, &c);
+    mcsi_sincos_turns((float)turns, &s, &c);
     return mcsi_vec3(sine * c, sine * s, (float)(1.0 - t));
+}
+MCSI_CORE mcs_vec3 mcsi_texel_corner(const mcs_env *e, uint32_t row, uint32_t col) {
+    return mcsi_direction_at(mcsi_env_top(e, row), (double)col / e->w);
+}
+/* The middle of a tile: half of its solid angle lies above it. */
+MCSI_CORE mcs_vec3 mcsi_tile_texels_middle(const mcs_env *e, const mcsi_tile_texels *p) {
+    const double t = 0.5 * (mcsi_env_top(e, p->row0) + mcsi_env_top(e, p->row1));
+    return mcsi_direction_at(t, 0.5 * ((double)p->col0 + p->col1) / e->w);
 }
 /* Corners of a tile: upper left, lower left, upper right, lower right. */
 MCSI_CORE mcs_vec3 mcsi_tile_texels_corner(const mcs_env *e, const mcsi_tile_texels *p, uint32_t k) {
@@ -10131,8 +10148,8 @@ MCS_FN void mcsi_tile_texels_add(const mcs_env *e, mcsi_tile_texels *p) {
         for (uint32_t i = 0; i < rows; i++) mcsi_tile_texels_add_row(e, row + i, &sum[i], p);
     }
 }
-/* The spread of even light, as evenness is relative to it. A column's mean direction lies sin(x)/x from the axis, x
- * half its width. */
+/* Evenness of a tile: the root of its spread over that which even light would have. The mean direction of a column of
+ * even light lies sin(x)/x from the axis, x half its width. */
 MCS_FN float mcsi_tile_texels_evenness(const mcs_env *e, const mcsi_tile_texels *p, double spread) {
     if (!(p->area > 0.0 && p->col1 > p->col0)) return 1.0f;
     const double turns = 0.5 * (p->col1 - p->col0) / e->w;
@@ -10160,7 +10177,7 @@ MCS_FN double mcsi_tile_texels_radius(const mcs_env *e, const mcsi_tile_texels *
 MCS_FN mcsi_tile_light mcsi_tile_texels_light(const mcs_env *e, const mcsi_tile_texels *p) {
     const double sum = mcsi_sqrt_d(p->x * p->x + p->y * p->y + p->z * p->z);
     const mcs_vec3 m = sum > 0.0 ? mcsi_vec3((float)(p->x / sum), (float)(p->y / sum), (float)(p->z / sum))
-                                 : mcsi_texel_corner(e, (p->row0 + p->row1) / 2, (p->col0 + p->col1) / 2);
+                                 : mcsi_tile_texels_middle(e, p);
     const double mean = p->light > 0.0 && sum > 0.0 ? sum / p->light : 1.0;
     const double length = mean < 1.0 ? mean : 1.0;
     const double both = 1.0 - length * length + (p->light > 0.0 ? p->within / p->light : 0.0);
@@ -10500,7 +10517,7 @@ MCSI_LOOP void mcsi_warps_loop(size_t n, mcsi_warp_block *b) {
         mcs_store(b->density + i, p.density);
     }
 }
-/* The inverse: densities at given t1 and t2. */
+/* Densities at given t1 and t2. */
 MCSI_LOOP void mcsi_warp_densities_loop(size_t n, mcsi_warp_block *b) {
     for (size_t i = 0; i < n; i += MCSI_W) {
         const mcsi_warp w = mcsi_warp_block_get(b, i);
@@ -10563,7 +10580,7 @@ typedef struct {
     uint32_t *tile_sums;
     float *bound; /* [cols + 1][rows]: what tiles may weigh, and the largest in a row; it lies where tile_sums will */
     float excess; /* how much a value loses of what it is above the mean of the tile's warp */
-    float even;   /* what is added to each value by mcsi_product_finish */
+    float even;   /* what mcsi_product_finish adds to each value: m/5 of [region], else 0 */
 } mcsi_product_lists;
 MCSI_CORE mcsi_product_lists mcsi_product_lists_of(mcs_product *p, const mcs_tiles *t) {
     const mcsi_tiles_offsets from = mcsi_tiles_offsets_of(t);
@@ -10624,10 +10641,11 @@ MCSI_LOOP void mcsi_tile_shares_loop(mcsi_product_lists l) {
 #if MCSI_W == 1
 MCS_FN void mcsi_tile_shares_n(const mcsi_product_lists *l); /* by the widest loop */
 
-/* `source`: what it is built from. `least`: how many bytes that takes. */
+/* `source`: what it is built from. `least`: how many bytes that takes; 0: the tiles have a bad number of rows. */
 MCS_FN mcs_status mcsi_product_start(mcs_product *p, size_t bytes, size_t least, const mcs_tiles *t, const mcs_env *e,
                                      const void *source) {
     if (!p || !t || !e || !source || ((uintptr_t)p & MCSI_ALIGN)) return MCS_ERR_ARG;
+    if (least == 0) return MCS_ERR_SIZE;
     if (bytes < least) return MCS_ERR_MEMORY;
     MCSI_FILL(p, 0, least);
     p->rows = t->rows;
@@ -10654,9 +10672,9 @@ MCS_FN void mcsi_product_finish(mcs_product *p, const mcs_tiles *t, float even) 
 #endif
 
 /* ---- [product] bounds: what a tile may weigh, and that it weighs enough ----
- * A sample in the light of a tile is worth the sum of all weights times the reflection over value times warp. So it is
- * worth too much where the value is far below what the warp was made from: a light below the horizon has next to no
- * value, but its tile may reach far above the horizon. Hence a value is at least a quarter of the warp's mean. */
+ * A sample in the light of a tile is worth (sum of all weights) x reflection / (value x warp). That is too much where
+ * the value is far below what the warp was made from: a light below the horizon has next to no value, but its tile may
+ * reach far above the horizon. Hence a value is at least a quarter of the warp's mean. */
 
 /* How much of the mean of its warp a value is at least. */
 #define MCSI_VALUE_OF_WARP 0.25f
@@ -10876,8 +10894,8 @@ MCS_FN float mcsi_product_mirrored(const mcs_product *p, const mcs_tiles *t, con
     total *= mcsi_tile_solid_angle(t, e, tile);
     return light < total ? mcsi_max(light / total, 1.0f / 4096.0f) : 1.0f;
 }
-/* The lobe's share in the finished product. It begins where a lobe is 143 times as large as the cell of a grid, of
- * which 14 stand for a tile. Lobes without GGX's tails fall within a third. */
+/* The lobe's share in the finished product. It is above 0 for lobes below 10 mean tiles (1/0.007 fourteenths of one),
+ * and for those without GGX's tails below 31. */
 MCS_FN float mcsi_product_lobe_share(const mcs_product *p, const mcs_tiles *t, const mcs_env *e,
                                      const mcs_reflection *r, const mcsi_surface *s) {
     const float cells = 14.0f * (float)mcsi_tiles_count(t);
@@ -11027,6 +11045,7 @@ MCS_API size_t mcs_region_bytes(uint32_t rows) {
 MCS_API mcs_status mcs_region_start(mcs_region *g, size_t bytes, const mcs_tiles *t) {
     if (!g || !t || ((uintptr_t)g & MCSI_ALIGN)) return MCS_ERR_ARG;
     const size_t least = mcs_region_bytes(t->rows);
+    if (least == 0) return MCS_ERR_SIZE;
     if (bytes < least) return MCS_ERR_MEMORY;
     MCSI_FILL(g, 0, least);
     g->rows = t->rows;
@@ -11116,7 +11135,8 @@ MCS_FN void mcsi_product_see(mcs_product *p, const mcs_tiles *t, const mcs_regio
 /* Fewer points, which have decayed, count as none: sums of their squares have lost digits. */
 #define MCSI_REGION_POINTS_LEAST 1e-20f
 /* Values of the tiles: the reflections of the region. And its reach: of the light reflected V comes through, L V f over
- * L f; of what is drawn in proportion to L V f it is L V^2 f over L V f. Returns what even light adds to the values. */
+ * L f; of what is drawn in proportion to L V f it is L V^2 f over L V f. Returns what is added to every value, m/5 of
+ * [region], by which a sixth of the samples follows the light alone. */
 MCS_FN float mcsi_product_reflect(mcs_product *p, const mcs_tiles *t, const mcs_region *g) {
     const size_t n = mcsi_region_tiles(g);
     const float *light = MCSI_READ(float, t, mcsi_tiles_offsets_of(t).light);
@@ -11318,7 +11338,7 @@ MCSI_CORE mcs_texel mcsi_product_draw(const mcs_product *p, const mcs_tiles *t, 
     const mcsi_tile tile = mcsi_product_draw_tile(p, row, &d);
     const mcsi_window window = mcsi_window_of(e, mcsi_tiles_window(t, tile));
     mcsi_window_prefetch(&window, d.rest2);
-    if (p->warped) mcsi_product_draw_point(p, t, tile, &d);
+    mcsi_product_draw_point(p, t, tile, &d);
     mcs_texel x = mcsi_window_draw(e, &window, d);
     x.pdf = mcsi_lobe_mix(&p->lobe, p->brdf_share, x.w, x.pdf);
     return x;
@@ -11434,8 +11454,8 @@ MCSI_CORE void mcsi_product_block_find(mcsi_product_block *b, size_t n, const mc
         const mcsi_angles up = {0.0f, 0.0f, 0.0f};
         b->found[k] = found.off_pole < 4.0f;
         const mcsi_angles a = b->found[k] ? found : up;
-        const uint32_t row = mcsi_env_row_at(b->e, a.off_pole, a.polar);
-        const uint32_t col = mcsi_env_col_at(b->e, a.azimuth);
+        const uint32_t row = b->found[k] ? angles->row[k] : 0;
+        const uint32_t col = b->found[k] ? angles->col[k] : 0;
         b->spot[k] = mcsi_env_spot(b->e, a, row, col);
         const mcsi_tile tile = mcsi_tile_of_texel(b->t, b->e, row, col);
         b->draw[k].density = b->found[k] ? mcsi_product_tile_probability(b->p, tile) : 0.0;
@@ -11447,7 +11467,7 @@ MCSI_CORE void mcsi_product_block_find(mcsi_product_block *b, size_t n, const mc
 MCS_FN void mcsi_product_block_pdf(mcsi_product_block *b, size_t n, const float *x, const float *y, const float *z,
                                    float *pdf) {
     mcsi_angles_block angles;
-    mcsi_env_angles_n(b->e, n, x, y, z, &angles);
+    mcsi_env_texels(b->e, n, x, y, z, &angles);
     mcsi_product_block_find(b, n, &angles);
     for (size_t k = 0; k < n; k++) {
         mcsi_position at = {0.0f, 0.0f};

@@ -436,6 +436,13 @@ static void test_turned(void) {
 
 /* ---- directions of tiles ---- */
 
+/* Half of the solid angle of a box lies above its middle. */
+static mcs_vec3 middle_of(const scene *m, const box *b) {
+    const double z = (cos(pi * b->r0 / m->h) + cos(pi * b->r1 / m->h)) / 2;
+    const double phi = pi * (b->c0 + b->c1) / m->w;
+    const double across = sqrt((1 - z) * (1 + z));
+    return vec(across * cos(phi), across * sin(phi), z);
+}
 /* The mean of the light of its texels, each at its middle; where there is none, the middle of the tile. Azimuths of
  * texels are floats, and the mean of light beside the pole may be short. */
 static void check_direction(const scene *m, uint32_t tile) {
@@ -448,7 +455,7 @@ static void check_direction(const scene *m, uint32_t tile) {
             to3(v, point(m->w, m->h, c, r, 0.5, 0.5));
             for (int k = 0; k < 3; k++) sum[k] += weight_of(m, c, r) * m->area[r] * v[k];
         }
-    if (!(dot3(sum, sum) > 0)) to3(sum, point(m->w, m->h, (b.c0 + b.c1) / 2, (b.r0 + b.r1) / 2, 0, 0));
+    if (!(dot3(sum, sum) > 0)) to3(sum, middle_of(m, &b));
     const mcs_vec3 want = vec(sum[0], sum[1], sum[2]);
     CHECK(fabs((double)w.x - want.x) <= 32 * eps && fabs((double)w.y - want.y) <= 32 * eps &&
               fabs((double)w.z - want.z) <= 32 * eps,

@@ -343,6 +343,36 @@ static void check_flush(const mcst_row *row) {
         }
     if (getenv("MCS_TEST_VERBOSE")) printf("    %-16s %.3g\n", row->name, worst);
 }
+/* Built as usual, of numbers that are 0 where they are drawn from. */
+static void draw_subnormal(void) {
+    const float list[9] = {1e-40f, 2e-40f, 0x1p-149f, 1e-40f, 3e-40f, 0, 1e-40f, 1e-42f, 5e-39f};
+    double memory[6][32];
+    mcs_pwc *pwc = (mcs_pwc *)(void *)memory[0];
+    mcs_discrete *discrete = (mcs_discrete *)(void *)memory[1];
+    mcs_pwl *pwl = (mcs_pwl *)(void *)memory[2];
+    mcs_alias *alias = (mcs_alias *)(void *)memory[3];
+    mcs_pwc2 *pwc2 = (mcs_pwc2 *)(void *)memory[4];
+    const size_t bytes = 2 * sizeof *memory;
+    CHECK(mcs_pwc_build(pwc, sizeof *memory, list, 9) == MCS_OK, "pwc");
+    CHECK(mcs_discrete_build(discrete, sizeof *memory, list, 9) == MCS_OK, "discrete");
+    CHECK(mcs_pwl_build(pwl, sizeof *memory, list, 9) == MCS_OK, "pwl");
+    CHECK(mcs_alias_build(alias, sizeof *memory, list, 9) == MCS_OK, "alias");
+    CHECK(mcs_pwc2_build(pwc2, bytes, list, 3, 3) == MCS_OK, "pwc2");
+    for (int i = 0; i < 64; i++) {
+        const float u = (float)i / 64;
+        flush_mode(1);
+        const mcs_cell a = mcs_pwc_sample(pwc, u);
+        const mcs_cell b = mcs_pwl_sample(pwl, u);
+        const mcs_cell c = mcs_pwl_sample_bits(pwl, (uint32_t)i << 26, 7);
+        const mcs_pick d = mcs_discrete_sample(discrete, u);
+        const mcs_pick f = mcs_alias_sample(alias, u);
+        const mcs_cell2 g = mcs_pwc2_sample(pwc2, u, u);
+        flush_mode(0);
+        const float results[] = {a.x, a.pdf, b.x, b.pdf, c.x, c.pdf, d.pmf, d.u, f.pmf, f.u, g.x, g.y, g.pdf};
+        for (int k = 0; k < (int)(sizeof results / sizeof *results); k++)
+            CHECK(results[k] >= 0 && results[k] <= 9 * 9, "u %g, result %d: %g", (double)u, k, (double)results[k]);
+    }
+}
 #endif
 
 int main(int argc, char **argv) {
@@ -395,6 +425,7 @@ int main(int argc, char **argv) {
     }
     for (i = 0; i < MCST_NROWS; i++)
         if (mcst_case("%s", mcst_rows[i].name)) check_flush(&mcst_rows[i]);
+    if (mcst_case("tables of subnormal numbers")) draw_subnormal();
 #else
     if (!mcst.list) puts("SKIPPED: flush to zero, which this test cannot set here");
 #endif

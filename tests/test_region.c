@@ -632,8 +632,19 @@ static void check_refused(void) {
           "a region of more rows");
     CHECK(arena_intact(&b) && arena_intact(&c) && untouched(c.at, c.bytes), "a region of more rows, yet wrote");
     CHECK(untouched(a.at, a.bytes) && untouched(b.at, b.bytes), "refused arguments, yet wrote");
-    for (int i = 0; i < (int)(sizeof wrong / sizeof *wrong); i++)
+    for (int i = 0; i < (int)(sizeof wrong / sizeof *wrong); i++) {
+        mcs_tiles bad = *t;
+        bad.rows = wrong[i];
+        l.g->rows = wrong[i];
+        CHECK(mcs_region_start(g, 0, &bad) == MCS_ERR_SIZE && mcs_region_start(g, a.bytes, &bad) == MCS_ERR_SIZE,
+              "a region for %u rows", wrong[i]);
+        CHECK(mcs_product_build_region(p, b.bytes, &bad, e, l.g) == MCS_ERR_SIZE &&
+                  mcs_product_build_weights(p, 0, &bad, e, &s.r.matte) == MCS_ERR_SIZE &&
+                  mcs_product_build(p, b.bytes, &bad, e, &s.r, NULL) == MCS_ERR_SIZE,
+              "a product for %u rows", wrong[i]);
+        CHECK(untouched(a.at, a.bytes) && untouched(b.at, b.bytes), "%u rows, yet wrote", wrong[i]);
         CHECK(mcs_region_bytes(wrong[i]) == 0 && mcs_product_table_bytes(wrong[i]) == 0, "%u rows", wrong[i]);
+    }
     CHECK(mcs_region_bytes(16) == 8208 && mcs_region_bytes(32) == 16 + 16 * 2048 &&
               mcs_region_bytes(64) == 16 + 16 * 8192,
           "bytes of regions");

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What including mcsample.h costs: milliseconds of a compilation (-O2, a bare include, against one of <math.h>) for gcc and clang,
+# What including mcsample.h costs: milliseconds that it adds to the compilation (-O2) of a file that has <math.h>, for gcc and clang,
 # C and C++, with all of the header inline, with its large parts only declared, with packets, with each MCS_NO_* switch and with all
 # of them; and bytes of machine code of a function that calls one sampler, scalar and as an array form. Medians of compilations that
 # take turns. With "quick": gcc, the ways to include it.
@@ -24,7 +24,7 @@ if [ -n "${AGAINST:-}" ]; then
 fi
 
 echo '#include <math.h>' >"$dir/math.c"
-echo '#include "mcsample.h"' >"$dir/header.c"
+printf '#include <math.h>\n#include "mcsample.h"\n' >"$dir/header.c"
 
 cpu=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -n 1)
 compilers=''
