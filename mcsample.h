@@ -126,7 +126,7 @@
  *   [types]       points, directions, samples, lanes, status codes
  *   [rng]         random numbers, and a generator for every pixel          independent samples
  *   [points]      scrambled Sobol, strata, Latin hypercubes, R2            less noise for as many samples, blue noise
- *   [1d]          eleven densities on a line                               distances, filters
+ *   [1d]          densities on a line                                      distances, filters
  *   [square]      a bilinear density on the unit square                    cosines over a light of four corners
  *   [disk]        points on a disk                                         lenses, round lights
  *   [triangle]    points on a triangle                                     lights made of triangles
@@ -544,7 +544,7 @@ MCS_FN mcs_vec2 mcs_r2(uint32_t index, uint32_t seed);
 MCS_FN uint32_t mcs_hash(uint32_t a, uint32_t b);
 
 /* ==== [1d] densities on a line ====================================================================================
- * Eleven densities, each by inversion from one number u in [0,1). Every map increases with u: over the multiples of
+ * Densities, each by inversion from one number u in [0,1). Every map increases with u: over the multiples of
  * 2^-24 none ever falls, by as little as an ulp. Stratified u therefore give stratified x.
  *
  *   X_sample  draws x; its pdf is per length
@@ -2809,15 +2809,21 @@ typedef mcs_ashikhmin mcsi_scalar_ashikhmin;
  *
  *   part I     its paragraph and prototypes, X_sample_n within #ifndef MCS_NO_BATCH; the map of the file and the head
  *              of its block name it.
- *   part III   MCSI_SAMPLE before X_sample. MCSI_FN before X_pdf and X_invert, within #ifdef MCSI_PUBLIC. MCSI_LOOP
- *              before its loop, within #ifdef MCSI_BATCHES. MCSI_CORE before what is private. MCSI_REQUIRE tells
- *              bad parameters; [sane] makes bad input harmless.
- *   part V     a #define and an #undef in [names] for each of its names, private ones too; X_sample_n in [arrays].
- *   tests      a row in registry.h, and above it a grid, a domain, chi-square sets and claims, where none there fit its
- *              parameters; its truth in oracle.h and stress/exact.h; its hashes in bits.txt, by test_bits --print: what
- *              is missing fails by name. The limits in hygiene.sh go up. Nothing asks for a sentence in claims.h, its
- *              name in test_values.c, radii in stress/floats.c, a text in bench/throughput.c, slips in mutants.txt, a
- *              picture in examples/gallery_samplers.h, and its line in README.md. */
+ *   part III   MCSI_SAMPLE before X_sample. MCSI_FN before X_pdf and X_invert, within #ifdef MCSI_PUBLIC. MCSI_CORE
+ *              before what is private. Its loop stands within #ifdef MCSI_BATCHES: one use of MCSI_LOOP_... for a
+ *              density like others of its kind, else a function that begins with MCSI_LOOP. MCSI_REQUIRE tells bad
+ *              parameters; [sane] makes bad input harmless.
+ *   part V     [names]: each of these names but X_sample_n, private ones too, sorted, both among the #defines and among
+ *              the #undefs behind the includes. "conflicting types" and "redefinition" tell of one that is missing.
+ *              [arrays]: X_sample_n, by MCSI_ARRAY_... or in full.
+ *   tests      What is missing fails by name: a row in registry.h, and above it a grid, a domain, chi-square sets and
+ *              claims, where none there fit its parameters; its truth in oracle.h and stress/exact.h; its hashes in
+ *              bits.txt, by test_bits --print. Then test_oracle --filter X has accuracy, mass and bad input,
+ *              test_chi2_rest (lobes: test_chi2_lobes) the densities, and stress/floats --filter X all u. The limits in
+ *              hygiene.sh go up to what it prints.
+ *   wanted     No test asks for these: a sentence in claims.h where its accuracy needs one; a case in test_values.c;
+ *              radii in stress/floats.c, but for lines; a text in bench/throughput.c; slips in mutants.txt, which
+ *              tests/mutants.sh 2 NAME... runs; a picture in examples/gallery_samplers.h; its line in README.md. */
 #if MCSI_W == MCSI_BASE_W && !defined(MCSI_LOOPS)
 #define MCSI_LOOPS
 #endif

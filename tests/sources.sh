@@ -96,6 +96,14 @@ else
     echo "SKIPPED: no Universal Ctags here"
 fi
 
+# --- [names]: both lists are the same and sorted
+awk '/^#define mcsi?_[a-z0-9_]+ MCSI?_\(/ { print $2 }' mcsample.h >"$dir/defined"
+awk '/^#include MCS_SELF/ { n = 0 } /^#undef mcsi?_/ { name[n++] = $2 } END { for (i = 0; i < n; i++) print name[i] }' mcsample.h >"$dir/undefined"
+[ -s "$dir/defined" ] && sort -C "$dir/defined"
+check $? "the names defined in [names] are sorted" "$(sort -c "$dir/defined" 2>&1)"
+cmp -s "$dir/defined" "$dir/undefined"
+check $? "names are undefined again as they were defined" $(diff "$dir/defined" "$dir/undefined" | sed -n 's/^[<>] //p' | head -n 5)
+
 # --- a prototype that disagrees with its function does not compile
 mkdir -p "$dir/disagree"
 for line in 'MCS_FN float mcs_disk_pdf(' 'MCS_API float mcs_env_pdf('; do

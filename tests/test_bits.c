@@ -4,6 +4,7 @@
  *
  * The functions are those of part I: a new one without an adapter (registry.h, bits.h) or a line in bits.txt
  * fails by name. Where results change on purpose:   build/tests/test_bits --print > tests/bits.txt
+ * Points are mostly samples of the row: a new X_sample changes the hash of X_pdf, too.
  *
  * As CUDA (nvcc -x cu --fmad=false) the same file evaluates every scalar function in kernels too, where a GPU is
  * present. The terms of the promise are no contraction of a*b + c and floats evaluated as floats; any other build

@@ -67,7 +67,7 @@ static void vacuum(void) {
 }
 /* Outside the support densities are 0 and inverses are the nearer end. Rims take in the rounding of what lies on them,
  * 5e-7. */
-static void beyond_the_ends(void) {
+static void beyond_the_ends_of_lines(void) {
     const float top = 0.99999994f;
     CHECK(mcs_linear_pdf(1, 3, -0.1f) == 0 && mcs_linear_pdf(1, 3, 1.1f) == 0 && mcs_linear_invert(1, 3, -2) == 0 &&
               mcs_linear_invert(3, 1, 4) == top && mcs_linear_invert(1, 0, 1.5f) == top,
@@ -111,6 +111,9 @@ static void beyond_the_ends(void) {
               mcs_truncnormal_sample(2e18f, INFINITY, 0.5f).pdf == 0 &&
               mcs_trunclogistic_pdf(-INFINITY, -INFINITY, 2) == 0,
           "no room between the ends: %g", (double)mcs_truncnormal_sample(2, 2, 0.5f).pdf);
+}
+static void beyond_the_ends_of_areas(void) {
+    const float top = 0.99999994f;
     CHECK(mcs_disk_pdf(3, 3.00001f, 0) == 0 && mcs_concentric_pdf(3, 0, -3.00001f) == 0 && mcs_disk_pdf(3, 3, 0) > 0,
           "disks, 3e-6 past the rim: %g", (double)mcs_disk_pdf(3, 3.00001f, 0));
     CHECK(mcs_bilinear_pdf(1, 2, 3, 4, -0.1f, 0.5f) == 0 && mcs_bilinear_pdf(1, 2, 3, 4, 0.5f, 1.1f) == 0 &&
@@ -339,7 +342,10 @@ int main(int argc, char **argv) {
     mcst_group("values, others");
     for (size_t i = 0; i < 6; i++)
         if (mcst_case("constants of %s", even[i])) constants(even[i], i < 2 ? 0.1 : 0.15);
-    if (mcst_case("beyond the ends")) beyond_the_ends();
+    if (mcst_case("beyond the ends")) {
+        beyond_the_ends_of_lines();
+        beyond_the_ends_of_areas();
+    }
     if (mcst_case("a vacuum")) vacuum();
     if (mcst_case("truncexp of small u")) truncexp_small_u();
     if (mcst_case("bilinear without a good height")) bilinear_uniform();

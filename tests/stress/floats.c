@@ -714,7 +714,7 @@ static void set_result(result *r, const char *name, enum unit unit, double limit
     r->nan_gives_0 = 0;
 }
 
-/* The support; unbounded densities reach as far as 2^-25 allows, 17.4 scales, 5.5 standard deviations. */
+/* The support; unbounded densities reach as far as u = 2^-25 does. */
 static void support(const mcst_row *of, double *lo, double *hi) {
     const double a = (double)arg[0], b = (double)arg[1], noise = 0x1p-23 * fabs(a);
     *lo = 0, *hi = 1;
@@ -723,7 +723,10 @@ static void support(const mcst_row *of, double *lo, double *hi) {
     case MCST_HALFLINE: *hi = 17 / a; break;
     case MCST_TRUNCATED: *hi = b; break;
     case MCST_WHOLELINE: {
-        const double far = (of->traits & MCST_QUANTILE ? 5.5 : 17.4) * b + noise;
+        const float p[MCST_P] = {arg[0], arg[1], 0, 0, 0, 1};
+        ld x[3];
+        of->truth.map(p, 0x1p-25L, 0, x);
+        const double far = (a - (double)x[0]) * (1 + 0x1p-20) + noise;
         *lo = a - far, *hi = a + far;
         break;
     }
