@@ -25,6 +25,7 @@ static void draw_numbers(mcs_pcg32 *rng) {
     mcs_pcg32_fill_n(rng, HITS, u1);
     mcs_pcg32_fill_n(rng, HITS, u2);
 }
+
 static void draw_from_lobe(const mcs_env *env) {
     mcs_ggx_bounded_sample_hits_n(NULL, &hits, HITS, u1, u2, x, y, z, lobe_pdf, weight);
     mcs_to_world_n(HITS, normal_x, normal_y, normal_z, x, y, z, x, y, z);

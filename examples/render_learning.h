@@ -66,8 +66,8 @@ static unsigned cell_of(float place) {
     return place < CELLS - 1 ? (unsigned)place : CELLS - 1;
 }
 
-/* A sixth is the side of a cell of a sphere, where a lobe looks another way in each; a ninth, if it is narrow; 1.5 of an
- * object that is larger. */
+/* Cells are a sixth wide on spheres, where a lobe looks another way in each, a ninth if the lobe is narrow, and 1.5 on
+ * objects that are larger. */
 static float cells_per_length(const surface *hit) {
     if (hit->object >= SPHERES) return 1 / 1.5f;
     const material *m = hit->m;

@@ -161,7 +161,7 @@ static void check_window(const picture *p, const mcs_env *e, rectangle t, int dr
     arena_free(&a);
 }
 
-enum { WINDOWS = 17 };
+enum { WINDOWS = 20, STEPPED = 14 }; /* from STEPPED on their widths are given */
 
 /* Number i of a picture's windows: all of it; all of it, from elsewhere on; across the seam; single texels; in the first
  * and the last row; any; and as wide as columns are looked for by another number of steps. */
@@ -191,8 +191,8 @@ static rectangle window_of(const picture *p, int i, mcs_pcg32 *rng) {
         t.rows = 1;
         t.cols = 1;
     }
-    if (i > 10 && p->w > steps[i - 11]) {
-        t.cols = steps[i - 11];
+    if (i >= STEPPED && p->w > steps[i - STEPPED]) {
+        t.cols = steps[i - STEPPED];
         t.col = mcs_pcg32_next(rng) % (p->w - t.cols);
     }
     return t;
